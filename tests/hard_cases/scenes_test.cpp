@@ -118,7 +118,7 @@ TEST(HardCasesInScenes, SameJointTenTimes) {
     return states;
   };
   const std::vector<BodyState> ten = states_of(in_steps_of_a_millisecond(hard("same_joint_ten_times")));
-  const std::vector<BodyState> one = states_of(read_scene((scenes_dir() / "compound_pendulum.toml").string()));
+  const std::vector<BodyState> one = states_of(in_steps_of_a_millisecond(scene_named("compound_pendulum")));
   ASSERT_EQ(ten.size(), one.size());
   double apart = 0;
   for (std::size_t k = 0; k < one.size(); ++k) {
@@ -220,7 +220,7 @@ TEST(HardCasesInScenes, FarFromTheOrigin) {
     return states;
   };
   const std::vector<BodyState> far = states_of(in_steps_of_a_millisecond(hard("far_from_origin")));
-  const std::vector<BodyState> near = states_of(read_scene((scenes_dir() / "compound_pendulum.toml").string()));
+  const std::vector<BodyState> near = states_of(in_steps_of_a_millisecond(scene_named("compound_pendulum")));
   ASSERT_EQ(far.size(), near.size());
   double apart = 0;
   for (std::size_t k = 0; k < far.size(); ++k) {

@@ -9,7 +9,7 @@
 #include "runtime/tool/commands/matrix.hpp"
 #include "runtime/tool/commands/options.hpp"
 #include "runtime/tool/run/output.hpp"
-#include "runtime/tool/run/simulate.hpp"
+#include "runtime/tool/search/simulate.hpp"
 
 namespace cdot {
 namespace {
@@ -126,7 +126,8 @@ std::string losses_text(const Scene& scene, const std::vector<RankLoss>& losses)
   return text;
 }
 
-std::string diagnosis_text(const Scene& scene, const RunResult& result) {
+std::string diagnosis_text(const Scene& asked, const RunResult& result) {
+  const Scene scene = as_run(asked, result);
   std::string text =
       fmt::format("{}\nmethod: {}\n", scene.title.empty() ? scene.file : scene.title, method_text(scene));
   if (result.diagnoses == 1 && !result.diagnosis.empty())
@@ -144,20 +145,21 @@ std::string diagnosis_text(const Scene& scene, const RunResult& result) {
     text += fmt::format("{}: {}\n", one.warning ? "warning" : "note", one.what);
     if (!one.fix.empty()) text += fmt::format("  likely fix: {}\n", one.fix);
   }
-  const std::string why = failure(scene, result);
+  const std::string why = failure(asked, result);
   if (!why.empty()) text += fmt::format("FAILED: {}\n", why);
   if (concerns.empty() && why.empty()) text += "no warnings: the method suits this scene\n";
   return text;
 }
 
-std::string diagnosis_json(const Scene& scene, const RunResult& result) {
+std::string diagnosis_json(const Scene& asked, const RunResult& result) {
+  const Scene scene = as_run(asked, result);
   Json json = {{"scene", scene.file},       {"title", scene.title},  {"method", method_text(scene)},
                {"poses", result.diagnoses}, {"start", result.start}, {"time", result.time},
                {"islands", Json::array()}};
   for (const WorstOfIsland& one : result.diagnosis) json["islands"].push_back(island_json(scene, one));
   json["rank_losses"] = rank_losses_json(scene, result.rank_losses);
   json["concerns"] = concerns_json(concerns_about(scene, result.diagnosis, false));
-  json["failure"] = failure(scene, result);
+  json["failure"] = failure(asked, result);
   return json.dump(2) + "\n";
 }
 
@@ -201,14 +203,15 @@ int run(const Options& options) {
   if (options.time) {
     check_within(*options.time, scene.duration);
     run.diagnose_times = {*options.time};
-    scene.duration = std::max(*options.time, 1e-9 * scene.step);
+    scene.duration = std::max(*options.time, 1e-12 * scene.duration);
   }
   std::string warnings;
   const RunResult result = simulate(scene, run, warnings);
   fmt::print(stderr, "{}", warnings);
   if (result.interrupted) return stopped;
   fmt::print("{}", options.json ? diagnosis_json(scene, result) : diagnosis_text(scene, result));
-  const bool nothing_wrong = concerns_about(scene, result.diagnosis, true).empty() && failure(scene, result).empty();
+  const bool nothing_wrong =
+      concerns_about(as_run(scene, result), result.diagnosis, true).empty() && failure(scene, result).empty();
   return nothing_wrong ? well : answer_is_no;
 }
 

@@ -17,24 +17,25 @@ void add_scene(Line& line, SceneOptions& options) {
 
 namespace {
 
-template <auto... path>
+template <auto list, auto... path>
 void add_number(Line& line, SceneOptions& options, const std::string& flag, const std::string& meaning) {
   using Number = std::remove_cvref_t<decltype((std::declval<Scene>().*....*path))>;
   const std::function change = [&options](Number x) {
-    options.changes.push_back([x](Scene& scene) { (scene.*....*path) = x; });
+    (options.*list).push_back([x](Scene& scene) { (scene.*....*path) = x; });
   };
   line.add(flag, change, meaning).positive().repeatable();
 }
 
-template <const auto& table, auto... path>
+template <auto list, const auto& table, auto... path>
 void add_choice(Line& line, SceneOptions& options, const std::string& flag, const std::string& meaning) {
   const std::function change = [&options](const std::string& name) {
-    options.changes.push_back([name](Scene& scene) { (scene.*....*path) = method_called(table, name); });
+    (options.*list).push_back([name](Scene& scene) { (scene.*....*path) = method_called(table, name); });
   };
   line.add(flag, change, meaning).one_of(names_of(table)).repeatable();
 }
 
 constexpr auto settings = &Scene::settings;
+constexpr auto methods = &SceneOptions::methods, others = &SceneOptions::changes;
 
 // Keys of a scene that are also options, with the same help: --local-error for local_error.
 // clang-format off
@@ -42,23 +43,24 @@ constexpr struct {
   const char* key;
   void (*add)(Line&, SceneOptions&, const std::string& flag, const std::string& meaning);
 } method_keys[] = {
-    {"step",        add_number<&Scene::step>},
-    {"solver",      add_choice<solvers, settings, &Settings::solver>},
-    {"integrator",  add_choice<integrators, settings, &Settings::integrator>},
-    {"local_error", add_number<settings, &Settings::local_error>},
-    {"kernels",     add_choice<kernel_forms, settings, &Settings::kernels>},
-    {"precision",   add_choice<precisions, &Scene::single>},
-    {"drift",       add_choice<drifts, settings, &Settings::drift>},
-    {"iterations",  add_number<settings, &Settings::iterations>},
-    {"substeps",    add_number<settings, &Settings::substeps>},
-    {"on_failure",  add_choice<failure_answers, &Scene::on_failure>},
+    {"step",        add_number<methods, &Scene::step>},
+    {"solver",      add_choice<methods, solvers, settings, &Settings::solver>},
+    {"integrator",  add_choice<methods, integrators, settings, &Settings::integrator>},
+    {"local_error", add_number<methods, settings, &Settings::local_error>},
+    {"kernels",     add_choice<methods, kernel_forms, settings, &Settings::kernels>},
+    {"precision",   add_choice<methods, precisions, &Scene::single>},
+    {"drift",       add_choice<methods, drifts, settings, &Settings::drift>},
+    {"iterations",  add_number<methods, settings, &Settings::iterations>},
+    {"substeps",    add_number<methods, settings, &Settings::substeps>},
+    {"on_failure",  add_choice<others, failure_answers, &Scene::on_failure>},
 };
 // clang-format on
 
 }  // namespace
 
 void add_until(Line& line, SceneOptions& options) {
-  add_number<&Scene::duration>(line, options, "--until", "end at this time [s] instead of the scene's duration");
+  add_number<others, &Scene::duration>(line, options, "--until",
+                                       "end at this time [s] instead of the scene's duration");
 }
 
 void add_method(Line& line, SceneOptions& options) {
@@ -78,6 +80,12 @@ void add_progress(Line& line, SceneOptions& options) {
 Scene scene_of(const SceneOptions& options) {
   Scene scene = read_scene(options.file);
   for (const auto& change : options.changes) change(scene);
+  if (options.methods.empty()) return scene;
+  // A method replaces an accuracy.
+  scene.accuracy = 0;
+  for (const auto& change : options.methods) change(scene);
+  if (scene.step == 0)
+    scene.step = scene.settings.local_error > 0 ? scene.duration / intervals_of_own_steps : default_step;
   return scene;
 }
 

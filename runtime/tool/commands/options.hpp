@@ -13,7 +13,7 @@ namespace cdot {
 // They replace the scene's own settings.
 struct SceneOptions {
   std::string file;
-  std::vector<std::function<void(Scene&)>> changes;
+  std::vector<std::function<void(Scene&)>> changes, methods;  // methods: an accuracy of the scene then counts no more
   bool progress = false;
 };
 

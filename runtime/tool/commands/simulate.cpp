@@ -1,11 +1,11 @@
 // `cdot-run simulate`: runs a scene and writes the requested files.
-#include "runtime/tool/run/simulate.hpp"
+#include "runtime/tool/search/simulate.hpp"
 
 #include <fmt/format.h>
 
 #include "runtime/tool/commands/options.hpp"
-#include "runtime/tool/run/advice.hpp"
 #include "runtime/tool/run/output.hpp"
+#include "runtime/tool/search/advice.hpp"
 #include "runtime/tool/viewer/viewer.hpp"
 
 namespace cdot {
@@ -29,7 +29,11 @@ void add_options(Line& line, Options& options) {
   line.add("--accuracy", &options.accuracy, "choose a method that reaches this trajectory error [m, rad]")
       .positive()
       .repeatable()
+      .excludes("--step")
       .excludes("--integrator")
+      .excludes("--drift")
+      .excludes("--iterations")
+      .excludes("--substeps")
       .excludes("--local-error")
       .excludes("--solver")
       .excludes("--kernels")
@@ -96,7 +100,7 @@ int run(const Options& options) {
 
   if (csv) csv->commit();
   if (!result.state.empty()) write_file(options.save_state, result.state.text());
-  if (!options.html.empty()) write_file(options.html, html_page(scene, result.film));
+  if (!options.html.empty()) write_file(options.html, html_page(as_run(scene, result), result.film));
   if (!options.svg.empty()) write_file(options.svg, svg_still(scene, result.film));
   fmt::print(summary, "{}", options.json ? summary_json(scene, result) : summary_text(scene, result));
   return failure(scene, result).empty() ? well : answer_is_no;

@@ -1,16 +1,33 @@
 // The result of a run -> a summary for people and for programs.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cdot/methods.hpp>
 
 #include "runtime/text/json.hpp"
-#include "runtime/tool/run/advice.hpp"
 #include "runtime/tool/run/balance_report.hpp"
 #include "runtime/tool/run/simulate.hpp"
 
 namespace cdot {
 
+std::string in_words(const TriedFix& advice) {
+  if (advice.tried.empty()) return "Nothing could be tried within the time";
+  if (advice.options.empty()) return fmt::format("Tried in vain: `{}`", fmt::join(advice.tried, "`, `"));
+  return fmt::format("Tried: `{}` keeps energy and momentum to {:.1e} at {} times the cost{}", advice.options,
+                     advice.share,
+                     advice.cost < 10 ? fmt::format("{:.2g}", advice.cost) : fmt::format("{:.0f}", advice.cost),
+                     advice.until > 0 ? fmt::format(", up to t = {:.6g} s", advice.until) : std::string());
+}
+
 namespace {
+
+text::Json advice_json(const TriedFix& advice) {
+  return {{"options", advice.options},
+          {"share", advice.share},
+          {"cost", advice.cost},
+          {"until", advice.until},
+          {"tried", advice.tried}};
+}
 
 // Springs follow the joints in the World.
 std::string joint_in_words(const Scene& scene, int joint) {
@@ -20,6 +37,11 @@ std::string joint_in_words(const Scene& scene, int joint) {
 // The advice that was tried; without one, what usually helps.
 std::string fix_of(const RunResult& result, const std::string& usual) {
   return result.advice ? in_words(*result.advice) : "Likely fix: " + usual;
+}
+
+std::string fix_of_accuracy(const Choice& choice) {
+  if (!(choice.holds_until > 0)) return "Likely fix: a method and a step of your own";
+  return fmt::format("Likely fix: --until {:.6g}", choice.holds_until);
 }
 
 std::string failed_step_text(const Scene& scene, const RunResult& result, const StepResult& step) {
@@ -53,10 +75,8 @@ std::string failure(const Scene& scene, const RunResult& result) {
   }
   if (const std::string lost = balance_failure(scene, result); !lost.empty())
     return fmt::format("{}. {}", lost, fix_of(result, "a shorter step"));
-  if (result.choice && !result.choice->reached)
-    return fmt::format("accuracy {:.1e} not reached: two runs differ by {:.1e}. Likely fix: a shorter run",
-                       scene.accuracy, result.choice->achieved);
-  return {};
+  const std::string lack = result.choice ? accuracy_failure(*result.choice) : std::string();
+  return lack.empty() ? lack : fmt::format("{}. {}", lack, fix_of_accuracy(*result.choice));
 }
 
 namespace {
@@ -69,26 +89,36 @@ std::string own_steps_text(const StepCounts& counts) {
   return text + "\n";
 }
 
-std::string choice_text(const Scene& scene, const Choice& choice) {
-  return fmt::format(
-      "  accuracy        {:.1e} asked for: {}, local error {:.1e}; {:.1e} achieved, against a run with a hundredth of "
-      "that{}\n",
-      scene.accuracy, name_of(integrators, choice.integrator), choice.local_error, choice.achieved,
-      choice.reached ? "" : ": NOT reached");
-}
+}  // namespace
 
-text::Json choice_json(const Scene& scene, const Choice& choice) {
-  return {{"asked", scene.accuracy},           {"integrator", name_of(integrators, choice.integrator)},
-          {"local_error", choice.local_error}, {"achieved", choice.achieved},
-          {"reached", choice.reached},         {"evaluations", choice.evaluations}};
+namespace {
+
+// Of a step that an adaptive method left to Euler's, whose error nobody knows; or of an accuracy that holds in part.
+std::string warning_of_accuracy(const Scene& scene, const RunResult& result) {
+  if (result.choice) {
+    const std::string lack = accuracy_warning(*result.choice);
+    return lack.empty() ? lack : fmt::format("{}. {}", lack, fix_of_accuracy(*result.choice));
+  }
+  if (scene.settings.local_error == 0 || result.counts.rescued == 0) return {};
+  return fmt::format(
+      "the local error {:.1e} is broken: {} step{} left to Euler's method, first by t = {:.6g} s. Likely fix: a larger "
+      "local error, or fixed steps of implicit or rattle",
+      scene.settings.local_error, result.counts.rescued, result.counts.rescued == 1 ? " was" : "s were",
+      result.first_rescue);
 }
 
 }  // namespace
 
-std::string summary_text(const Scene& scene, const RunResult& result) {
+// The scene with the method that ran.
+Scene as_run(const Scene& scene, const RunResult& result) {
+  return result.choice ? solved_by(*result.choice, scene) : scene;
+}
+
+std::string summary_text(const Scene& asked, const RunResult& result) {
+  const Scene scene = as_run(asked, result);
   std::string text = fmt::format("{}\n", scene.title.empty() ? scene.file : scene.title);
   text += fmt::format("  bodies, joints  {}, {}\n", scene.bodies.size(), scene.joints.size());
-  const bool own_steps = result.choice || scene.settings.local_error > 0;
+  const bool own_steps = scene.settings.local_error > 0;
   text += fmt::format("  time            {:.6g} s", result.time);
   if (!own_steps) text += fmt::format(" in {} steps of {:.6g} s", result.steps, scene.step);
   if (result.start > 0) text += fmt::format(", from the state at {:.6g} s", result.start);
@@ -96,9 +126,10 @@ std::string summary_text(const Scene& scene, const RunResult& result) {
   if (scene.single) text += "  precision       float\n";
   if (own_steps) text += own_steps_text(result.counts);
   if (result.counts.rescued > 0)
-    text += fmt::format("  Euler fallback  {} steps, for endless events or a useless error estimate\n",
-                        result.counts.rescued);
-  if (result.choice) text += choice_text(scene, *result.choice);
+    text += fmt::format(
+        "  Euler fallback  {} steps, first by t = {:.6g} s, for endless events or a useless error estimate\n",
+        result.counts.rescued, result.first_rescue);
+  if (result.choice) text += choice_text(*result.choice);
   text += fmt::format("  CPU             {:.4g} s, {:.3g} us per step\n", result.cpu,
                       result.steps > 0 ? 1e6 * result.cpu / static_cast<double>(result.steps) : 0.0);
   if (!result.worst_joint.empty()) {
@@ -124,7 +155,9 @@ std::string summary_text(const Scene& scene, const RunResult& result) {
     text += fmt::format("  warning         {}. Likely fix: {}\n", concern.what, concern.fix);
   if (const std::string lost = balance_warning(scene, result); !lost.empty())
     text += fmt::format("  warning         {}. {}\n", lost, fix_of(result, "a shorter step"));
-  const std::string why = failure(scene, result);
+  if (const std::string lack = warning_of_accuracy(scene, result); !lack.empty())
+    text += fmt::format("  warning         {}\n", lack);
+  const std::string why = failure(asked, result);
   if (!why.empty()) text += fmt::format("  FAILED          {}\n", why);
   return text;
 }
@@ -139,8 +172,9 @@ text::Json rank_losses_json(const Scene& scene, const std::vector<RankLoss>& los
   return json;
 }
 
-std::string summary_json(const Scene& scene, const RunResult& result) {
-  const std::string why = failure(scene, result);
+std::string summary_json(const Scene& asked, const RunResult& result) {
+  const Scene scene = as_run(asked, result);
+  const std::string why = failure(asked, result);
   text::Json json = {
       {"scene", scene.file},
       {"title", scene.title},
@@ -162,6 +196,7 @@ std::string summary_json(const Scene& scene, const RunResult& result) {
       {"energy_drift", result.energy_drift},
       {"balance", balance_json(result.balance)},
       {"warning", balance_warning(scene, result)},
+      {"accuracy_warning", warning_of_accuracy(scene, result)},
       {"redundant_rows", result.redundant_rows},
       {"rank_losses", rank_losses_json(scene, result.rank_losses)},
       {"retried", {{"steps", result.counts.retried}, {"direct", result.counts.direct}}},
@@ -177,7 +212,7 @@ std::string summary_json(const Scene& scene, const RunResult& result) {
                          {"steered", result.counts.steered}};
   if (result.advice) json["advice"] = advice_json(*result.advice);
   if (result.failed_step) json["failed_step"] = failed_step_json(scene, *result.failed_step);
-  if (result.choice) json["accuracy"] = choice_json(scene, *result.choice);
+  if (result.choice) json["accuracy"] = choice_json(*result.choice);
   return json.dump(2) + "\n";
 }
 

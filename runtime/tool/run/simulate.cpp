@@ -136,6 +136,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     if (k > 0) rank.look(after.time, world.weakest_row());
     if (!result.finite) break;
     result.balance.look(world.balance());
+    if (result.first_rescue < 0 && world.step_counts().rescued > 0) result.first_rescue = after.time;
     if (every_step) options.row(after);
     requested.after_step(before, after);
     if (options.save_at && result.state.empty() && after.time >= *options.save_at * (1 - 1e-12))
@@ -144,7 +145,9 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
         std::upper_bound(next_diagnosis, options.diagnose_times.end(), after.time + same_time * scene.duration);
     if (due != next_diagnosis) look(scene, world, result);
     next_diagnosis = due;
-    if (k == steps.count() || Interrupt::asked()) break;
+    result.stopped = options.look && !options.look(after, world.step_counts());
+    if (result.stopped && !options.diagnose_times.empty()) look(scene, world, result);
+    if (k == steps.count() || result.stopped || Interrupt::asked()) break;
     requested.before_step(world, after, steps.time(k + 1));
     const double start = cpu_now();
     const StepResult step = world.step(steps.length(k + 1));
@@ -159,8 +162,8 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     std::swap(before, after);
     after = frame_of(world, steps.time(k + 1), bodies);
     if (progress.due())
-      progress.show(fmt::format("{:3.0f} %  {:.4g} s of {:.4g} s", 100 * after.time / scene.duration, after.time,
-                                scene.duration));
+      progress.show(fmt::format("{}{:3.0f} %  {:.4g} s of {:.4g} s", options.doing, 100 * after.time / scene.duration,
+                                after.time, scene.duration));
   }
   rank.end();
   result.rank_losses = rank.found();
@@ -196,14 +199,7 @@ BasicWorld<S> world_at_start(const Scene& scene, std::string& warnings) {
   return world;
 }
 
-RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings) {
-  if (scene.accuracy > 0) {
-    const Choice choice = choose_method(scene);
-    const Scene chosen = solved_by(choice, scene);
-    RunResult result = simulate(chosen, options, warnings);
-    result.choice = choice;
-    return result;
-  }
+RunResult run_once(const Scene& scene, const RunOptions& options, std::string& warnings) {
   const auto run = [&]<class S>(S) { return simulate_in<S>(scene, options, warnings); };
   return scene.single ? in_space_of<float>(scene, run) : in_space_of<double>(scene, run);
 }

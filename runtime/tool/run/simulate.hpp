@@ -1,13 +1,14 @@
 // A scene -> its run: rows and film frames on the way, a verdict at the end.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <cdot/snapshot.hpp>
 
-#include "runtime/tool/run/choose_method.hpp"
+#include "runtime/tool/run/choice.hpp"
 #include "runtime/tool/run/frame.hpp"
 #include "runtime/tool/run/rank_watch.hpp"
 #include "runtime/tool/run/worst.hpp"
@@ -19,14 +20,18 @@ struct RunOptions {
   std::function<void(const Frame&)> row;  // called with every row of the trajectory
   std::vector<double> row_times;          // empty: after every step
   std::vector<double> film_times;
-  std::vector<double> diagnose_times;  // at the first step that ends then or later, and before a step that fails
+  std::vector<double> diagnose_times;  // at the first step that ends then or later; before a step that fails, and where
+                                       // `look` ends the run
   bool progress = false;               // on stderr
-  Snapshot from;                       // to continue from; empty: the scene's start
+  std::string doing;                   // before the progress: "dop853, local error 1e-06: "
+  // Called at the start and after every step with the work so far; false ends the run there.
+  std::function<bool(const Frame&, const StepCounts&)> look;
+  Snapshot from;  // to continue from; empty: the scene's start
   // When to save RunResult::state: at the first step that ends then or later.
   std::optional<double> save_at;
 };
 
-// A fix for a run that was tried (runtime/tool/run/advice.hpp).
+// A fix for a run that was tried (runtime/tool/search/advice.hpp).
 struct TriedFix {
   std::string options;             // of `cdot-run simulate`; empty: nothing that was tried is a cure
   double share = 0;                // the method's own share of energies and momenta with these options
@@ -36,7 +41,7 @@ struct TriedFix {
 };
 
 struct RunResult {
-  std::optional<Choice> choice;  // if the scene has an accuracy
+  std::optional<Choice> choice;  // if the scene asks for an accuracy
   StepCounts counts;             // of integrators on accelerations
   double time = 0;               // at the end [s]
   double start = 0;              // [s]; above 0 if the run continued from a state
@@ -52,7 +57,9 @@ struct RunResult {
   int redundant_rows = 0;
   std::vector<RankLoss> rank_losses;
   std::vector<std::string> broken_joints, notes;
+  double first_rescue = -1;  // [s] end of the step in which Euler's method first had to finish; below 0: none
   bool finite = true, interrupted = false;
+  bool stopped = false;                   // by RunOptions::look
   std::optional<StepResult> failed_step;  // the run ended before it
   std::vector<WorstOfIsland> diagnosis;
   int diagnoses = 0;  // number of times diagnosed
@@ -63,11 +70,18 @@ struct RunResult {
 template <class S>
 BasicWorld<S> world_at_start(const Scene& scene, std::string& warnings);
 
-// `warnings` receives warnings in the lines of the scene, such as an inconsistent start.
-RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings);
+// By the method and steps that the scene names; runtime/tool/search/simulate.hpp runs any scene. `warnings` receives
+// warnings in the lines of the scene, such as an inconsistent start.
+RunResult run_once(const Scene& scene, const RunOptions& options, std::string& warnings);
+
+// "Tried: `--integrator rattle` keeps its energy to 1e-09 at 0.9 times the cost", or what was tried in vain.
+std::string in_words(const TriedFix& advice);
 
 // Why the run failed, with the advice that was tried; empty if it did not.
 std::string failure(const Scene& scene, const RunResult& result);
+
+// The scene with the method that ran.
+Scene as_run(const Scene& scene, const RunResult& result);
 
 text::Json rank_losses_json(const Scene& scene, const std::vector<RankLoss>& losses);
 std::string summary_text(const Scene& scene, const RunResult& result);

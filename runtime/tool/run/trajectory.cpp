@@ -137,16 +137,19 @@ double cpu_of(const Scene& scene, const Way& way, const Knob& knob, const std::v
   });
 }
 
-Apart apart(const Frame& a, const Frame& b, Dimension dimension) {
+Apart apart(const BodyState& a, const BodyState& b, Dimension dimension) {
   const auto orientation = [](const BodyState& s) { return spatial::oriented(0.0, 0.0, 0.0, s.e0, s.e1, s.e2, s.e3); };
+  return {std::hypot(a.x - b.x, a.y - b.y, a.z - b.z),
+          dimension == Dimension::planar ? std::abs(a.angle - b.angle)
+                                         : spatial::norm(spatial::turn_between(orientation(a), orientation(b)))};
+}
+
+Apart apart(const Frame& a, const Frame& b, Dimension dimension) {
   Apart worst;
   for (std::size_t k = 0; k < a.bodies.size(); ++k) {
-    const BodyState &is = a.bodies[k], &was = b.bodies[k];
-    const double turned = dimension == Dimension::planar
-                              ? std::abs(is.angle - was.angle)
-                              : spatial::norm(spatial::turn_between(orientation(is), orientation(was)));
-    worst.position = std::max(worst.position, std::hypot(is.x - was.x, is.y - was.y, is.z - was.z));
-    worst.angle = std::max(worst.angle, turned);
+    const Apart one = apart(a.bodies[k], b.bodies[k], dimension);
+    worst.position = std::max(worst.position, one.position);
+    worst.angle = std::max(worst.angle, one.angle);
   }
   return worst;
 }

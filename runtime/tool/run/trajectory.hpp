@@ -42,12 +42,13 @@ Trajectory trajectory_of(const Scene& scene, const Way& way, const Knob& knob, c
 double cpu_of(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
               const Stop& stop = {});
 
-// The largest differences over the bodies at one time, [m] and [rad]. In space the angle is that of the relative
-// rotation.
+// The differences of one body, or the largest over all bodies at one time, [m] and [rad]. In space the angle is that of
+// the relative rotation.
 struct Apart {
   double position = 0, angle = 0;
   double larger() const { return position > angle ? position : angle; }
 };
+Apart apart(const BodyState& a, const BodyState& b, Dimension dimension);
 Apart apart(const Frame& a, const Frame& b, Dimension dimension);
 
 }  // namespace cdot

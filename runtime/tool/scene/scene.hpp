@@ -50,14 +50,18 @@ struct SceneJoint {
   Span where;  // its header in the file
 };
 
+inline constexpr double default_step = 0.001;      // [s] of a scene that names a method without a step
+inline constexpr double default_accuracy = 1e-4;   // of a mechanism's size, and [rad]: of a scene that names no method
+inline constexpr int intervals_of_own_steps = 64;  // of a run whose method chooses its steps: Scene::step is one
+
 struct Scene {
   std::string file, title;
   Dimension dimension = Dimension::planar;
   Settings settings;
   bool single = false;                     // computed in float
   double duration = 10;                    // [s]
-  double step = 0.001;                     // [s]
-  double accuracy = 0;                     // [m], [rad] that the run chooses a method for; 0: the method as set
+  double step = default_step;              // [s]; 0: no method is named, an accuracy chooses it
+  double accuracy = 0;                     // [m], [rad] that the run chooses a method for; 0: see chooses_method()
   double tolerance = 0.01;                 // [m], [rad] joint error above which a run has failed
   double energy_tolerance = 0.1;           // share of the energies that the method may lose
   OnFailure on_failure = OnFailure::stop;  // of a step
@@ -67,6 +71,9 @@ struct Scene {
   std::vector<SpringDefinition> springs;
   std::shared_ptr<const Mistakes> source;  // to report errors of the World in its lines
 };
+
+// True if the run finds its method: for Scene::accuracy, or for default_accuracy if that is 0.
+inline bool chooses_method(const Scene& scene) { return scene.accuracy > 0 || scene.step == 0; }
 
 // Thrown if a scene has mistakes; what() is the report, a paragraph per mistake.
 struct SceneError : std::runtime_error {

@@ -1,4 +1,5 @@
 // The top of a scene file -> the settings, duration and step of a Scene.
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <span>
@@ -28,9 +29,15 @@ void read_gravity(Entry& top, const char* key, Scene& scene) {
   scene.settings.gravity_z = gravity[2];
 }
 
+// Each names a method; without any of them an accuracy chooses it.
+constexpr const char* keys_of_methods[] = {"step",      "solver",    "integrator", "local_error",
+                                           "drift",     "substeps",  "iterations", "kernels",
+                                           "precision", "baumgarte", "warm_start", "sleep_after"};
+
 // With a local error the step is only the interval between outputs.
 void read_step(Entry& top, const char* key, Scene& scene) {
-  const double step = top.has("local_error") ? scene.duration / 64 : scene.step;
+  const bool named = std::ranges::any_of(keys_of_methods, [&](const char* method) { return top.has(method); });
+  const double step = top.has("local_error") ? scene.duration / intervals_of_own_steps : named ? default_step : 0;
   scene.step = top.number(key, {Sign::positive}).value_or(step);
   if (scene.step > scene.duration)
     top.error(top.where(key),
@@ -45,7 +52,7 @@ constexpr Key<Scene> top_keys[] = {
     {"dimension", "2, or 3: in space", "2", read_dimension},
     {"gravity", "[m/s^2]", "[0, -9.81], in space [0, 0, -9.81]", read_gravity},
     {"duration", "[s]", "10", read_number<Sign::positive, &Scene::duration>},
-    {"step", "time step [s]; the run ends with the first step at or after duration", "0.001", read_step},
+    {"step", "time step [s]; the run ends with the first step at or after duration", "chosen by the accuracy, or 0.001 if the scene names a method", read_step},
     {"solver", "solver of the impulses", "direct", read_choice<solvers, settings, &Settings::solver>, Where::everywhere, choices_of<solvers>},
     {"integrator", "method of a step", "euler", read_choice<integrators, settings, &Settings::integrator>, Where::everywhere, choices_of<integrators>},
     {"local_error", "the integrator chooses its steps, each with this estimated error [m, rad, m/s, rad/s]", "fixed steps", read_number<Sign::positive, settings, &Settings::local_error>},
@@ -56,7 +63,7 @@ constexpr Key<Scene> top_keys[] = {
     {"kernels", "block solve of the rows of a joint in the iterative solver", "balanced", read_choice<kernel_forms, settings, &Settings::kernels>, Where::everywhere, choices_of<kernel_forms>},
     {"substeps", "number of equal parts of a step", "1", read_count<settings, &Settings::substeps>},
     {"precision", "floating-point precision", "double", read_choice<precisions, &Scene::single>, Where::everywhere, choices_of<precisions>},
-    {"accuracy", "error of the trajectory; the run chooses the method [m, rad]", "the method as set", read_number<Sign::positive, &Scene::accuracy>},
+    {"accuracy", "error of the trajectory; the run chooses the method [m, rad]", "the method and step as given; without them 1e-4 of each mechanism's size and of 1 rad", read_number<Sign::positive, &Scene::accuracy>},
     {"sleep_after", "bodies sleep after this time at rest [s]; 0: never", "0", read_number<Sign::not_negative, settings, &Settings::sleep_after>},
     {"sleep_speed", "largest speed at rest [m/s, rad/s]", "0.001", read_number<Sign::positive, settings, &Settings::sleep_speed>},
     {"tolerance", "joint error above which the run has failed [m, rad]", "0.01", read_number<Sign::positive, &Scene::tolerance>},
@@ -76,8 +83,7 @@ void check_method(Entry& top, const Settings& chosen) {
 // An accuracy replaces a method.
 void check_accuracy(Entry& top) {
   if (!top.has("accuracy")) return;
-  for (const char* key :
-       {"step", "solver", "integrator", "local_error", "drift", "substeps", "iterations", "kernels", "precision"})
+  for (const char* key : keys_of_methods)
     if (top.has(key))
       top.error(top.where(key),
                 fmt::format("`{}` and `accuracy` exclude each other: `accuracy` chooses the method", key),

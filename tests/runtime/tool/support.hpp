@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/tool/run/simulate.hpp"
+#include "runtime/tool/search/simulate.hpp"
 
 namespace cdot::test {
 

@@ -63,7 +63,7 @@ TEST(Command, OutputsNeverReplaceDevicesPipesOrLinks) {
   TemporaryFolder folder;
   const fs::path full = folder / "full", link = folder / "link", pipe = folder / "pipe";
   const auto simulate = [](const fs::path& to) {
-    return fmt::format("simulate {} --until 0.01 -o '{}'", scene("simple_pendulum"), to.string());
+    return fmt::format("simulate {} --until 0.01 --step 0.001 -o '{}'", scene("simple_pendulum"), to.string());
   };
   fs::create_symlink("/dev/full", full);
   const CommandResult refused = cdot_run(simulate(full));
@@ -150,7 +150,7 @@ TEST(Command, AnUnstableRunExitsWithOneAndTheReason) {
 }
 
 TEST(Command, SummaryAsJson) {
-  const CommandResult result = cdot_run("simulate " + scene("compound_pendulum") + " --until 1 --json");
+  const CommandResult result = cdot_run("simulate " + scene("compound_pendulum") + " --until 1 --step 0.001 --json");
   EXPECT_EQ(result.status, 0) << result.err;
   const auto json = nlohmann::json::parse(result.out);
   EXPECT_EQ(json["ok"], true);
@@ -168,7 +168,7 @@ TEST(Command, ProgressOnlyWhereItIsSeen) {
 TEST(Command, TrajectoryHasAColumnPerBodyAndQuantity) {
   const TemporaryFolder folder;
   const std::string path = folder / "four_bar.csv";
-  EXPECT_EQ(cdot_run(fmt::format("simulate {} --until 0.01 -o '{}'", scene("four_bar"), path)).status, 0);
+  EXPECT_EQ(cdot_run(fmt::format("simulate {} --until 0.01 --step 0.001 -o '{}'", scene("four_bar"), path)).status, 0);
   const auto rows = csv(path);
   ASSERT_EQ(rows.size(), 12u);  // header, start, ten steps
   ASSERT_EQ(rows[0].size(), 19u);
@@ -186,7 +186,7 @@ TEST(Command, TrajectoryHasAColumnPerBodyAndQuantity) {
 TEST(Command, RowTimesDoNotChangeTheRun) {
   const TemporaryFolder folder;
   const std::string steps = folder / "steps.csv", every = folder / "every.csv", times = folder / "times.csv";
-  const std::string simulate = fmt::format("simulate {} --until 0.5 ", scene("double_pendulum"));
+  const std::string simulate = fmt::format("simulate {} --until 0.5 --step 0.001 ", scene("double_pendulum"));
   ASSERT_EQ(cdot_run(simulate + "-o '" + steps + "'").status, 0);
   ASSERT_EQ(cdot_run(simulate + "--every 0.1 -o '" + every + "'").status, 0);
   ASSERT_EQ(cdot_run(simulate + "--times 0.25,0.10025,0.5 -o '" + times + "'").status, 0);

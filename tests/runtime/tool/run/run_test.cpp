@@ -10,7 +10,7 @@ namespace {
 Scene scene_of(const std::string& text) { return read_scene(std::string_view(text), "test.toml"); }
 
 constexpr const char* pendulum =
-    "duration = 1\n[[body]]\nname = \"rod\"\nmass = 1\nshape = { rod = 1 }\nposition = [0.5, 0]\n"
+    "duration = 1\nstep = 0.001\n[[body]]\nname = \"rod\"\nmass = 1\nshape = { rod = 1 }\nposition = [0.5, 0]\n"
     "[[joint]]\nname = \"pivot\"\ntype = \"revolute\"\nbodies = [\"world\", \"rod\"]\npa = [0, "
     "0]\npb = [-0.5, 0]\n";
 
@@ -30,8 +30,8 @@ TEST(Run, InconsistentStartIsReportedPerJointAndRow) {
   std::string warnings;
   simulate(scene_of(with(pendulum, "[0.5, 0]", "[0.5, 0.25]\nvelocity = [3, 0]")), {}, warnings);
   EXPECT_EQ(warnings,
-            "test.toml:8:1: warning: the start violates revolute \"pivot\": C2 = -0.25, Cdot1 = -3\n"
-            "    8 | [[joint]]\n"
+            "test.toml:9:1: warning: the start violates revolute \"pivot\": C2 = -0.25, Cdot1 = -3\n"
+            "    9 | [[joint]]\n"
             "      | ^^^^^^^^^\n"
             "  fix: correct the pose or velocity, or set project = true\n");
 }

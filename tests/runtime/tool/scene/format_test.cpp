@@ -91,7 +91,9 @@ TEST(Format, InertiaOfUniformShapes) {
 TEST(Format, DefaultsAreThoseOfTheReadme) {
   const Scene scene = scene_of(body("inertia = 1"));
   EXPECT_EQ(scene.duration, 10);
-  EXPECT_EQ(scene.step, 0.001);
+  EXPECT_EQ(scene.step, 0);  // chosen by the default accuracy
+  EXPECT_EQ(scene.accuracy, 0);
+  EXPECT_TRUE(chooses_method(scene));
   EXPECT_EQ(scene.tolerance, 0.01);
   EXPECT_EQ(scene.settings.gravity_x, 0);
   EXPECT_EQ(scene.settings.gravity_y, -9.81);

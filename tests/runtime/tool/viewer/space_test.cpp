@@ -110,7 +110,7 @@ TEST_F(SpacePage, IsSelfContained) { EXPECT_EQ(foreign_to(html_page(scene_, film
 TEST(SpacePictures, EverySceneInSpaceCanBeDrawn) {
   for (const std::filesystem::path& file : files_in(scenes_dir() / "spatial", ".toml")) {
     Scene scene = read_scene(file.string());
-    scene.duration = 20 * scene.step;
+    scene.duration = 20 * default_step;
     const std::string page = html_page(scene, film_of(scene));
     EXPECT_EQ(page.find("null"), std::string::npos) << file;  // JSON for NaN
     EXPECT_EQ(svg_still(scene, film_of(scene)).find("nan"), std::string::npos) << file;

@@ -1,16 +1,16 @@
 // Candidates for a better method, run one after the other over the same scene.
-#include "runtime/tool/run/advice.hpp"
+#include "runtime/tool/search/advice.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <functional>
 
 #include <cdot/methods.hpp>
 
 #include "runtime/tool/run/balance_report.hpp"
 #include "runtime/tool/run/process.hpp"
+#include "runtime/tool/search/simulate.hpp"
 
 namespace cdot {
 namespace {
@@ -126,7 +126,7 @@ TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunRes
   trial_options.from = options.from;
   double left = most_cpu;
   for (const Candidate& candidate :
-       scene.accuracy > 0 ? finer_accuracies(scene) : candidates_for(scene, result.failed_step.has_value())) {
+       chooses_method(scene) ? finer_accuracies(scene) : candidates_for(scene, result.failed_step.has_value())) {
     Scene changed = scene;
     candidate.change(changed);
     if (mistake_in_methods(changed.settings)) continue;
@@ -143,23 +143,6 @@ TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunRes
     break;
   }
   return advice;
-}
-
-std::string in_words(const TriedFix& advice) {
-  if (advice.tried.empty()) return "Nothing could be tried within the time";
-  if (advice.options.empty()) return fmt::format("Tried in vain: `{}`", fmt::join(advice.tried, "`, `"));
-  return fmt::format("Tried: `{}` keeps energy and momentum to {:.1e} at {} times the cost{}", advice.options,
-                     advice.share,
-                     advice.cost < 10 ? fmt::format("{:.2g}", advice.cost) : fmt::format("{:.0f}", advice.cost),
-                     advice.until > 0 ? fmt::format(", up to t = {:.6g} s", advice.until) : std::string());
-}
-
-text::Json advice_json(const TriedFix& advice) {
-  return {{"options", advice.options},
-          {"share", advice.share},
-          {"cost", advice.cost},
-          {"until", advice.until},
-          {"tried", advice.tried}};
 }
 
 }  // namespace cdot

@@ -2,11 +2,6 @@
 // not run.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "runtime/text/json.hpp"
 #include "runtime/tool/run/simulate.hpp"
 
 namespace cdot {
@@ -18,9 +13,5 @@ bool needs_advice(const Scene& scene, const RunResult& result);
 // without a warning of its balance. The trials have a bounded CPU time; a candidate that does not end within it is
 // none.
 TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunResult& result);
-
-// "Tried: `--integrator rattle` keeps its energy to 1e-09 at 0.9 times the cost", or what was tried in vain.
-std::string in_words(const TriedFix& advice);
-text::Json advice_json(const TriedFix& advice);
 
 }  // namespace cdot

@@ -1,0 +1,81 @@
+#include "runtime/tool/run/choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include <cdot/methods.hpp>
+
+#include "runtime/tool/run/ways.hpp"
+
+namespace cdot {
+
+Scene solved_by(const Choice& choice, Scene scene) {
+  scene.step = choice.step;
+  scene.accuracy = 0;
+  const Way way{.integrator = choice.integrator, .iterations = 0, .adaptive = choice.local_error > 0};
+  return solved_by(way, Knob{1, choice.local_error}, std::move(scene));
+}
+
+namespace {
+
+const char* unit_of(const Choice& choice) { return choice.of_size ? "of its size and of 1 rad" : "m, rad"; }
+
+std::string steps_text(const Choice& choice) {
+  return choice.local_error > 0 ? fmt::format("local error {:.1e}", choice.local_error)
+                                : fmt::format("steps of {:.6g} s", choice.step);
+}
+
+// What the run lacks; empty if it has the accuracy.
+std::string lack(const Choice& choice) {
+  if (choice.reached) return {};
+  if (choice.left_to_euler > 0)
+    return fmt::format(
+        "accuracy {:.1e} {} is not assured: {} step{} left to Euler's method, first by t = {:.6g} s, and "
+        "their error is not known",
+        choice.asked, unit_of(choice), choice.left_to_euler, choice.left_to_euler == 1 ? " was" : "s were",
+        choice.first_left_to_euler);
+  if (!std::isfinite(choice.achieved))
+    return fmt::format("accuracy {:.1e} {} is not known: no two runs of one method ended within the search's budget",
+                       choice.asked, unit_of(choice));
+  return fmt::format("accuracy {:.1e} {} holds up to t = {:.6g} s; later on two runs differ by up to {:.1e}",
+                     choice.asked, unit_of(choice), choice.holds_until, choice.achieved);
+}
+
+bool fails(const Choice& choice) {
+  return !choice.reached && (!choice.of_size || (choice.holds_until == 0 && choice.left_to_euler == 0));
+}
+
+}  // namespace
+
+std::string accuracy_failure(const Choice& choice) { return fails(choice) ? lack(choice) : std::string(); }
+std::string accuracy_warning(const Choice& choice) { return fails(choice) ? std::string() : lack(choice); }
+
+std::string choice_text(const Choice& choice) {
+  std::string text = fmt::format("  accuracy        {:.1e} {}{}: {}, {}; ", choice.asked, unit_of(choice),
+                                 choice.of_size ? " by default" : " asked for", name_of(integrators, choice.integrator),
+                                 steps_text(choice));
+  text += choice.reached ? fmt::format("{:.1e} delivered", choice.achieved) : std::string("NOT reached");
+  return text + fmt::format("\n  search          {} run{} before, at {:.2g} times the run's price, {:.4g} s CPU\n",
+                            choice.runs_before, choice.runs_before == 1 ? "" : "s",
+                            static_cast<double>(choice.evaluations_before) /
+                                static_cast<double>(std::max(1LL, choice.evaluations)),
+                            choice.cpu_before);
+}
+
+text::Json choice_json(const Choice& choice) {
+  return {{"asked", choice.asked},
+          {"unit", choice.of_size ? "size, rad" : "m, rad"},
+          {"integrator", name_of(integrators, choice.integrator)},
+          {"local_error", choice.local_error},
+          {"step", choice.step},
+          {"achieved", choice.achieved},
+          {"reached", choice.reached},
+          {"holds_until", choice.holds_until},
+          {"left_to_euler", choice.left_to_euler},
+          {"evaluations", choice.evaluations},
+          {"search",
+           {{"runs", choice.runs_before}, {"evaluations", choice.evaluations_before}, {"cpu", choice.cpu_before}}}};
+}
+
+}  // namespace cdot

@@ -1,0 +1,293 @@
+// Candidates from the table of integrators, each refined until two of its runs agree.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <tuple>
+
+#include <cdot/methods.hpp>
+
+#include "runtime/tool/run/process.hpp"
+#include "runtime/tool/run/trajectory.hpp"
+#include "runtime/tool/search/simulate.hpp"
+#include "runtime/tool/search/yardstick.hpp"
+
+namespace cdot {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// --- Local errors. The first run is loose: its price is small, and its distance from the second tells how strict the
+// third has to be, if one is needed. Measured over all scenes: no other pair of numbers was cheaper by a tenth.
+constexpr double first_local_error = 10;  // in units of the accuracy
+constexpr double stricter = 1e-3;         // the next local error, as a share; at most a tenth
+constexpr double strictest = 1e-15;       // below it there is only round-off
+constexpr double aim = 0.5;               // share of the accuracy that a further run aims at
+
+// --- Fixed steps: as many equal ones in each of the intervals.
+constexpr int most_parts = 1 << 14;
+constexpr double converges = 1.5;  // the distances of runs must fall by this, or
+constexpr double surely = 1e-3;    // the first must be below this share of the accuracy
+
+// --- Prices, in evaluations of an island's accelerations; measured for steps with fixed length.
+constexpr double price_of_step(const IntegratorRow& row) { return row.stiffens ? 4 : row.projects ? 3 : 2; }
+// All runs of a search together: about a minute, or 20 times the price of steps of a millisecond.
+constexpr double most_work = 1e8;  // evaluations times bodies
+constexpr double most_millisecond_runs = 20;
+// Or so many times the price of the first run that has ended with steps of its own: 1e-12 of its local error costs 32
+// times as much.
+constexpr double most_first_runs = 40;
+// A run that has taken `suspicious` evaluations and is on the way to `dear` may be stiff. If the fastest oscillation of
+// tensions and springs explains a share of that price, methods for stiff scenes get the same share to be cheaper.
+constexpr double suspicious = 400, dear = 4000, share_of_stiff = 0.25;
+constexpr double evaluations_per_step = 12;  // of the highest order
+
+struct Try {
+  Integrator integrator;
+  double local_error = 0;  // 0: fixed steps
+  int parts = 1;           // of an interval
+  const IntegratorRow& row() const { return row_of(integrator); }
+  bool adaptive() const { return local_error > 0; }
+};
+
+// One run of one knob.
+struct Attempt {
+  Try knob;
+  RunResult result;
+  std::vector<Frame> frames;  // at the ends of the intervals
+  std::vector<Frame> rows;
+  double price = 0;
+  bool full = false;           // it has the outputs asked for
+  bool whole = false;          // it has ended in time and well
+  double achieved = infinity;  // see Choice
+  double holds_until = 0;
+  bool reached = false;
+};
+
+std::string name_of(const Try& knob) {
+  const auto name = name_of(integrators, knob.integrator);
+  return knob.adaptive() ? fmt::format("{}, local error {:.0e}", name, knob.local_error)
+                         : fmt::format("{}, {} steps", name, knob.parts * intervals_of_own_steps);
+}
+
+// The factor by which the error should be smaller than that of a coarser knob.
+double gain(const Try& coarse, const Try& fine) {
+  if (fine.adaptive()) return coarse.local_error / fine.local_error;
+  return std::pow(static_cast<double>(fine.parts) / coarse.parts, fine.row().order);
+}
+
+// The next knob, with an error of at most this share; nothing if it is too fine.
+std::optional<Try> finer(Try knob, double share) {
+  if (knob.adaptive()) {
+    if (knob.local_error <= strictest) return {};
+    knob.local_error = std::max(strictest, std::min(share, 0.1) * knob.local_error);
+    return knob;
+  }
+  const double factor = std::pow(1 / share, 1.0 / knob.row().order);
+  int times = 2;
+  while (times < factor && times < 8) times *= 2;
+  knob.parts *= times;
+  if (knob.parts > most_parts) return {};
+  return knob;
+}
+
+class Search {
+ public:
+  Search(const Scene& scene, const RunOptions& options, std::string& warnings)
+      : scene_(scene), options_(options), warnings_(warnings), yardstick_(scene) {
+    const double bodies = std::max<double>(1, static_cast<double>(scene.bodies.size()));
+    const double steps = scene.duration / default_step * yardstick_.mechanisms();
+    left_ = std::max(most_work / bodies, most_millisecond_runs * price_of_step(row_of(Integrator::euler)) * steps);
+  }
+
+  RunResult run();
+
+ private:
+  void try_candidate(Integrator integrator, double most);
+  void try_stiff(double most);
+  Attempt attempt(const Try& knob, double most);
+  void judge(const Attempt& coarse, Attempt& fine) const;
+  void keep(Attempt&& attempt);
+  bool done() const { return stopped_ || best_.reached; }
+  double price_of(const Try& knob) const {
+    return price_of_step(knob.row()) * knob.parts * intervals_of_own_steps * yardstick_.mechanisms();
+  }
+  Choice choice_of(const Attempt& attempt) const;
+
+  const Scene& scene_;
+  const RunOptions& options_;
+  std::string& warnings_;
+  Yardstick yardstick_;
+  double left_;  // of the budget
+  Attempt best_;
+  double first_price_ = 0;  // to which the first run was on the way when it became dear
+  double stiff_price_ = 0;  // the part of it that stiffness explains
+  bool may_be_dear_ = false, stopped_ = false;
+  int runs_ = 0;
+  double price_ = 0, cpu_ = 0;  // of all runs
+};
+
+Attempt Search::attempt(const Try& knob, double most) {
+  Attempt attempt;
+  attempt.knob = knob;
+  const Scene solved = solved_by(choice_of(attempt), scene_);
+  attempt.full = runs_ > 0;
+  RunOptions options;
+  if (attempt.full) {
+    options = options_;
+    options.from = {};
+    if (options_.row) options.row = [&](const Frame& frame) { attempt.rows.push_back(frame); };
+  }
+  if (may_be_dear_) options.diagnose_times = {2 * solved.duration};  // only if the run is stopped
+  options.progress = options_.progress;
+  options.doing = name_of(knob) + ": ";
+  const double interval = solved.duration / intervals_of_own_steps;
+  options.look = [&](const Frame& frame, const StepCounts& counts) {
+    if (std::abs(frame.time - static_cast<double>(attempt.frames.size()) * interval) < 1e-6 * interval)
+      attempt.frames.push_back(frame);
+    if (!knob.adaptive()) return true;
+    attempt.price = static_cast<double>(counts.evaluations);
+    const double foreseen = frame.time > 0 ? attempt.price * solved.duration / frame.time : 0;
+    const double mechanisms = yardstick_.mechanisms();
+    if (!may_be_dear_ || attempt.price < suspicious * mechanisms || foreseen < dear * mechanisms)
+      return attempt.price <= most;
+    first_price_ = foreseen;
+    return false;
+  };
+  std::string ignored;
+  attempt.result = run_once(solved, options, runs_ == 0 ? warnings_ : ignored);
+  if (!knob.adaptive()) attempt.price = price_of(knob);
+  const RunResult& result = attempt.result;
+  stiff_price_ = 0;
+  for (const WorstOfIsland& island : result.diagnosis)
+    stiff_price_ += evaluations_per_step * solved.duration * std::sqrt(std::max(0.0, island.island.stiffest.square)) /
+                    knob.row().stable_radians;
+  attempt.whole = result.finite && !result.failed_step && !result.stopped && !result.interrupted;
+  stopped_ = result.interrupted;
+  ++runs_;
+  price_ += attempt.price, left_ -= attempt.price, cpu_ += result.cpu;
+  return attempt;
+}
+
+// Measures a run by a coarser one.
+void Search::judge(const Attempt& coarse, Attempt& fine) const {
+  const double smaller = 1 / std::sqrt(gain(coarse.knob, fine.knob));
+  fine.achieved = 0;
+  for (std::size_t k = 0; k < std::min(coarse.frames.size(), fine.frames.size()); ++k) {
+    fine.achieved = std::max(fine.achieved, smaller * yardstick_.apart(coarse.frames[k], fine.frames[k]));
+    if (fine.achieved <= yardstick_.asked()) fine.holds_until = fine.frames[k].time;
+  }
+  const bool known = fine.result.counts.rescued == 0;
+  const bool seems_to_converge = fine.knob.adaptive() || fine.achieved < surely * yardstick_.asked() ||
+                                 fine.achieved * converges < coarse.achieved;
+  fine.reached = known && seems_to_converge && fine.achieved <= yardstick_.asked();
+}
+
+// The better of two: a run that reached the accuracy, then one that holds it longer, then any that has ended.
+void Search::keep(Attempt&& attempt) {
+  const auto rank = [](const Attempt& a) {
+    return std::tuple(a.reached, a.whole, a.whole && a.result.counts.rescued == 0, a.holds_until, -a.achieved,
+                      a.result.time);
+  };
+  if (best_.frames.empty() || rank(attempt) > rank(best_)) best_ = std::move(attempt);
+}
+
+void Search::try_candidate(Integrator integrator, double most) {
+  const bool adaptive = row_of(integrator).level == Level::acceleration;
+  std::optional<Try> knob =
+      Try{integrator, adaptive ? std::max(strictest, first_local_error * yardstick_.asked()) : 0, 1};
+  most = std::min(most, left_);
+  Attempt last;
+  double spent = 0;
+  while (knob && !done()) {
+    if (!knob->adaptive() && spent + price_of(*knob) > most) break;
+    Attempt now = attempt(*knob, most - spent);
+    spent += now.price;
+    double share = stricter;
+    if (now.whole) {
+      yardstick_.see(now.frames);
+      if (adaptive) left_ = std::min(left_, most_first_runs * now.price);
+      if (last.whole) {
+        judge(last, now);
+        // Where the motion magnifies every difference, runs agree no more at all: then the time counts.
+        share = std::max(stricter, aim * yardstick_.asked() / now.achieved);
+      } else if (!knob->adaptive()) {
+        share = 0.5;
+      }
+    } else if (now.result.stopped) {
+      knob.reset();
+    }
+    if (knob) knob = finer(*knob, share);
+    keep(Attempt(now));
+    last = std::move(now);
+  }
+}
+
+// Those that take stiffness implicitly.
+void Search::try_stiff(double most) {
+  for (const IntegratorRow& row : integrator_rows)
+    if (row.stiffens && !done()) try_candidate(row.integrator, most);
+}
+
+RunResult Search::run() {
+  std::vector<IntegratorRow> candidates(integrator_rows.begin(), integrator_rows.end());
+  // Those that choose their steps come first, then high orders.
+  std::ranges::stable_sort(candidates, std::greater<>(), [](const IntegratorRow& row) {
+    return std::tuple(row.level == Level::acceleration, row.order, row.stiffens);
+  });
+  may_be_dear_ = true;
+  for (const IntegratorRow& row : candidates) {
+    if (done()) break;
+    try_candidate(row.integrator, left_);
+    if (first_price_ > 0) {
+      may_be_dear_ = false;
+      if (stiff_price_ > share_of_stiff * first_price_) try_stiff(share_of_stiff * first_price_);
+      first_price_ = 0;
+      if (!done()) try_candidate(row.integrator, left_);
+    }
+    may_be_dear_ = false;
+    // A method of the highest order that refines in vain down to round-off shows that the motion itself is sensitive.
+    if (best_.whole && best_.knob.local_error == strictest) break;
+  }
+  RunResult result = std::move(best_.result);
+  const Choice choice = choice_of(best_);
+  if (!best_.full || !options_.from.empty()) {
+    std::string ignored;
+    if (!stopped_) result = run_once(solved_by(choice, scene_), options_, ignored);
+  } else if (options_.row) {
+    for (const Frame& row : best_.rows) options_.row(row);
+  }
+  result.choice = choice;
+  result.interrupted |= stopped_;
+  return result;
+}
+
+Choice Search::choice_of(const Attempt& attempt) const {
+  Choice choice;
+  choice.integrator = attempt.knob.integrator;
+  choice.local_error = attempt.knob.local_error;
+  choice.step = scene_.duration / intervals_of_own_steps / attempt.knob.parts;
+  choice.asked = yardstick_.asked();
+  choice.of_size = yardstick_.of_size();
+  choice.achieved = attempt.achieved;
+  choice.reached = attempt.reached;
+  choice.holds_until = attempt.holds_until;
+  choice.left_to_euler = attempt.result.counts.rescued;
+  choice.first_left_to_euler = attempt.result.first_rescue;
+  choice.evaluations = std::llround(attempt.price);
+  choice.runs_before = runs_ - 1;
+  choice.evaluations_before = std::llround(price_ - attempt.price);
+  choice.cpu_before = cpu_ - attempt.result.cpu;
+  return choice;
+}
+
+}  // namespace
+
+RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings) {
+  if (!chooses_method(scene)) return run_once(scene, options, warnings);
+  return Search(scene, options, warnings).run();
+}
+
+}  // namespace cdot
