@@ -1,7 +1,9 @@
 // What each island is -> the integrator for fixed steps.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <set>
 
 #include <cdot/recommended.hpp>
 #include <cdot/spaces.hpp>
@@ -22,6 +24,10 @@ constexpr double of_own_spin = 1.5;
 // Heaviest over lightest body: a light one between heavy ones turns round within a step whenever its load vanishes.
 constexpr double uneven = 100;
 constexpr std::size_t large = 300;  // [bodies]: looking for the stiffest motion would cost more than the method saves
+
+// Mechanisms that are equal in these numbers count as equally stiff: bodies, rows, size [m], lightest and heaviest
+// [kg].
+using Kind = std::array<double, 5>;
 
 struct Traits {
   int island = -1;
@@ -68,7 +74,7 @@ constexpr struct {
      [](const Words& w) { return fmt::format("{} bodies hang together", w.of.bodies); }},
     {Integrator::rattle,
      [](const Traits&) { return true; },
-     [](const Words& w) { return fmt::format("nothing is stiff: no motion turns by more than {:.2g} rad per substep", std::max(w.of.radians, w.of.turn)); }},
+     [](const Words& w) { return fmt::format("nothing is stiff: at most {:.2g} rad per substep", std::max(w.of.radians, w.of.turn)); }},
 };
 // clang-format on
 
@@ -115,11 +121,14 @@ void look_at_every_side(WorldData<S>& world, Island<S>& island, double h, Traits
 }
 
 template <class S>
-Traits traits_of(WorldData<S>& world, int index, double h) {
+Traits traits_of(WorldData<S>& world, int index, double h, std::set<Kind>& known) {
   Island<S>& island = world.islands[index];
   Traits traits{.island = index, .bodies = island.bodies.size()};
-  for (const Segment<S>& segment : island.segments)
+  bool lawful = false;
+  for (const Segment<S>& segment : island.segments) {
+    lawful |= segment.batch->law != nullptr;
     traits.bounded |= segment.batch->law && segment.batch->law->guard && segment.begin < segment.end;
+  }
   for (int body : island.bodies) {
     const double turn = h * spin_of<S>(world.bodies.velocity[body]);
     if (turn > traits.turn) traits.turn = turn, traits.turning = body;
@@ -128,6 +137,9 @@ Traits traits_of(WorldData<S>& world, int index, double h) {
     traits.lightest = traits.lightest > 0 ? std::min(traits.lightest, mass) : mass;
   }
   if (island.segments.empty() || island.bodies.size() > large) return traits;
+  const Kind kind{double(island.bodies.size()), double(island.system.rows()), double(island.size), traits.lightest,
+                  traits.heaviest};
+  if (!lawful && !known.insert(kind).second) return traits;
   look_at_stiffest(world, island, h, traits);
   look_at_every_side(world, island, h, traits);
   return traits;
@@ -159,8 +171,9 @@ Recommendation recommended(BasicWorld<S>& world, double step, const std::functio
   world.prepare();
   const Snapshot before = world.snapshot();
   Decision worst;
+  std::set<Kind> known;
   for (int k = 0; k < static_cast<int>(data.islands.size()); ++k)
-    take(worst, traits_of(data, k, step / given.substeps));
+    take(worst, traits_of(data, k, step / given.substeps, known));
   world.restore(before);
   world.use(given);
   const auto& rule = rules[worst.rule];

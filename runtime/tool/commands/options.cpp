@@ -7,6 +7,7 @@
 
 #include <cdot/methods.hpp>
 
+#include "runtime/tool/run/pick_integrator.hpp"
 #include "runtime/tool/scene/keys.hpp"
 
 namespace cdot {
@@ -34,6 +35,13 @@ void add_choice(Line& line, SceneOptions& options, const std::string& flag, cons
   line.add(flag, change, meaning).one_of(names_of(table)).repeatable();
 }
 
+void add_integrator(Line& line, SceneOptions& options, const std::string& flag, const std::string& meaning) {
+  const std::function change = [&options](const std::string& name) {
+    options.methods.push_back([name](Scene& scene) { name_integrator(scene, name); });
+  };
+  line.add(flag, change, meaning).one_of(integrator_choices()).repeatable();
+}
+
 constexpr auto settings = &Scene::settings;
 constexpr auto methods = &SceneOptions::methods, others = &SceneOptions::changes;
 
@@ -45,7 +53,7 @@ constexpr struct {
 } method_keys[] = {
     {"step",        add_number<methods, &Scene::step>},
     {"solver",      add_choice<methods, solvers, settings, &Settings::solver>},
-    {"integrator",  add_choice<methods, integrators, settings, &Settings::integrator>},
+    {"integrator",  add_integrator},
     {"local_error", add_number<methods, settings, &Settings::local_error>},
     {"kernels",     add_choice<methods, kernel_forms, settings, &Settings::kernels>},
     {"precision",   add_choice<methods, precisions, &Scene::single>},
@@ -80,13 +88,13 @@ void add_progress(Line& line, SceneOptions& options) {
 Scene scene_of(const SceneOptions& options) {
   Scene scene = read_scene(options.file);
   for (const auto& change : options.changes) change(scene);
-  if (options.methods.empty()) return scene;
+  if (options.methods.empty()) return with_integrator(std::move(scene));
   // A method replaces an accuracy.
   scene.accuracy = 0;
   for (const auto& change : options.methods) change(scene);
   if (scene.step == 0)
     scene.step = scene.settings.local_error > 0 ? scene.duration / intervals_of_own_steps : default_step;
-  return scene;
+  return with_integrator(std::move(scene));
 }
 
 bool progress_shown(const SceneOptions& options) { return options.progress || ::isatty(STDERR_FILENO) != 0; }

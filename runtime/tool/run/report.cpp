@@ -123,6 +123,9 @@ std::string summary_text(const Scene& asked, const RunResult& result) {
   if (!own_steps) text += fmt::format(" in {} steps of {:.6g} s", result.steps, scene.step);
   if (result.start > 0) text += fmt::format(", from the state at {:.6g} s", result.start);
   text += "\n";
+  if (!scene.why_integrator.empty())
+    text += fmt::format("  integrator      {}: {}\n", name_of(integrators, scene.settings.integrator),
+                        scene.why_integrator);
   if (scene.single) text += "  precision       float\n";
   if (own_steps) text += own_steps_text(result.counts);
   if (result.counts.rescued > 0)
@@ -187,6 +190,8 @@ std::string summary_json(const Scene& asked, const RunResult& result) {
       {"precision", name_of(precisions, scene.single)},
       {"step", scene.step},
       {"steps", result.steps},
+      {"integrator", name_of(integrators, scene.settings.integrator)},
+      {"why_integrator", scene.why_integrator},
       {"cpu", result.cpu},
       {"worst_error", result.worst_error},
       {"worst_error_joint", result.worst_joint},

@@ -55,6 +55,10 @@ void read_choice(Entry& entry, const char* key, To& to) {
   if (const auto name = entry.choice(key, names_of(table))) (to.*....*path) = method_called(table, *name);
 }
 
+// "auto", or by name.
+std::vector<std::string> integrator_choices();  // tool/scene/settings.cpp
+void name_integrator(Scene& scene, const std::string& name);
+
 // --- The same rows for people.
 
 struct KeyTable {

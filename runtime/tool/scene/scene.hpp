@@ -58,6 +58,8 @@ struct Scene {
   std::string file, title;
   Dimension dimension = Dimension::planar;
   Settings settings;
+  bool names_integrator = true;            // false: see runtime/tool/run/pick_integrator.hpp
+  std::string why_integrator;              // why it was picked
   bool single = false;                     // computed in float
   double duration = 10;                    // [s]
   double step = default_step;              // [s]; 0: no method is named, an accuracy chooses it

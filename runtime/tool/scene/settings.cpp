@@ -34,6 +34,8 @@ constexpr const char* keys_of_methods[] = {"step",      "solver",    "integrator
                                            "drift",     "substeps",  "iterations", "kernels",
                                            "precision", "baumgarte", "warm_start", "sleep_after"};
 
+constexpr const char* picked_integrator = "auto";
+
 // With a local error the step is only the interval between outputs.
 void read_step(Entry& top, const char* key, Scene& scene) {
   const bool named = std::ranges::any_of(keys_of_methods, [&](const char* method) { return top.has(method); });
@@ -42,6 +44,10 @@ void read_step(Entry& top, const char* key, Scene& scene) {
   if (scene.step > scene.duration)
     top.error(top.where(key),
               fmt::format("the step of {} s is longer than the duration of {} s", scene.step, scene.duration));
+}
+
+void read_integrator(Entry& top, const char* key, Scene& scene) {
+  name_integrator(scene, top.choice(key, integrator_choices()).value_or(picked_integrator));
 }
 
 constexpr auto settings = &Scene::settings;
@@ -54,7 +60,7 @@ constexpr Key<Scene> top_keys[] = {
     {"duration", "[s]", "10", read_number<Sign::positive, &Scene::duration>},
     {"step", "time step [s]; the run ends with the first step at or after duration", "chosen by the accuracy, or 0.001 if the scene names a method", read_step},
     {"solver", "solver of the impulses", "direct", read_choice<solvers, settings, &Settings::solver>, Where::everywhere, choices_of<solvers>},
-    {"integrator", "method of a step", "euler", read_choice<integrators, settings, &Settings::integrator>, Where::everywhere, choices_of<integrators>},
+    {"integrator", "method of a step; auto picks one that holds at the step, by what the mechanisms are", "auto; euler with the iterative solver or another drift", read_integrator, Where::everywhere, integrator_choices},
     {"local_error", "the integrator chooses its steps, each with this estimated error [m, rad, m/s, rad/s]", "fixed steps", read_number<Sign::positive, settings, &Settings::local_error>},
     {"drift", "correction of C", "projection", read_choice<drifts, settings, &Settings::drift>, Where::everywhere, choices_of<drifts>},
     {"baumgarte", "share of the error removed per step", "0.2", read_number<Sign::positive, settings, &Settings::baumgarte>},
@@ -96,6 +102,17 @@ void read_settings(Entry& top, Scene& scene) {
   read_keys(top, top_keys, scene.dimension, scene);
   check_method(top, scene.settings);
   check_accuracy(top);
+}
+
+std::vector<std::string> integrator_choices() {
+  std::vector<std::string> names = names_of(integrators);
+  names.emplace_back(picked_integrator);
+  return names;
+}
+
+void name_integrator(Scene& scene, const std::string& name) {
+  scene.names_integrator = name != picked_integrator;
+  scene.settings.integrator = scene.names_integrator ? method_called(integrators, name) : Settings{}.integrator;
 }
 
 std::string listed(const std::vector<std::string>& choices) {

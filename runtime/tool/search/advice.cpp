@@ -115,6 +115,13 @@ Trial try_out(const Scene& scene, const RunOptions& options, double most) {
   return {true, numbers[0] != 0, numbers[1], numbers[2]};
 }
 
+// A picked integrator is named with other options: with these another one might be picked.
+std::string named_with(const Scene& scene, const Candidate& candidate) {
+  const bool names = candidate.options.find("--integrator") != std::string::npos;
+  if (names || scene.why_integrator.empty()) return {};
+  return fmt::format(" --integrator {}", name_of(integrators, scene.settings.integrator));
+}
+
 }  // namespace
 
 TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunResult& result) {
@@ -135,9 +142,9 @@ TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunRes
     if (!(most > 0) || Interrupt::asked()) break;
     const Trial trial = try_out(changed, trial_options, most);
     left -= trial.done ? trial.cpu : most;
-    advice.tried.push_back(candidate.options);
+    advice.tried.push_back(candidate.options + named_with(scene, candidate));
     if (!trial.cures) continue;
-    advice.options = candidate.options;
+    advice.options = advice.tried.back();
     advice.share = trial.share;
     advice.cost = trial.cpu / std::max(share * result.cpu, 1e-9);
     break;

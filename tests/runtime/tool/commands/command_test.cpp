@@ -161,6 +161,25 @@ TEST(Command, SummaryAsJson) {
   EXPECT_LT(json["energy_drift"], 0.1);
 }
 
+TEST(Command, AStepWithoutAnIntegratorGetsOneThatHolds) {
+  const auto run = [](const std::string& options) {
+    const CommandResult result = cdot_run("simulate " + scene("chain_10") + " --until 0.2 --json" + options);
+    EXPECT_EQ(result.status, 0) << options << result.out << result.err;
+    const auto json = nlohmann::json::parse(result.out);
+    return std::pair<std::string, std::string>(json["integrator"], json["why_integrator"]);
+  };
+  const std::string coarse = " --step 0.0166667", fine = " --step 0.001";
+  const auto [integrator, why] = run(coarse);
+  EXPECT_EQ(integrator, "implicit");
+  EXPECT_EQ(why, "the tension of the joints can make \"link3\" oscillate by 1.4 rad per substep");
+  EXPECT_EQ(run(coarse + " --integrator auto"), std::pair(integrator, why));
+  EXPECT_EQ(run(fine).first, "rattle");
+  EXPECT_EQ(run(coarse + " --substeps 20").first, "rattle");
+  for (const char* named : {" --integrator euler", " --solver iterative", " --drift baumgarte"})
+    EXPECT_EQ(run(fine + named), std::pair(std::string("euler"), std::string())) << named;
+  EXPECT_EQ(run("").second, "") << "an accuracy chooses";
+}
+
 TEST(Command, ProgressOnlyWhereItIsSeen) {
   EXPECT_EQ(cdot_run("simulate " + scene("compound_pendulum") + " --until 0.1").err, "");
 }
