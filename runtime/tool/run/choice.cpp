@@ -26,20 +26,22 @@ std::string steps_text(const Choice& choice) {
                                 : fmt::format("steps of {:.6g} s", choice.step);
 }
 
+std::string euler_text(const Choice& choice) {
+  if (choice.left_to_euler == 0) return {};
+  return fmt::format("; {} step{} left to Euler's method, first by t = {:.6g} s", choice.left_to_euler,
+                     choice.left_to_euler == 1 ? " was" : "s were", choice.first_left_to_euler);
+}
+
 // What the run lacks; empty if it has the accuracy.
 std::string lack(const Choice& choice) {
   if (choice.reached) return {};
-  if (choice.left_to_euler > 0)
-    return fmt::format(
-        "accuracy {:.1e} {} is not assured: {} step{} left to Euler's method, first by t = {:.6g} s, and "
-        "their error is not known",
-        choice.asked, unit_of(choice), choice.left_to_euler, choice.left_to_euler == 1 ? " was" : "s were",
-        choice.first_left_to_euler);
+  const std::string asked = fmt::format("accuracy {:.1e} {}", choice.asked, unit_of(choice));
   if (!std::isfinite(choice.achieved))
-    return fmt::format("accuracy {:.1e} {} is not known: no two runs of one method ended within the search's budget",
-                       choice.asked, unit_of(choice));
-  return fmt::format("accuracy {:.1e} {} holds up to t = {:.6g} s; later on two runs differ by up to {:.1e}",
-                     choice.asked, unit_of(choice), choice.holds_until, choice.achieved);
+    return fmt::format("{} is not known: no two runs of one method ended well within the search's budget{}", asked,
+                       euler_text(choice));
+  if (choice.achieved <= choice.asked) return fmt::format("{} is not assured{}", asked, euler_text(choice));
+  return fmt::format("{} holds up to t = {:.6g} s; later on two runs differ by up to {:.1e}{}", asked,
+                     choice.holds_until, choice.achieved, euler_text(choice));
 }
 
 bool fails(const Choice& choice) {

@@ -40,7 +40,8 @@ std::string fix_of(const RunResult& result, const std::string& usual) {
 }
 
 std::string fix_of_accuracy(const Choice& choice) {
-  if (!(choice.holds_until > 0)) return "Likely fix: a method and a step of your own";
+  if (choice.left_to_euler > 0) return "Likely fix: a method and a step of your own";
+  if (!(choice.holds_until > 0)) return "Likely fix: a larger error";
   return fmt::format("Likely fix: --until {:.6g}", choice.holds_until);
 }
 

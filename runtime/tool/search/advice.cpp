@@ -79,10 +79,10 @@ std::vector<Candidate> candidates_for(const Scene& scene, bool fails) {
 
 std::vector<Candidate> finer_accuracies(const Scene& scene) {
   std::vector<Candidate> all;
+  const double asked = scene.accuracy > 0 ? scene.accuracy : default_accuracy;
   for (const double share : {1e-1, 1e-3})
-    all.push_back({fmt::format("--accuracy {:.0e}", share * scene.accuracy), [=](Scene& changed) {
-                     changed.accuracy = std::stod(fmt::format("{:.0e}", share * scene.accuracy));
-                   }});
+    all.push_back({fmt::format("--accuracy {:.0e}", share * asked),
+                   [=](Scene& changed) { changed.accuracy = std::stod(fmt::format("{:.0e}", share * asked)); }});
   return all;
 }
 

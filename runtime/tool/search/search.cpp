@@ -21,15 +21,19 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // --- Local errors. The first run is loose: its price is small, and its distance from the second tells how strict the
 // third has to be, if one is needed. Measured over all scenes: no other pair of numbers was cheaper by a tenth.
-constexpr double first_local_error = 10;  // in units of the accuracy
-constexpr double stricter = 1e-3;         // the next local error, as a share; at most a tenth
-constexpr double strictest = 1e-15;       // below it there is only round-off
-constexpr double aim = 0.5;               // share of the accuracy that a further run aims at
+constexpr double first_local_error = 10;         // in units of the accuracy
+constexpr double stricter = 1e-3;                // the next local error, as a share; at most a tenth
+constexpr double strictest_local_error = 1e-14;  // below it there is only round-off, of steps
+constexpr double round_off = 1e-15;              // and of what is compared
+constexpr double aim = 0.5;                      // share of the accuracy that a further run aims at
+
+constexpr int shorter_for_euler = 4, most_parts_for_euler = 256;
 
 // --- Fixed steps: as many equal ones in each of the intervals.
 constexpr int most_parts = 1 << 14;
 constexpr double converges = 1.5;  // the distances of runs must fall by this, or
 constexpr double surely = 1e-3;    // the first must be below this share of the accuracy
+constexpr int most_idle = 3;       // refinements in a row without that
 
 // --- Prices, in evaluations of an island's accelerations; measured for steps with fixed length.
 constexpr double price_of_step(const IntegratorRow& row) { return row.stiffens ? 4 : row.projects ? 3 : 2; }
@@ -47,9 +51,10 @@ constexpr double evaluations_per_step = 12;  // of the highest order
 struct Try {
   Integrator integrator;
   double local_error = 0;  // 0: fixed steps
-  int parts = 1;           // of an interval
+  int parts = 1;           // of an interval: its steps; or at their ends, Euler's method has to stop if it took over
   const IntegratorRow& row() const { return row_of(integrator); }
   bool adaptive() const { return local_error > 0; }
+  bool strictest() const { return adaptive() && local_error < 1.01 * strictest_local_error; }
 };
 
 // One run of one knob.
@@ -74,15 +79,22 @@ std::string name_of(const Try& knob) {
 
 // The factor by which the error should be smaller than that of a coarser knob.
 double gain(const Try& coarse, const Try& fine) {
-  if (fine.adaptive()) return coarse.local_error / fine.local_error;
-  return std::pow(static_cast<double>(fine.parts) / coarse.parts, fine.row().order);
+  const double shorter = static_cast<double>(fine.parts) / coarse.parts;
+  if (!fine.adaptive()) return std::pow(shorter, fine.row().order);
+  const double smaller = (coarse.local_error + strictest_local_error) / (fine.local_error + strictest_local_error);
+  return shorter > 1 ? std::min(smaller, shorter) : smaller;  // Euler's method has order 1
 }
 
-// The next knob, with an error of at most this share; nothing if it is too fine.
-std::optional<Try> finer(Try knob, double share) {
+// The next knob, with an error of at most this share; nothing if it is too fine. Euler's method takes over at events
+// without end, whatever the local error: only shorter intervals make its steps shorter.
+std::optional<Try> finer(Try knob, double share, bool left_to_euler) {
   if (knob.adaptive()) {
-    if (knob.local_error <= strictest) return {};
-    knob.local_error = std::max(strictest, std::min(share, 0.1) * knob.local_error);
+    if (knob.strictest() && !left_to_euler) return {};
+    // The strictest run is compared with one of ten times its local error: there the gain is small, but sure.
+    const bool last = knob.local_error < 11 * strictest_local_error;
+    knob.local_error = std::max((last ? 1 : 10) * strictest_local_error, std::min(share, 0.1) * knob.local_error);
+    if (left_to_euler) knob.parts *= shorter_for_euler;
+    if (knob.parts > most_parts_for_euler) return {};
     return knob;
   }
   const double factor = std::pow(1 / share, 1.0 / knob.row().order);
@@ -99,17 +111,22 @@ class Search {
       : scene_(scene), options_(options), warnings_(warnings), yardstick_(scene) {
     const double bodies = std::max<double>(1, static_cast<double>(scene.bodies.size()));
     const double steps = scene.duration / default_step * yardstick_.mechanisms();
-    left_ = std::max(most_work / bodies, most_millisecond_runs * price_of_step(row_of(Integrator::euler)) * steps);
+    least_left_ = most_millisecond_runs * price_of_step(row_of(Integrator::euler)) * steps;
+    left_ = std::max(most_work / bodies, least_left_);
   }
 
   RunResult run();
 
  private:
+  std::optional<double> next_share(const Attempt& last, const Attempt& now, int& idle);
   void try_candidate(Integrator integrator, double most);
   void try_stiff(double most);
   Attempt attempt(const Try& knob, double most);
   void judge(const Attempt& coarse, Attempt& fine) const;
   void keep(Attempt&& attempt);
+  bool balanced(const Attempt& attempt) const {
+    return attempt.result.balance.energy.share() <= scene_.energy_tolerance;
+  }
   bool done() const { return stopped_ || best_.reached; }
   double price_of(const Try& knob) const {
     return price_of_step(knob.row()) * knob.parts * intervals_of_own_steps * yardstick_.mechanisms();
@@ -120,11 +137,13 @@ class Search {
   const RunOptions& options_;
   std::string& warnings_;
   Yardstick yardstick_;
-  double left_;  // of the budget
+  double left_;        // of the budget
+  double least_left_;  // for all other candidates, when the first has a price
   Attempt best_;
   double first_price_ = 0;  // to which the first run was on the way when it became dear
   double stiff_price_ = 0;  // the part of it that stiffness explains
   bool may_be_dear_ = false, stopped_ = false;
+  bool sensitive_ = false;  // refined in vain down to round-off
   int runs_ = 0;
   double price_ = 0, cpu_ = 0;  // of all runs
 };
@@ -173,53 +192,59 @@ Attempt Search::attempt(const Try& knob, double most) {
 
 // Measures a run by a coarser one.
 void Search::judge(const Attempt& coarse, Attempt& fine) const {
-  const double smaller = 1 / std::sqrt(gain(coarse.knob, fine.knob));
-  fine.achieved = 0;
+  double apart = round_off;
   for (std::size_t k = 0; k < std::min(coarse.frames.size(), fine.frames.size()); ++k) {
-    fine.achieved = std::max(fine.achieved, smaller * yardstick_.apart(coarse.frames[k], fine.frames[k]));
-    if (fine.achieved <= yardstick_.asked()) fine.holds_until = fine.frames[k].time;
+    apart = std::max(apart, yardstick_.apart(coarse.frames[k], fine.frames[k]));
+    // Where runs part for good, no gain is sure.
+    if (apart <= yardstick_.asked()) fine.holds_until = fine.frames[k].time;
   }
-  const bool known = fine.result.counts.rescued == 0;
+  fine.achieved = std::max(round_off, apart / std::sqrt(gain(coarse.knob, fine.knob)));
+  const bool known = fine.result.counts.rescued == 0 || fine.knob.parts > coarse.knob.parts;
   const bool seems_to_converge = fine.knob.adaptive() || fine.achieved < surely * yardstick_.asked() ||
                                  fine.achieved * converges < coarse.achieved;
-  fine.reached = known && seems_to_converge && fine.achieved <= yardstick_.asked();
+  fine.reached = known && seems_to_converge && balanced(fine) && fine.achieved <= yardstick_.asked();
+  if (fine.reached) fine.holds_until = scene_.duration;
 }
 
 // The better of two: a run that reached the accuracy, then one that holds it longer, then any that has ended.
 void Search::keep(Attempt&& attempt) {
-  const auto rank = [](const Attempt& a) {
-    return std::tuple(a.reached, a.whole, a.whole && a.result.counts.rescued == 0, a.holds_until, -a.achieved,
-                      a.result.time);
+  const auto rank = [&](const Attempt& a) {
+    return std::tuple(a.reached, a.whole, balanced(a), a.whole && a.result.counts.rescued == 0, a.holds_until,
+                      -a.achieved, a.result.time);
   };
   if (best_.frames.empty() || rank(attempt) > rank(best_)) best_ = std::move(attempt);
 }
 
+// The share of the last error that the next run may have; nothing if this candidate has no prospects.
+std::optional<double> Search::next_share(const Attempt& last, const Attempt& now, int& idle) {
+  if (now.result.stopped) return {};
+  if (!now.whole) return stricter;
+  if (!last.whole) return now.knob.adaptive() ? stricter : 0.5;
+  sensitive_ |= now.knob.strictest() && now.result.counts.rescued == 0;
+  idle = now.achieved * converges < last.achieved ? 0 : idle + 1;
+  if (!now.knob.adaptive() && idle > most_idle) return {};
+  // Where the motion magnifies every difference, runs agree no more at all: then the time counts.
+  return std::max(stricter, aim * yardstick_.asked() / now.achieved);
+}
+
 void Search::try_candidate(Integrator integrator, double most) {
   const bool adaptive = row_of(integrator).level == Level::acceleration;
-  std::optional<Try> knob =
-      Try{integrator, adaptive ? std::max(strictest, first_local_error * yardstick_.asked()) : 0, 1};
-  most = std::min(most, left_);
+  std::optional<Try> knob = Try{
+      integrator, adaptive ? std::max(strictest_local_error / stricter, first_local_error * yardstick_.asked()) : 0, 1};
   Attempt last;
   double spent = 0;
+  int idle = 0;
   while (knob && !done()) {
     if (!knob->adaptive() && spent + price_of(*knob) > most) break;
     Attempt now = attempt(*knob, most - spent);
     spent += now.price;
-    double share = stricter;
     if (now.whole) {
       yardstick_.see(now.frames);
-      if (adaptive) left_ = std::min(left_, most_first_runs * now.price);
-      if (last.whole) {
-        judge(last, now);
-        // Where the motion magnifies every difference, runs agree no more at all: then the time counts.
-        share = std::max(stricter, aim * yardstick_.asked() / now.achieved);
-      } else if (!knob->adaptive()) {
-        share = 0.5;
-      }
-    } else if (now.result.stopped) {
-      knob.reset();
+      if (adaptive) left_ = std::min(left_, std::max(most_first_runs * now.price, least_left_));
+      if (last.whole) judge(last, now);
     }
-    if (knob) knob = finer(*knob, share);
+    const std::optional<double> share = next_share(last, now, idle);
+    knob = share ? finer(*knob, *share, now.result.counts.rescued > 0) : std::nullopt;
     keep(Attempt(now));
     last = std::move(now);
   }
@@ -238,9 +263,11 @@ RunResult Search::run() {
     return std::tuple(row.level == Level::acceleration, row.order, row.stiffens);
   });
   may_be_dear_ = true;
+  auto to_come = static_cast<double>(candidates.size());
   for (const IntegratorRow& row : candidates) {
-    if (done()) break;
-    try_candidate(row.integrator, left_);
+    if (done() || sensitive_) break;
+    try_candidate(row.integrator, may_be_dear_ ? left_ : left_ / to_come);
+    --to_come;
     if (first_price_ > 0) {
       may_be_dear_ = false;
       if (stiff_price_ > share_of_stiff * first_price_) try_stiff(share_of_stiff * first_price_);
@@ -248,8 +275,6 @@ RunResult Search::run() {
       if (!done()) try_candidate(row.integrator, left_);
     }
     may_be_dear_ = false;
-    // A method of the highest order that refines in vain down to round-off shows that the motion itself is sensitive.
-    if (best_.whole && best_.knob.local_error == strictest) break;
   }
   RunResult result = std::move(best_.result);
   const Choice choice = choice_of(best_);

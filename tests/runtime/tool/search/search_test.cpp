@@ -1,0 +1,269 @@
+// Scenes that ask for an accuracy, by default or in numbers: what the run claims to have is measured against references
+// that no method of the runtime made.
+#include <cmath>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cdot/methods.hpp>
+
+#include "runtime/tool/run/trajectory.hpp"
+#include "runtime/tool/scene/extent.hpp"
+#include "runtime/tool/search/yardstick.hpp"
+#include "tests/runtime/tool/support.hpp"
+
+namespace cdot::test::search_test {
+namespace {
+
+struct Problem {
+  const char* scene;
+  bool of_peers;  // its reference is in tests/bench/peers
+  const char* reference;
+};
+
+const Problem problems[] = {
+    {"simple_pendulum", false, "simple_pendulum"}, {"compound_pendulum", false, "compound_pendulum"},
+    {"double_pendulum", false, "double_pendulum"}, {"four_bar", false, "four_bar"},
+    {"slider_crank", false, "slider_crank"},       {"pulley_ratio1", false, "pulley_ratio1"},
+    {"pulley_ratio2", false, "pulley_ratio2"},     {"spatial/torque_free_body", false, "torque_free_body"},
+    {"spatial/chain_10", true, "spatial_chain"},   {"spatial/gyroscope", true, "gyroscope"},
+};
+constexpr double four_bar_until = 0.7;  // [s]: before two motions are possible
+
+// What the run claims, and its distance from the reference in the same unit.
+struct Measured {
+  Choice choice;
+  double error = 0, reference = 0;
+};
+
+Measured measured(const Problem& problem, double accuracy) {
+  Scene scene = scene_named(problem.scene);
+  const double until = problem.scene == std::string("four_bar") ? four_bar_until : scene.duration;
+  Reference reference =
+      problem.of_peers ? read_reference_of_peers(problem.reference) : read_reference(problem.reference, until);
+  scene.duration = reference.samples.back().time;
+  scene.step = 0, scene.settings = {.gravity_x = scene.settings.gravity_x,
+                                    .gravity_y = scene.settings.gravity_y,
+                                    .gravity_z = scene.settings.gravity_z};
+  scene.accuracy = accuracy;
+  Yardstick yardstick(scene);
+  Measured measured;
+  std::size_t next = 0;
+  RunOptions options;
+  for (const ReferenceSample& sample : reference.samples) options.row_times.push_back(sample.time);
+  options.row = [&](const Frame& frame) {
+    Frame exact = frame;
+    for (std::size_t k = 0; k < exact.bodies.size(); ++k)
+      exact.bodies[k] = reference.samples[next].bodies.at(scene.bodies[k].name);
+    measured.error = std::max(measured.error, yardstick.apart(frame, exact));
+    ++next;
+  };
+  std::string warnings;
+  const RunResult result = simulate(scene, options, warnings);
+  EXPECT_EQ(failure(scene, result), "") << problem.scene;
+  EXPECT_EQ(next, reference.samples.size());
+  measured.choice = result.choice.value();
+  measured.reference = reference.accuracy;
+  return measured;
+}
+
+// 1e-4 of the size and 1e-4 rad, of every problem with a reference, at a price that is stated.
+TEST(DefaultAccuracy, HoldsEveryProblemWithAReference) {
+  for (const Problem& problem : problems) {
+    const Measured now = measured(problem, 0);
+    fmt::print("  {:24} {:9} claims {:.1e}, is off by {:.1e}; {} evaluations and {} before\n", problem.scene,
+               name_of(integrators, now.choice.integrator), now.choice.achieved, now.error, now.choice.evaluations,
+               now.choice.evaluations_before);
+    EXPECT_TRUE(now.choice.reached) << problem.scene;
+    EXPECT_TRUE(now.choice.of_size);
+    EXPECT_LE(now.error, default_accuracy + now.reference) << problem.scene;
+    EXPECT_LE(now.choice.evaluations_before, 2 * now.choice.evaluations) << problem.scene;
+  }
+}
+
+// No run is off by more than three times what it claims, nor by more than it was asked for.
+// In equilibrium by statics: they must stay. The tension of 50 N makes the chain's links stiff.
+TEST(DefaultAccuracy, LeavesAtRestWhatStands) {
+  for (const char* name : {"cantilever", "catenary_100"}) {
+    Scene scene = scene_named(name);
+    scene.step = 0;
+    const Yardstick yardstick(scene);
+    std::vector<Frame> rows;
+    RunOptions options;
+    options.row_times = every(0.5, scene.duration);
+    options.row = [&](const Frame& frame) { rows.push_back(frame); };
+    std::string warnings;
+    const RunResult result = simulate(scene, options, warnings);
+    EXPECT_TRUE(result.choice->reached) << name;
+    double moved = 0;
+    for (const Frame& row : rows) moved = std::max(moved, yardstick.apart(row, rows.front()));
+    fmt::print("  {:24} {:9} claims {:.1e}, moves by {:.1e}; {} evaluations and {} before\n", name,
+               name_of(integrators, result.choice->integrator), result.choice->achieved, moved,
+               result.choice->evaluations, result.choice->evaluations_before);
+    EXPECT_LE(moved, default_accuracy) << name;
+  }
+}
+
+TEST(SearchedAccuracy, IsWhatTheRunClaims) {
+  double worst = 0;
+  for (const Problem& problem : problems)
+    for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9}) {
+      const Measured now = measured(problem, accuracy);
+      // References round to doubles and have an error of their own.
+      const double beyond = std::max(0.0, now.error - now.reference - 1e-13) / now.choice.achieved;
+      EXPECT_LE(now.error, accuracy + now.reference) << problem.scene << " " << accuracy;
+      EXPECT_LE(beyond, 3) << problem.scene << " " << accuracy << ": " << now.error << ", claimed "
+                           << now.choice.achieved;
+      worst = std::max(worst, now.choice.achieved > 0 ? beyond : 0);
+    }
+  fmt::print("  off by at most {:.2g} times the claim\n", worst);
+}
+
+// A double pendulum from above: differences grow by 1e4 in about 4 s.
+Scene chaotic() {
+  Scene scene = scene_named("double_pendulum");
+  scene.bodies[0].definition.x = 0, scene.bodies[0].definition.y = 0.5, scene.bodies[0].definition.angle = 1.5707963;
+  scene.bodies[1].definition.x = 0.5, scene.bodies[1].definition.y = 1, scene.bodies[1].definition.angle = 0;
+  scene.project = true;
+  scene.duration = 60;
+  return scene;
+}
+
+TEST(SearchedAccuracy, OfAChaoticMotionIsToldByTime) {
+  Scene scene = chaotic();
+  std::vector<Frame> rows;
+  RunOptions options;
+  options.row_times = every(0.5, scene.duration);
+  options.row = [&](const Frame& frame) { rows.push_back(frame); };
+  std::string warnings;
+  const RunResult result = simulate(scene, options, warnings);
+  const Choice& choice = result.choice.value();
+  ASSERT_FALSE(choice.reached);
+  EXPECT_GT(choice.holds_until, 5);
+  EXPECT_LT(choice.holds_until, 60);
+  // By default a warning, as asked for a failure.
+  EXPECT_EQ(failure(scene, result), "");
+  EXPECT_NE(summary_text(scene, result).find(fmt::format("holds up to t = {:.6g} s", choice.holds_until)),
+            std::string::npos);
+  Scene asked = chaotic();
+  asked.accuracy = 1e-4;
+  const RunResult failed = simulate(asked, {}, warnings);
+  EXPECT_NE(failure(asked, failed).find("holds up to t = "), std::string::npos) << failure(asked, failed);
+  // Up to that time another method agrees.
+  Scene other = chaotic();
+  other.step = 1e-4;
+  other.settings.integrator = Integrator::rk4;
+  other.duration = choice.holds_until;
+  std::vector<Frame> rk4;
+  options.row = [&](const Frame& frame) { rk4.push_back(frame); };
+  options.row_times = every(0.5, other.duration);
+  simulate(other, options, warnings);
+  double apart = 0;
+  for (std::size_t k = 0; k < rk4.size(); ++k)
+    apart = std::max(apart, cdot::apart(rk4[k], rows[k], scene.dimension).larger());
+  fmt::print("  holds up to {} s; rk4 differs by {:.1e} up to then\n", choice.holds_until, apart);
+  EXPECT_LT(apart, 3e-4);
+}
+
+// Impacts without end: Euler's method takes over. Runs with its steps in shorter intervals measure its error.
+TEST(SearchedAccuracy, CountsStepsThatAreLeftToEuler) {
+  Scene scene = read_scene((source_dir() / "tests/hard_cases/motor_against_limit/planar.toml").string());
+  scene.step = 0;
+  std::string warnings;
+  const RunResult result = simulate(scene, {}, warnings);
+  const Choice& choice = result.choice.value();
+  EXPECT_TRUE(choice.reached);
+  EXPECT_GT(choice.left_to_euler, 0);
+  EXPECT_GT(choice.first_left_to_euler, 0);
+  EXPECT_LT(choice.step, 5.0 / intervals_of_own_steps);  // in shorter intervals than the first run
+  Scene named = scene;
+  named.step = 5.0 / intervals_of_own_steps;
+  named.settings.integrator = Integrator::dop853, named.settings.local_error = 1e-9;
+  const RunResult broken = simulate(named, {}, warnings);
+  const std::string text = summary_text(named, broken);
+  EXPECT_NE(text.find("the local error 1.0e-09 is broken: "), std::string::npos) << text;
+  EXPECT_NE(text.find(fmt::format("first by t = {:.6g} s", broken.first_rescue)), std::string::npos) << text;
+}
+
+TEST(SearchedAccuracy, BelowRoundOffEndsTheSearchSoon) {
+  Scene scene = scene_named("double_pendulum");
+  scene.accuracy = 1e-16;
+  std::string warnings;
+  const RunResult result = simulate(scene, {}, warnings);
+  EXPECT_FALSE(result.choice->reached);
+  EXPECT_LE(result.choice->runs_before, 5);
+  EXPECT_LT(result.choice->evaluations_before, 2 * result.choice->evaluations);
+  EXPECT_NE(failure(scene, result).find("accuracy 1.0e-16 m, rad holds up to t = "), std::string::npos)
+      << failure(scene, result);
+}
+
+// Rows that were asked for change neither the choice nor the run.
+TEST(SearchedAccuracy, IsTheSameWithAndWithoutOutputs) {
+  const Scene scene = scene_named("crank_rocker");
+  std::string warnings;
+  RunOptions options;
+  std::vector<Frame> rows;
+  options.row_times = every(0.01, scene.duration);
+  options.row = [&](const Frame& frame) { rows.push_back(frame); };
+  const RunResult with = simulate(scene, options, warnings), without = simulate(scene, {}, warnings);
+  EXPECT_EQ(rows.size(), 201u);
+  EXPECT_EQ(with.choice->local_error, without.choice->local_error);
+  EXPECT_EQ(with.choice->achieved, without.choice->achieved);
+  EXPECT_EQ(with.energy_end, without.energy_end);
+}
+
+TEST(Extent, IsOfEachMechanism) {
+  const Scene scene = read_scene(std::string_view(R"(
+[[body]]
+name = "near"
+mass = 1
+inertia = 1
+position = [0.3, 0.4]
+[[body]]
+name = "far"
+mass = 1
+shape = { rod = 2 }
+position = [1000, 0]
+[[body]]
+name = "wall"
+static = true
+position = [500, 0]
+[[body]]
+name = "alone"
+mass = 1
+inertia = 1
+[[joint]]
+type = "revolute"
+bodies = ["near", "wall"]
+at = [0, 0]
+[[joint]]
+type = "revolute"
+bodies = ["far", "wall"]
+at = [999, 0]
+)"),
+                                 "extent.toml");
+  const Extents extents = extents_of(scene);
+  EXPECT_EQ(extents.mechanisms, 3);
+  EXPECT_NEAR(extents.of_body[0], 0.5, 1e-12);
+  EXPECT_NEAR(extents.of_body[1], std::hypot(2, 0.12), 1e-12);  // the rod's width is 0.06 of its length
+  EXPECT_EQ(extents.of_body[3], 0);
+}
+
+// A method on the command line replaces an accuracy, and an accuracy a method.
+TEST(Command, TakesAnAccuracyOrAMethod) {
+  const std::string scene = "simulate '" + (scenes_dir() / "double_pendulum.toml").string() + "' --json ";
+  const auto json = [&](const std::string& options) { return nlohmann::json::parse(cdot_run(scene + options).out); };
+  const auto by_default = json("");
+  EXPECT_EQ(by_default["accuracy"]["asked"], 1e-4);
+  EXPECT_EQ(by_default["accuracy"]["unit"], "size, rad");
+  EXPECT_EQ(by_default["accuracy"]["reached"], true);
+  EXPECT_GT(double(by_default["accuracy"]["search"]["cpu"]), 0);
+  EXPECT_EQ(json("--accuracy 1e-7")["accuracy"]["unit"], "m, rad");
+  for (const char* method : {"--step 0.01", "--integrator rattle", "--integrator dop853 --local-error 1e-8"})
+    EXPECT_FALSE(json(method).contains("accuracy")) << method;
+  EXPECT_EQ(json("--integrator rattle")["step"], default_step);
+  EXPECT_EQ(cdot_run(scene + "--accuracy 1e-7 --step 0.01").status, 2);
+}
+
+}  // namespace
+}  // namespace cdot::test::search_test
