@@ -1,8 +1,10 @@
 // What each island is -> the integrator for fixed steps.
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <set>
 
 #include <cdot/recommended.hpp>
@@ -181,8 +183,69 @@ Recommendation recommended(BasicWorld<S>& world, double step, const std::functio
   return {chosen, worst.traits.island, worst.traits.radians, rule.why({worst.traits, name_of_body})};
 }
 
-#define CDOT_INSTANTIATE(S) \
-  template Recommendation recommended(BasicWorld<S>&, double, const std::function<std::string(int)>&);
+namespace {
+
+constexpr int most_substeps = 64, steps_measured = 5;
+
+// The mean time [s] of a step, after the first one; infinite if a step fails.
+template <class S>
+double cost_of_step(BasicWorld<S>& world, const Settings& settings, double step) {
+  using Clock = std::chrono::steady_clock;
+  world.use(settings);
+  world.prepare();
+  const Snapshot before = world.snapshot();
+  bool well = bool(world.step(step));
+  const auto start = Clock::now();
+  for (int k = 0; k < steps_measured; ++k) well = world.step(step) && well;
+  const double taken = std::chrono::duration<double>(Clock::now() - start).count() / steps_measured;
+  world.restore(before);
+  return well ? taken : std::numeric_limits<double>::infinity();
+}
+
+template <class S>
+Recommendation fewest_iterations(BasicWorld<S>& world, double step, double budget, const Settings& given,
+                                 double direct) {
+  Recommendation found;
+  found.settings = given;
+  found.settings.solver = Solver::iterative, found.settings.integrator = Integrator::euler;
+  found.settings.local_error = 0, found.settings.drift = Drift::projection, found.settings.substeps = 1;
+  for (const int iterations : {50, 20, 10, 4, 2, 1}) {
+    found.settings.iterations = iterations;
+    const double cost = cost_of_step(world, found.settings, step);
+    found.reason =
+        fmt::format("a step of the direct solver takes {:.2g} s, of {} iteration{} {:.2g} s, the budget is {:.2g} s",
+                    direct, iterations, iterations == 1 ? "" : "s", cost, budget);
+    if (cost <= budget) break;
+  }
+  return found;
+}
+
+}  // namespace
+
+template <class S>
+Recommendation recommended_within(BasicWorld<S>& world, double step, double budget,
+                                  const std::function<std::string(int)>& name_of_body) {
+  const Settings given = world.settings();
+  Recommendation best;
+  double cost = 0;
+  for (int substeps = 1; substeps <= most_substeps; substeps *= 2) {
+    Settings finer = given;
+    finer.substeps = substeps;
+    world.use(finer);
+    const Recommendation found = recommended(world, step, name_of_body);
+    cost = cost_of_step(world, found.settings, step);
+    if (!(cost <= budget)) break;
+    best = found;
+    best.reason += fmt::format("; {} substeps take {:.2g} s of {:.2g} s", substeps, cost, budget);
+  }
+  if (best.reason.empty()) best = fewest_iterations(world, step, budget, given, cost);
+  world.use(given);
+  return best;
+}
+
+#define CDOT_INSTANTIATE(S)                                                                            \
+  template Recommendation recommended(BasicWorld<S>&, double, const std::function<std::string(int)>&); \
+  template Recommendation recommended_within(BasicWorld<S>&, double, double, const std::function<std::string(int)>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

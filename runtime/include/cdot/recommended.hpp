@@ -24,4 +24,11 @@ struct Recommendation {
 template <class S>
 Recommendation recommended(BasicWorld<S>& world, double step, const std::function<std::string(int)>& name_of_body = {});
 
+// For steps of `step` that may take `budget` [s] of this machine's time: the recommended method with as many substeps
+// as that allows, at most 64. If it does not allow one, the iterative solver with as many iterations as it allows.
+// Measures some steps of each and takes them back, so that other machines may answer otherwise.
+template <class S>
+Recommendation recommended_within(BasicWorld<S>& world, double step, double budget,
+                                  const std::function<std::string(int)>& name_of_body = {});
+
 }  // namespace cdot

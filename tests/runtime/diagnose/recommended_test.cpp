@@ -114,6 +114,23 @@ TEST(Recommended, UsedSettingsAreThoseOfANewWorld) {
   EXPECT_EQ(used.settings().integrator, Integrator::implicit);
 }
 
+// A second buys every substep, a nanosecond one iteration.
+TEST(Recommended, ABudgetBuysSubstepsOrIterations) {
+  World<double> world = level_chain(10);
+  const Recommendation rich = recommended_within(world, h, 1), poor = recommended_within(world, h, 1e-9);
+  EXPECT_EQ(rich.settings.solver, Solver::direct);
+  EXPECT_EQ(rich.settings.substeps, 64);
+  EXPECT_EQ(rich.settings.integrator, Integrator::rattle);  // not stiff in a substep
+  EXPECT_NE(rich.reason.find("64 substeps take"), std::string::npos) << rich.reason;
+  EXPECT_EQ(poor.settings.solver, Solver::iterative);
+  EXPECT_EQ(poor.settings.iterations, 1);
+  EXPECT_NE(poor.reason.find("of 1 iteration "), std::string::npos) << poor.reason;
+  EXPECT_EQ(world.time(), 0);
+  EXPECT_EQ(world.pose(9).y, 0) << "the measured steps are taken back";
+  world.use(rich.settings);
+  EXPECT_TRUE(world.step(h));
+}
+
 TEST(Recommended, OnlyBeforeTheFirstStep) {
   World<double> world = level_chain(2);
   world.step(h);
