@@ -10,7 +10,7 @@
 #include "runtime/tool/accuracy/sweep.hpp"
 #include "runtime/tool/run/output.hpp"
 #include "runtime/tool/run/process.hpp"
-#include "runtime/tool/run/simulate.hpp"
+#include "runtime/tool/search/simulate.hpp"
 
 namespace cdot {
 namespace {
@@ -49,6 +49,29 @@ void write_files(const std::string& output, const AccuracyReport& report) {
   write_file(output + ".svg", accuracy_svg(report));
 }
 
+constexpr double share_of_searches = 0.1;  // of the budget
+
+// What `simulate --accuracy` finds for every decade that the sweep reaches.
+std::vector<Searched> searched(const AccuracyReport& report, double budget, const Stop& stop) {
+  std::vector<Searched> all;
+  const double start = cpu_now();
+  for (const Advice& advice : report.advice) {
+    if (stop() || cpu_now() - start > share_of_searches * budget) break;
+    Scene scene = report.scene;
+    scene.accuracy = std::pow(10.0, advice.decade);
+    Trajectory trajectory;
+    RunOptions options;
+    options.row_times = report.reference.times;
+    options.row = [&](const Frame& frame) { trajectory.frames.push_back(frame); };
+    std::string warnings;
+    const RunResult result = simulate(scene, options, warnings);
+    if (!result.choice->reached || trajectory.frames.size() != report.reference.frames.size()) continue;
+    all.push_back({*result.choice, errors_of(trajectory, report.reference, scene).trajectory(),
+                   result.cpu / report.reference.times.back()});
+  }
+  return all;
+}
+
 // Warnings about the start of a scene. All ways share them.
 std::string warnings_of(const Scene& scene) {
   std::string warnings;
@@ -59,8 +82,8 @@ std::string warnings_of(const Scene& scene) {
 }  // namespace
 
 AccuracyReport report_of(const Scene& scene, const SweepOptions& options, const SweepState& state) {
-  AccuracyReport report{scene, state.reference, static_cast<int>(options.ways.size()), options.rounds, {}, {}, {}, {},
-                        {}};
+  AccuracyReport report{
+      scene, state.reference, static_cast<int>(options.ways.size()), options.rounds, {}, {}, {}, {}, {}, {}};
   report.answers = answers_of(state, options.ways);
   report.failures = failures_of(state, options.ways);
   report.costs = costs_of(report.answers, state.reference);
@@ -102,7 +125,8 @@ AccuracyOutcome measure_accuracy(const Scene& scene, const AccuracyOptions& opti
     fmt::print(stderr, "interrupted: {} runs are saved in {}; --resume continues\n", state.points.size(), state_path);
     return {};
   }
-  const AccuracyReport report = report_of(scene, ways, state);
+  AccuracyReport report = report_of(scene, ways, state);
+  report.searched = searched(report, ways.budget, stop);
   write_files(output, report);
   std::remove(state_path.c_str());
   AccuracyOutcome outcome{true, !report.answers.empty(), options.json ? accuracy_json(report) : accuracy_text(report)};

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "runtime/tool/accuracy/sweep.hpp"
+#include "runtime/tool/run/choice.hpp"
 
 namespace cdot {
 
@@ -17,6 +18,13 @@ struct AccuracyOptions {
 
 inline constexpr double noticeable = 0.05;  // a gain in error below this share does not count
 
+// The choice of `cdot-run simulate --accuracy`, by the same search, measured by the reference.
+struct Searched {
+  Choice choice;
+  double error = 0;  // [m, rad]
+  double cost = 0;   // CPU seconds per simulated second of the run delivered
+};
+
 // All results, ready for output.
 struct AccuracyReport {
   Scene scene;
@@ -26,6 +34,7 @@ struct AccuracyReport {
   std::vector<CostedError> costs;     // of the answers
   std::vector<std::size_t> frontier;  // indices into the answers, ascending by cost
   std::vector<Advice> advice;
+  std::vector<Searched> searched;
 };
 AccuracyReport report_of(const Scene& scene, const SweepOptions& options, const SweepState& state);
 
@@ -36,6 +45,9 @@ std::string accuracy_csv(const AccuracyReport& report);
 std::string accuracy_svg(const AccuracyReport& report);
 // "rk4, direct, step 0.0125 s"
 std::string knob_text(const AccuracyReport& report, const Point& point);
+
+// The same for `cdot-run simulate`, complete: "--integrator rk4 --solver direct …".
+std::string options_text(const AccuracyReport& report, const Point& point);
 
 struct AccuracyOutcome {
   bool finished = false;  // false: interrupted, `out` is empty

@@ -58,6 +58,27 @@ std::string advice_text(const AccuracyReport& report) {
   return text;
 }
 
+// Each piece of advice once, to be pasted behind `cdot-run simulate SCENE`.
+std::string pasted_text(const AccuracyReport& report) {
+  std::string text;
+  for (std::size_t k = 0; k < report.advice.size(); ++k)
+    if (k == 0 || report.advice[k].point != report.advice[k - 1].point)
+      text += fmt::format("    1e{:<4} {}\n", report.advice[k].decade,
+                          options_text(report, report.answers[report.advice[k].point]));
+  return text.empty() ? text : "\n  as options of `cdot-run simulate`\n" + text;
+}
+
+std::string searched_text(const AccuracyReport& report) {
+  std::string text;
+  for (const Searched& one : report.searched)
+    text += fmt::format("    {:.0e}  {}, {}: off by {:.1e}, {} per simulated second, and the search before it {} CPU\n",
+                        one.choice.asked, name_of(integrators, one.choice.integrator),
+                        one.choice.local_error > 0 ? fmt::format("local error {:.0e}", one.choice.local_error)
+                                                   : fmt::format("step {:.4g} s", one.choice.step),
+                        one.error, time_text(one.cost), time_text(one.choice.cpu_before));
+  return text.empty() ? text : "\n  `cdot-run simulate --accuracy` finds by itself\n" + text;
+}
+
 using text::Json;
 
 // The numbers of a point, a row each: columns of the CSV file and keys of the JSON.
@@ -132,6 +153,17 @@ std::string knob_text(const AccuracyReport& report, const Point& point) {
                                          : fmt::format(", step {:.4g} s", step_of(report, point)));
 }
 
+std::string options_text(const AccuracyReport& report, const Point& point) {
+  const Way& way = point.way;
+  const Knob knob = knob_at(way, point.level);
+  std::string text = fmt::format("--integrator {} --solver {} --drift {} --precision {} --substeps 1",
+                                 name_of(integrators, way.integrator), name_of(solvers, way.solver),
+                                 name_of(drifts, way.drift), name_of(precisions, way.single));
+  if (sweeps(way.solver)) text += fmt::format(" --iterations {}", way.iterations);
+  if (way.adaptive) text += fmt::format(" --local-error {:.0e}", knob.local_error);
+  return text + fmt::format(" --step {}", step_of(report, point));
+}
+
 std::string reference_text(const AccuracyReport& report) {
   const ReferenceRun& reference = report.reference;
   if (reference.disagree.empty()) return fmt::format("  reference       {}, as given\n", reference.made_by);
@@ -159,7 +191,7 @@ std::string accuracy_text(const AccuracyReport& report) {
                   report.reference.times.size(), until(report));
   text += fmt::format("  measured        {} ways: {} runs succeeded, {} failed; medians of {} interleaved rounds\n",
                       report.ways, report.answers.size(), report.failures.size(), report.rounds);
-  return text + frontier_text(report) + advice_text(report);
+  return text + frontier_text(report) + advice_text(report) + pasted_text(report) + searched_text(report);
 }
 
 std::string accuracy_json(const AccuracyReport& report) {
@@ -167,8 +199,16 @@ std::string accuracy_json(const AccuracyReport& report) {
   for (const Point& point : report.answers) points.push_back(json_of(report, point));
   for (const Point& point : report.failures) failures.push_back(json_of(report, point));
   for (const Advice& a : report.advice) {
-    Json& one = advice.push_back({{"error", std::pow(10.0, a.decade)}, {"point", a.point}});
+    Json& one = advice.push_back({{"error", std::pow(10.0, a.decade)},
+                                  {"point", a.point},
+                                  {"options", options_text(report, report.answers[a.point])}});
     if (a.factor) one["ten_times_more_accuracy_costs"] = *a.factor;
+  }
+  Json searched = Json::array();
+  for (const Searched& one : report.searched) {
+    Json& chosen = searched.push_back(choice_json(one.choice));
+    chosen["error"] = one.error;
+    chosen["cpu_per_second"] = one.cost;
   }
   const Json json = {
       {"scene", report.scene.file},
@@ -186,6 +226,7 @@ std::string accuracy_json(const AccuracyReport& report) {
       {"failures", failures},
       {"frontier", report.frontier},
       {"advice", advice},
+      {"searched", searched},
   };
   return json.dump(2) + "\n";
 }

@@ -221,10 +221,8 @@ TEST(AccuracyCommand, ItsAdviceCanBeTaken) {
   for (const auto& advice : json["advice"]) {
     const auto& point = json["points"][advice["point"].get<std::size_t>()];
     const auto text = [&](const char* key) { return point[key].get<std::string>(); };
-    ASSERT_EQ(cdot_run(fmt::format("simulate {} --until 1 --times 1 --integrator {} --solver {} --drift {} "
-                                   "--precision {} --step {} -o '{}'",
-                                   pendulum, text("integrator"), text("solver"), text("drift"), text("precision"),
-                                   point["step"].get<double>(), path))
+    ASSERT_EQ(cdot_run(fmt::format("simulate {} --until 1 --times 1 {} -o '{}'", pendulum,
+                                   advice["options"].get<std::string>(), path))
                   .status,
               0);
     const std::vector<double> taken = last_row(path), wanted = last_row(exact);
@@ -240,6 +238,26 @@ TEST(AccuracyCommand, ItsAdviceCanBeTaken) {
     EXPECT_GT(off, 0.01 * point["error"].get<double>());
     EXPECT_LE(off, 1.001 * point["error"].get<double>());
     EXPECT_LE(point["error"], advice["error"]);
+  }
+}
+
+// One search has two front ends: they choose alike, and both know the error.
+TEST(AccuracyCommand, FindsWhatSimulateFinds) {
+  const TemporaryFolder folder;
+  const std::string scene = scene_path("double_pendulum");
+  const CommandResult result = cdot_run(
+      fmt::format("accuracy {} --only dop853 --budget 3 --rounds 1 -o '{}' --json", scene, (folder / "p").string()));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  ASSERT_GE(json["searched"].size(), 5u);
+  for (const auto& found : json["searched"]) {
+    const double asked = found["asked"];
+    const auto chosen =
+        nlohmann::json::parse(cdot_run(fmt::format("simulate {} --accuracy {} --json", scene, asked)).out)["accuracy"];
+    for (const char* key : {"integrator", "local_error", "step", "achieved", "evaluations"})
+      EXPECT_EQ(chosen[key], found[key]) << asked << " " << key;
+    EXPECT_LE(found["error"], asked);
+    EXPECT_LE(found["error"], 3 * found["achieved"].get<double>() + 1e-13);
   }
 }
 
