@@ -232,6 +232,14 @@ position = [500, 0]
 name = "alone"
 mass = 1
 inertia = 1
+[[body]]
+name = "partner"
+mass = 1
+inertia = 1
+position = [0, 0.4]
+[[spring]]
+bodies = ["near", "partner"]
+stiffness = 1
 [[joint]]
 type = "revolute"
 bodies = ["near", "wall"]
@@ -247,6 +255,7 @@ at = [999, 0]
   EXPECT_NEAR(extents.of_body[0], 0.5, 1e-12);
   EXPECT_NEAR(extents.of_body[1], std::hypot(2, 0.12), 1e-12);  // the rod's width is 0.06 of its length
   EXPECT_EQ(extents.of_body[3], 0);
+  EXPECT_EQ(extents.of_body[4], extents.of_body[0]);
 }
 
 // A method on the command line replaces an accuracy, and an accuracy a method.
