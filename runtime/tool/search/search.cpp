@@ -143,7 +143,7 @@ class Search {
   double first_price_ = 0;  // to which the first run was on the way when it became dear
   double stiff_price_ = 0;  // the part of it that stiffness explains
   bool may_be_dear_ = false, stopped_ = false;
-  bool sensitive_ = false;  // refined in vain down to round-off
+  bool sensitive_ = false;  // refined in vain: the motion itself forbids more
   int runs_ = 0;
   double price_ = 0, cpu_ = 0;  // of all runs
 };
@@ -220,6 +220,8 @@ std::optional<double> Search::next_share(const Attempt& last, const Attempt& now
   if (now.result.stopped) return {};
   if (!now.whole) return stricter;
   if (!last.whole) return now.knob.adaptive() ? stricter : 0.5;
+  // Two runs agree on a motion whose energy balance fails: finer ones would agree with them.
+  if (now.knob.adaptive() && now.achieved <= yardstick_.asked() && !balanced(now) && !balanced(last)) sensitive_ = true;
   sensitive_ |= now.knob.strictest() && now.result.counts.rescued == 0;
   idle = now.achieved * converges < last.achieved ? 0 : idle + 1;
   if (!now.knob.adaptive() && idle > most_idle) return {};
@@ -234,7 +236,7 @@ void Search::try_candidate(Integrator integrator, double most) {
   Attempt last;
   double spent = 0;
   int idle = 0;
-  while (knob && !done()) {
+  while (knob && !done() && !sensitive_) {
     if (!knob->adaptive() && spent + price_of(*knob) > most) break;
     Attempt now = attempt(*knob, most - spent);
     spent += now.price;
