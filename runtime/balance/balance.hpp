@@ -63,6 +63,8 @@ enum class Impulses : char {
   middle,        // `correction` over h, without dampers and drag; the velocities are the mean of the kick
   end,           // `lambda` of a projection; that of springs holds their dampers
   drift,         // `correction` of joints that depend on time
+  soft,          // as euler, the first of two kicks
+  relaxed,       // `correction` of rows but springs, the second of these kicks, without other forces
 };
 
 // Call at the start and at the end of a kick of h. C and J are those of the kick.

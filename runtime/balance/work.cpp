@@ -67,17 +67,22 @@ void work_of_springs(const WorldData<S>& world, Batch<S>& batch, int slot, const
   }
 }
 
+// Whether a step exerts the impulses of rows in one kick or in two. Work that is only taken is that of both.
+enum class Kick : char { only, first, second };
+
 // Rows with bounds: motors put in, friction takes, limits and ropes take what hits them. Rows that are held on both
-// sides without a rate of their own do no work.
+// sides without a rate of their own do no work. Batch::error keeps the work of the first kick.
 template <class S, class Lambda>
-void work_of_bounded(const Batch<S>& batch, int slot, Lambda lambda, Work& work) {
+void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& work) {
   Guard<typename S::Scalar> guards[most_rows];
   batch.law->guard(batch, slot, guards);
   const bool moves = !batch.law->error;  // a motor or dry friction
   for (int r = 0; r < batch.ops->rows; ++r) {
     const int i = slot * batch.ops->rows + r;
-    const double done = double(lambda(i)) * double(batch.rate[i]);
-    if (batch.ops->explicit_time || (moves && guards[r].rate != 0)) work.put_in += done;
+    const double before = kick == Kick::second ? double(batch.error[i]) : 0;
+    const double done = double(lambda(i)) * double(batch.rate[i]) + before;
+    if (kick == Kick::first) batch.error[i] = typename S::Scalar(done);
+    else if (batch.ops->explicit_time || (moves && guards[r].rate != 0)) work.put_in += done;
     else if (moves || guards[r].one_sided()) work.take(done);
   }
 }
@@ -89,7 +94,7 @@ enum class Springs : char { whole, dampers, without_dampers };
 // whole springs acted, into Batch::impulse.
 template <class S, class Lambda, class Acted>
 void work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S::Velocity* mean, Lambda lambda,
-                  Acted acted, Springs springs, typename S::Scalar time, double h, Work& work) {
+                  Acted acted, Springs springs, Kick kick, typename S::Scalar time, double h, Work& work) {
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     const int begin = segment.begin, end = segment.end, rows = batch.ops->rows;
@@ -106,7 +111,7 @@ void work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S
       for (int slot = begin; slot < end; ++slot)
         work_of_springs(world, batch, slot, rates + slot * rows, of_row, time, h, work);
     } else if (batch.law->guard) {
-      for (int slot = begin; slot < end; ++slot) work_of_bounded(batch, slot, of_row, work);
+      for (int slot = begin; slot < end; ++slot) work_of_bounded(batch, slot, of_row, kick, work);
     }
   }
 }
@@ -151,14 +156,19 @@ void add(WorldData<S>& world, const Work& work) {
 template <class S>
 typename S::Scalar impulse_of(Impulses impulses, const Batch<S>& batch, int i) {
   const bool spring = batch.law && batch.law->spring;
-  if (impulses == Impulses::dampers ? !spring : impulses == Impulses::rattle_end && spring) return 0;
-  const bool corrected =
-      impulses == Impulses::rattle_start || impulses == Impulses::middle || impulses == Impulses::drift;
+  const bool no_springs = impulses == Impulses::rattle_end || impulses == Impulses::relaxed;
+  if (impulses == Impulses::dampers ? !spring : no_springs && spring) return 0;
+  const bool corrected = impulses == Impulses::rattle_start || impulses == Impulses::middle ||
+                         impulses == Impulses::drift || impulses == Impulses::relaxed;
   return corrected ? batch.correction[i] : batch.lambda[i];
 }
 
+constexpr Kick kick_of(Impulses impulses) {
+  return impulses == Impulses::soft ? Kick::first : impulses == Impulses::relaxed ? Kick::second : Kick::only;
+}
+
 constexpr Springs springs_of(Impulses impulses) {
-  if (impulses == Impulses::euler || impulses == Impulses::drift) return Springs::whole;
+  if (impulses == Impulses::euler || impulses == Impulses::soft || impulses == Impulses::drift) return Springs::whole;
   return impulses == Impulses::rattle_start || impulses == Impulses::middle ? Springs::without_dampers
                                                                             : Springs::dampers;
 }
@@ -187,11 +197,12 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
     const auto& from = impulses == Impulses::rattle_end ? island.flow.velocity[k] : start[i];
     mean[i] = S::damped(S::sum(from, v[i], T(1)), T(0.5), T(0.5));
   }
-  const bool at_end = impulses == Impulses::euler;
+  const bool at_end = impulses == Impulses::euler || impulses == Impulses::soft;
   const auto* const acted = at_end ? v.data() : start.data();
   Work work;
   if (impulses == Impulses::middle) std::copy(v.begin(), v.end(), mean.begin());
-  const bool of_rows = impulses == Impulses::drift || impulses == Impulses::dampers || impulses == Impulses::end;
+  const bool of_rows = impulses == Impulses::drift || impulses == Impulses::dampers || impulses == Impulses::end ||
+                       impulses == Impulses::relaxed;
   if (!of_rows) work_on_bodies(world, island, start.data(), mean.data(), impulses != Impulses::middle, at_end, h, work);
   work_of_rows(
       world, island, mean.data(), [&](const Batch<S>& batch, int i) { return impulse_of(impulses, batch, i); },
@@ -199,7 +210,7 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
         batch.ops->velocity(batch, begin, end, acted, batch.impulse.data());
         return batch.impulse.data();
       },
-      springs_of(impulses), island.evaluated_at, double(h), work);
+      springs_of(impulses), kick_of(impulses), island.evaluated_at, double(h), work);
   if (impulses == Impulses::rattle_start || impulses == Impulses::rattle_end)
     work_of_stiffness(world, island, start.data(), double(h), work);
   add(world, work);
@@ -217,7 +228,7 @@ void find_power(WorldData<S>& world, Island<S>& island, typename S::Scalar time,
         batch.ops->effective_mass(batch, begin, end, world.bodies);
         return batch.rate.data();
       },
-      Springs::whole, time, 1, work);
+      Springs::whole, Kick::only, time, 1, work);
   work_of_stiffness(world, island, v, 1, work);
   power[0] = T(work.put_in), power[1] = T(work.taken);
 }

@@ -41,6 +41,14 @@ spatial::Vector<R> turn_of(const spatial::Symmetric<R>& inertia, const spatial::
   }
 }
 
+// The velocity of body i in the rigid motion v + w x (x - centre).
+template <class S, class R>
+typename S::Velocity rigid(const Bodies<S>& all, int i, const spatial::Vector<R>& centre, const spatial::Vector<R>& v,
+                           const spatial::Vector<R>& w) {
+  const auto moved = v + spatial::cross(w, position<R>(all.pose[i]) - centre);
+  return velocity<S>(Twist<R>{moved, turns<S>(all.inverse_mass[i]) ? w : spatial::Vector<R>{}});
+}
+
 }  // namespace
 
 // L = sum (x - X) x m (v - V) + I w, with the centre of mass X and its velocity V
@@ -87,16 +95,33 @@ void restore_momentum(WorldData<S>& world, const Island<S>& island, const Moment
   }
   const Vector v = inverse(now.mass) * (start.linear + R(h) * now.force - now.linear),
                w = island.spins_freely ? turn_of<S>(now.inertia, turn - now.spin) : Vector{};
-  // A rigid motion moves a body by v + w x (x - centre).
+  for (int i : island.bodies)
+    all.velocity[i] = S::sum(all.velocity[i], rigid<S>(all, i, now.centre, v, w), typename S::Scalar(1));
+}
+
+template <class S>
+void calm(WorldData<S>& world, const Island<S>& island, double energy) {
+  using T = typename S::Scalar;
+  using Vector = spatial::Vector<ExactNumber<T>>;
+  Bodies<S>& all = world.bodies;
+  const MomentumOf<S> now = island.floats ? momentum_of(world, island) : MomentumOf<S>{};
+  const Vector v = inverse(now.mass) * now.linear,
+               w = island.spins_freely ? turn_of<S>(now.inertia, now.spin) : Vector{};
+  double own = 0;
   for (int i : island.bodies) {
-    const Vector moved = v + spatial::cross(w, position<R>(all.pose[i]) - now.centre);
-    const Twist<R> change{moved, turns<S>(all.inverse_mass[i]) ? w : Vector{}};
-    all.velocity[i] = S::sum(all.velocity[i], velocity<S>(change), typename S::Scalar(1));
+    all.increment[i] = S::sum(all.velocity[i], rigid<S>(all, i, now.centre, v, w), T(-1));
+    own += 0.5 * S::dot(S::force(all.inverse_mass[i], all.increment[i]), all.increment[i]);
+  }
+  const double left = energy < own ? std::sqrt(1 - energy / own) : 0;
+  for (int i : island.bodies) {
+    all.velocity[i] = S::sum(all.velocity[i], all.increment[i], T(left - 1));
+    all.increment[i] = {};
   }
 }
 
 #define CDOT_INSTANTIATE(S)                                                  \
   template MomentumOf<S> momentum_of(const WorldData<S>&, const Island<S>&); \
+  template void calm(WorldData<S>&, const Island<S>&, double);               \
   template void restore_momentum(WorldData<S>&, const Island<S>&, const MomentumOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -29,4 +29,9 @@ MomentumOf<S> momentum_of(const WorldData<S>& world, const Island<S>& island);
 template <class S>
 void restore_momentum(WorldData<S>& world, const Island<S>& island, const MomentumOf<S>& start, typename S::Scalar h);
 
+// Takes this energy [J], or what there is, from the motion of an island's bodies against each other. Its momentum stays
+// where nothing holds the island.
+template <class S>
+void calm(WorldData<S>& world, const Island<S>& island, double energy);
+
 }  // namespace cdot

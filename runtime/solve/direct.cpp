@@ -66,6 +66,15 @@ void solve_velocities(WorldData<S>& world, Island<S>& island, typename S::Veloci
   exert_solution(world, island, system, v);
 }
 
+// Only a retry gets here: the rows are rigid.
+template <class S>
+void solve_soft(WorldData<S>& world, Island<S>& island, SoftSweep<typename S::Scalar> soft, typename S::Scalar share) {
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    for (int i = begin * batch->ops->rows; !batch->law && i < end * batch->ops->rows; ++i)
+      batch->bias[i] += soft.rate * batch->C[i];
+  solve_velocities(world, island, world.bodies.velocity.data(), share);
+}
+
 // K lambda = gamma - J dv/dt, with dv/dt without joints and known forces given.
 template <class S>
 void solve_accelerations(WorldData<S>& world, Island<S>& island) {
@@ -173,6 +182,14 @@ void project(WorldData<S>& world, Island<S>& island) {
   island.factored = true;
 }
 
+template <class S>
+void project_relaxed(WorldData<S>& world, Island<S>& island) {
+  clear_correction(world, island);
+  project(world, island);
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    for (int i = begin * batch->ops->rows; i < end * batch->ops->rows; ++i) batch->lambda[i] += batch->correction[i];
+}
+
 }  // namespace
 
 template <class S>
@@ -198,6 +215,8 @@ const RowSolver<S>& direct_solver() {
                                        .renew = forget_factor<S>,
                                        .factor = factor<S>,
                                        .velocities = solve_velocities<S>,
+                                       .soften = solve_soft<S>,
+                                       .relax = project_relaxed<S>,
                                        .accelerations = solve_accelerations<S>,
                                        .positions = solve_positions<S>,
                                        .projection = project<S>};

@@ -62,7 +62,7 @@ void correct_bounded(Batch<S>& batch, int begin, int end, Bodies<S>& all, typena
 }
 
 template <class S>
-void sweep_velocities(WorldData<S>& world, Island<S>& island, typename S::Velocity* v, typename S::Scalar share) {
+void warm_start(WorldData<S>& world, Island<S>& island, typename S::Velocity* v, typename S::Scalar share) {
   using T = typename S::Scalar;
   const bool warm = world.settings.warm_start;
   if (!warm) share = 0;
@@ -73,13 +73,41 @@ void sweep_velocities(WorldData<S>& world, Island<S>& island, typename S::Veloci
     for (int i = segment.begin * rows; i < segment.end * rows; ++i) lambda[i] *= share;
     if (warm) batch.ops->apply(batch, segment.begin, segment.end, world.bodies, batch.lambda.data(), v);
   }
+}
+
+template <class S, class Bounded>
+void sweep(WorldData<S>& world, Island<S>& island, typename S::Velocity* v, SoftSweep<typename S::Scalar> soft,
+           Bounded takes_part) {
   for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
     for (const Segment<S>& segment : island.segments) {
       Batch<S>& batch = *segment.batch;
-      if (batch.law) iterate_bounded(batch, segment.begin, segment.end, world.bodies, v);
-      else batch.ops->iterate(batch, segment.begin, segment.end, world.bodies, v, batch.lambda.data());
+      if (!batch.law) batch.ops->iterate(batch, segment.begin, segment.end, world.bodies, v, batch.lambda.data(), soft);
+      else if (takes_part(*batch.law)) iterate_bounded(batch, segment.begin, segment.end, world.bodies, v);
     }
   }
+}
+
+template <class S>
+bool any_law(const Law<S>&) {
+  return true;
+}
+
+template <class S>
+void sweep_velocities(WorldData<S>& world, Island<S>& island, typename S::Velocity* v, typename S::Scalar share) {
+  warm_start(world, island, v, share);
+  sweep(world, island, v, {}, any_law<S>);
+}
+
+template <class S>
+void sweep_soft(WorldData<S>& world, Island<S>& island, SoftSweep<typename S::Scalar> soft, typename S::Scalar share) {
+  warm_start(world, island, world.bodies.velocity.data(), share);
+  sweep(world, island, world.bodies.velocity.data(), soft, any_law<S>);
+}
+
+// Springs have acted over the whole step.
+template <class S>
+void sweep_relaxed(WorldData<S>& world, Island<S>& island) {
+  sweep(world, island, world.bodies.velocity.data(), {}, [](const Law<S>& law) { return !law.force; });
 }
 
 template <class S>
@@ -165,7 +193,8 @@ void sweep_projection(WorldData<S>& world, Island<S>& island) {
   for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
     for (const Segment<S>& segment : island.segments) {
       Batch<S>& batch = *segment.batch;
-      if (!batch.law) batch.ops->iterate(batch, segment.begin, segment.end, world.bodies, v, batch.correction.data());
+      if (!batch.law)
+        batch.ops->iterate(batch, segment.begin, segment.end, world.bodies, v, batch.correction.data(), {});
       else if (island.acceleration_level) iterate_bounded(batch, segment.begin, segment.end, world.bodies, v);
     }
   }
@@ -179,6 +208,8 @@ const RowSolver<S>& iterative_solver() {
                                        .renew = renew<S>,
                                        .factor = renew<S>,
                                        .velocities = sweep_velocities<S>,
+                                       .soften = sweep_soft<S>,
+                                       .relax = sweep_relaxed<S>,
                                        .accelerations = sweep_accelerations<S>,
                                        .positions = sweep_positions<S>,
                                        .projection = sweep_projection<S>};

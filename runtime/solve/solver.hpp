@@ -24,6 +24,10 @@ struct RowSolver {
   // Adds impulses to v such that J v = -bias, within the bounds of rows under a law. With warm starting, sweeps start
   // from `share` of the present impulses.
   void (*velocities)(WorldData<S>&, Island<S>&, Velocity* v, T share);
+  // The same for Drift::soft, before the poses move: exact rows count C as well.
+  void (*soften)(WorldData<S>&, Island<S>&, SoftSweep<T>, T share);
+  // Afterwards, with C and J of the new poses: goes on from the present impulses, without C.
+  void (*relax)(WorldData<S>&, Island<S>&);
   // Adds forces to dv/dt such that J dv/dt = -bias in exact and held rows. Other rows have a known force: both bounds
   // are that number.
   void (*accelerations)(WorldData<S>&, Island<S>&);

@@ -67,6 +67,7 @@ struct IslandState {
   StateNumber<bool> asleep = false;
   StateNumber<double> rested = 0.0;     // [s]
   StateNumber<int> redundant_rows = 0;  // of the last factorisation
+  StateNumber<double> gained = 0.0;     // by Drift::soft [J]; below 0: lost
   // Of an island that floats: momentum (3 numbers), angular momentum about its centre of mass (3), time [s] at which
   // they were measured; negative: not yet.
   StateArray<double> momentum;

@@ -36,6 +36,7 @@ void rehearse(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
 
 template <class S>
 void step_euler(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
+  if (world.settings.drift == Drift::soft) return step_soft(world, island, h, last_step);
   project_start(world, island);
   begin_kick(world, island);
   if (island.stiffened) {

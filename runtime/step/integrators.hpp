@@ -24,4 +24,8 @@ const Stepper<S>& stepper_of(Integrator integrator);
 template <class S>
 void step_euler(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step);
 
+// With Drift::soft.
+template <class S>
+void step_soft(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step);
+
 }  // namespace cdot

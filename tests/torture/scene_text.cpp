@@ -45,7 +45,7 @@ void write_settings(const Scene& scene, Lines lines) {
   lines.text("solver", name_of(solvers, s.solver));
   lines.text("integrator", name_of(integrators, s.integrator));
   lines.text("precision", name_of(precisions, scene.single));
-  if (s.drift != usual.drift) lines.text("drift", name_of(drifts, s.drift));
+  if (s.drift != usual_drift(s)) lines.text("drift", name_of(drifts, s.drift));
   if (s.kernels != usual.kernels) lines.text("kernels", name_of(kernel_forms, s.kernels));
   lines.number_unless(usual.local_error, "local_error", s.local_error);
   lines.number_unless(usual.iterations, "iterations", s.iterations);

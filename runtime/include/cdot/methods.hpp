@@ -19,11 +19,16 @@ struct Named {
   Method method;
 };
 
-inline constexpr std::array<Named<Drift>, 3> drifts{{
+inline constexpr std::array<Named<Drift>, 4> drifts{{
     {"projection", Drift::projection},
+    {"soft", Drift::soft},
     {"baumgarte", Drift::baumgarte},
     {"none", Drift::none},
 }};
+// The drift correction of a scene that names none.
+constexpr Drift usual_drift(const Settings& s) {
+  return sweeps(s.solver) && s.integrator == Integrator::euler ? Drift::soft : Drift::projection;
+}
 inline constexpr auto integrators = [] {
   std::array<Named<Integrator>, integrator_rows.size()> names{};
   for (std::size_t k = 0; k < names.size(); ++k) names[k] = {integrator_rows[k].name, integrator_rows[k].integrator};

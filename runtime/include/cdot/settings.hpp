@@ -35,9 +35,12 @@ inline constexpr std::array<SolverRow, 2> solvers{{
 constexpr bool sweeps(Solver solver) { return solvers[static_cast<std::size_t>(solver)].sweeps; }
 
 enum class Drift {
-  none,       // velocities only; C grows with time
-  baumgarte,  // a share of C is fed back into the velocities: J v = -(baumgarte / h) C
-  projection  // Newton on C after every step, the velocities projected as well
+  none,        // velocities only; C grows with time
+  baumgarte,   // a share of C is fed back into the velocities: J v = -(baumgarte / h) C
+  projection,  // Newton on C after every step, the velocities projected as well
+  // For sweeps: rows as stiff springs before the poses move, then rigid rows without C, so that the velocities keep
+  // nothing of the correction.
+  soft
 };
 
 // How the iterative solver solves the rows of one joint together. tests/bench/ulp measures cost and accuracy of each.
@@ -79,6 +82,10 @@ constexpr const char* mistake_in_methods(const Settings& s) {
     return "no step has an error below round-off: local_error must be at least 1e-20";
   if (row_of(s.integrator).projects && s.drift != Drift::projection)
     return "rattle includes the projection: it needs drift = projection";
+  if (s.drift == Drift::soft && !sweeps(s.solver))
+    return "soft corrects by sweeps: it needs solver = iterative; the direct solver takes drift = projection";
+  if (s.drift == Drift::soft && s.integrator != Integrator::euler)
+    return "soft corrects Euler's steps only: other integrators need drift = projection";
   if (!accelerations) return nullptr;
   if (s.drift == Drift::baumgarte)
     return "baumgarte corrects velocities of Euler's steps only: rk4 and dop853 need drift = projection";

@@ -57,7 +57,7 @@ constexpr struct {
     {"local_error", add_number<methods, settings, &Settings::local_error>},
     {"kernels",     add_choice<methods, kernel_forms, settings, &Settings::kernels>},
     {"precision",   add_choice<methods, precisions, &Scene::single>},
-    {"drift",       add_choice<methods, drifts, settings, &Settings::drift>},
+    {"drift",       add_choice<methods, drifts, &Scene::drift>},
     {"iterations",  add_number<methods, settings, &Settings::iterations>},
     {"substeps",    add_number<methods, settings, &Settings::substeps>},
     {"on_failure",  add_choice<others, failure_answers, &Scene::on_failure>},
@@ -94,6 +94,7 @@ Scene scene_of(const SceneOptions& options) {
   for (const auto& change : options.methods) change(scene);
   if (scene.step == 0)
     scene.step = scene.settings.local_error > 0 ? scene.duration / intervals_of_own_steps : default_step;
+  settle_drift(scene);
   return with_integrator(std::move(scene));
 }
 

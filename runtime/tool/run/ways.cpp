@@ -13,7 +13,7 @@ constexpr int most_doublings = 17;     // of the steps from one sample to the ne
 constexpr int most_exact_digits = 15;  // of a local error
 
 constexpr auto direct = Solver::direct, iterative = Solver::iterative;
-constexpr auto none = Drift::none, baumgarte = Drift::baumgarte, projection = Drift::projection;
+constexpr auto none = Drift::none, baumgarte = Drift::baumgarte, projection = Drift::projection, soft = Drift::soft;
 
 // Methods of first order may choose their drift correction; the plain ones show every choice.
 bool first_order(const IntegratorRow& row) { return row.order == 1; }
@@ -37,6 +37,8 @@ constexpr struct {
     {not_stiffening, direct,    projection, 0,  true,  false},
     {plain,          iterative, baumgarte,  4,  false, false},
     {plain,          iterative, baumgarte,  20, false, false},
+    {plain,          iterative, soft,       1,  false, false},
+    {plain,          iterative, soft,       10, false, false},
     {plain,          iterative, projection, 4,  false, false},
     {any,            iterative, projection, 20, false, false},
     {chooses_steps,  direct,    projection, 0,  false, true},

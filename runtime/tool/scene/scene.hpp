@@ -60,6 +60,7 @@ struct Scene {
   Settings settings;
   bool names_integrator = true;            // false: see runtime/tool/run/pick_integrator.hpp
   std::string why_integrator;              // why it was picked
+  std::optional<Drift> drift;              // as named; settle_drift() puts it, or the usual one, into the settings
   bool single = false;                     // computed in float
   double duration = 10;                    // [s]
   double step = default_step;              // [s]; 0: no method is named, an accuracy chooses it
@@ -82,6 +83,9 @@ struct SceneError : std::runtime_error {
   SceneError(const std::string& report, int count) : std::runtime_error(report), mistakes(count) {}
   int mistakes;
 };
+
+// Call after a change of the methods.
+void settle_drift(Scene& scene);
 
 Scene read_scene(const std::string& path);
 Scene read_scene(std::string_view text, const std::string& name);

@@ -62,7 +62,7 @@ constexpr Key<Scene> top_keys[] = {
     {"solver", "solver of the impulses", "direct", read_choice<solvers, settings, &Settings::solver>, Where::everywhere, choices_of<solvers>},
     {"integrator", "method of a step; auto picks one that holds at the step, by what the mechanisms are", "auto; euler with the iterative solver or another drift", read_integrator, Where::everywhere, integrator_choices},
     {"local_error", "the integrator chooses its steps, each with this estimated error [m, rad, m/s, rad/s]", "fixed steps", read_number<Sign::positive, settings, &Settings::local_error>},
-    {"drift", "correction of C", "projection", read_choice<drifts, settings, &Settings::drift>, Where::everywhere, choices_of<drifts>},
+    {"drift", "correction of C", "projection, for Euler's steps by sweeps soft", read_choice<drifts, &Scene::drift>, Where::everywhere, choices_of<drifts>},
     {"baumgarte", "share of the error removed per step", "0.2", read_number<Sign::positive, settings, &Settings::baumgarte>},
     {"iterations", "sweeps of the iterative solver per substep", "10", read_count<settings, &Settings::iterations>},
     {"warm_start", "the iterative solver starts from the last impulses", "true", read_flag<settings, &Settings::warm_start>},
@@ -98,8 +98,11 @@ void check_accuracy(Entry& top) {
 
 }  // namespace
 
+void settle_drift(Scene& scene) { scene.settings.drift = scene.drift.value_or(usual_drift(scene.settings)); }
+
 void read_settings(Entry& top, Scene& scene) {
   read_keys(top, top_keys, scene.dimension, scene);
+  settle_drift(scene);
   check_method(top, scene.settings);
   check_accuracy(top);
 }

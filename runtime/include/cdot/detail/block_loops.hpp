@@ -122,20 +122,20 @@ struct BlockLoops {
   }
 
   static void factorize(Batch<S>& batch, int begin, int end, const Bodies<S>& all) {
-    if constexpr (kernels != Kernels::robust) effective_mass(batch, begin, end, all);
     for (int slot = begin; slot < end; ++slot) {
-      T* const factor = batch.factor.data() + slot * triangle;
-      T K[triangle], F[triangle];
+      const Jacobian& J = as<Jacobian>(batch.jacobian.data(), slot);
+      InverseMass m[bodies];
+      gather(all.effective_mass, bodies_of(batch, slot), m);
+      T F[triangle];
       if constexpr (kernels == Kernels::robust) {
-        InverseMass m[bodies];
-        gather(all.effective_mass, bodies_of(batch, slot), m);
-        factor_by_rows<Block, width>(as<Jacobian>(batch.jacobian.data(), slot), m, F);
+        factor_by_rows<Block, width>(J, m, F);
       } else {
-        for (int k = 0; k < triangle; ++k) K[k] = factor[k];
+        T K[triangle];
+        Block::effective_mass(J, m, K);
         if constexpr (kernels == Kernels::fast) invert(K, F);
         else Block::factor(K, F);
       }
-      for (int k = 0; k < triangle; ++k) factor[k] = F[k];
+      for (int k = 0; k < triangle; ++k) batch.factor[slot * triangle + k] = F[k];
     }
   }
 
@@ -179,17 +179,26 @@ struct BlockLoops {
     for (int k = 0; k < bodies; ++k) to[body[k]] = v[k];
   }
 
-  // K lambda = -(J v + bias)
-  static void iterate(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, Velocity* of, T* impulses) {
+  // lambda = kept (lambda + K^-1 b), b = -(J v + bias + rate C)
+  static void iterate(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, Velocity* of, T* impulses,
+                      SoftSweep<T> soft) {
     for (int slot = begin; slot < end; ++slot) {
+      const int* body = bodies_of(batch, slot);
+      const Jacobian& J = as<Jacobian>(batch.jacobian.data(), slot);
+      const T *const bias = batch.bias.data() + slot * rows, *const C = batch.C.data() + slot * rows;
+      T* const total = impulses + slot * rows;
       Velocity v[bodies];
-      for (int k = 0; k < bodies; ++k) v[k] = of[bodies_of(batch, slot)[k]];
-      T Jv[rows], b[rows], lambda[rows];
-      Block::velocity(as<Jacobian>(batch.jacobian.data(), slot), v, Jv);
-      for (int r = 0; r < rows; ++r) b[r] = -(Jv[r] + batch.bias[slot * rows + r]);
-      solve(batch, slot, b, lambda);
-      for (int r = 0; r < rows; ++r) impulses[slot * rows + r] += lambda[r];
-      push(batch, slot, all, lambda, of);
+      InverseMass m[bodies];
+      gather(all.effective_mass, body, m);
+      for (int k = 0; k < bodies; ++k) v[k] = of[body[k]];
+      T Jv[rows], b[rows], change[rows];
+      Block::velocity(J, v, Jv);
+      for (int r = 0; r < rows; ++r) b[r] = -(Jv[r] + bias[r] + soft.rate * C[r]);
+      solve(batch, slot, b, change);
+      for (int r = 0; r < rows; ++r) change[r] = soft.kept * change[r] - (T(1) - soft.kept) * total[r];
+      Block::apply(J, m, change, v);
+      for (int k = 0; k < bodies; ++k) of[body[k]] = v[k];
+      for (int r = 0; r < rows; ++r) total[r] += change[r];
     }
   }
 

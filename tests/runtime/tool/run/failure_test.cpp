@@ -101,7 +101,8 @@ TEST(FailedStep, IsRepeatedInPartsIfTheSceneAllows) {
 // run then continues with sweeps.
 TEST(FailedStep, IsTakenByTheDirectSolverWhereSweepsFail) {
   const auto run = [](const std::string& keys, const char* options) {
-    return run_hard_case("stretched_chain/planar.toml", "solver = \"iterative\"\n" + keys, options);
+    return run_hard_case("stretched_chain/planar.toml", "solver = \"iterative\"\ndrift = \"projection\"\n" + keys,
+                         options);
   };
   const char* until = "--integrator euler --until 1 --tolerance 4 --energy-tolerance 10";
   const CommandResult stopped = run("", until), retried = run("on_failure = \"retry\"\n", until);

@@ -1,0 +1,178 @@
+// Euler's step with soft rows (Drift::soft), for sweeps. Before the poses move, each exact row is a damped spring that
+// the step resolves. Afterwards sweeps without C take from the velocities what the springs gave them. (E. Catto,
+// Solver2D, 2024: soft constraints with relaxation.)
+//
+// One sweep leaves impulses that do not belong to the poses. Where they would raise the island's energy, its bodies
+// lose as much of their motion against each other.
+#include <algorithm>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/balance/balance.hpp"
+#include "runtime/motion/momentum.hpp"
+#include "runtime/motion/motion.hpp"
+#include "runtime/solve/projection.hpp"
+#include "runtime/solve/solve.hpp"
+#include "runtime/solve/solver.hpp"
+#include "runtime/step/integrators.hpp"
+
+namespace cdot {
+namespace {
+
+// Of the springs: w h, a third of a turn in the longest of the last steps, and the damping ratio. Above 2.1 the sweeps
+// gain energy (25 x 25 grid).
+constexpr double turn = 2, damping_ratio = 1;
+// Steps that vary keep the stiffness; it follows them within some hundred steps.
+constexpr double fading = 0.995;
+
+// An implicit Euler step of a spring of frequency w and damping ratio zeta on one row, a = w h (2 zeta + w h):
+//   rate = w / (2 zeta + w h),   kept = a / (1 + a)
+template <class T>
+SoftSweep<T> soft_sweep(T h, double longest) {
+  const double wh = turn * double(h) / longest, divisor = 2 * damping_ratio + wh, a = wh * divisor;
+  return {T(wh / divisor) / h, T(a / (1 + a))};
+}
+
+// Limits, ropes and locks, where they are beyond their ends: spring_row() of the same spring. Motors stay rigid.
+template <class S>
+void fill_laws(WorldData<S>& world, Island<S>& island, typename S::Scalar h, SoftSweep<typename S::Scalar> soft) {
+  using T = typename S::Scalar;
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    if (!batch.law) continue;
+    batch.law->fill(batch, segment.begin, segment.end, h, world.settings);
+    if (!batch.law->error) continue;
+    const int rows = batch.ops->rows;
+    T error[most_rows];
+    for (int slot = segment.begin; slot < segment.end; ++slot) {
+      batch.law->error(batch, slot, error);
+      for (int r = 0; r < rows; ++r) {
+        const int i = slot * rows + r;
+        const bool one_sided = batch.lower[i] == T(0) || batch.upper[i] == T(0), rigid = one_sided && error[r] == T(0);
+        const T K = batch.factor[slot * batch.triangle() + r * (r + 1) / 2 + r];
+        batch.softness[i] = rigid ? T(0) : K * (T(1) - soft.kept) / soft.kept;
+        batch.bias[i] += soft.rate * error[r];
+      }
+    }
+  }
+}
+
+// The relaxation of the last step has evaluated the rows, but changed dC/dt in the bias of laws.
+template <class S>
+void restore_rates(WorldData<S>& world, Island<S>& island) {
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    if (island.evaluated && !batch.law) continue;
+    const int begin = segment.begin * batch.ops->rows, end = segment.end * batch.ops->rows;
+    if (!island.evaluated || batch.ops->explicit_time)
+      batch.ops->evaluate(batch, segment.begin, segment.end, world.bodies, island.evaluated_at);
+    else std::fill(batch.bias.begin() + begin, batch.bias.begin() + end, typename S::Scalar(0));
+  }
+}
+
+template <class S>
+void evaluate(WorldData<S>& world, Island<S>& island, typename S::Scalar h, SoftSweep<typename S::Scalar> soft) {
+  if (!island.evaluated) island.evaluated_at = typename S::Scalar(world.time);
+  restore_rates(world, island);
+  if (!island.factored) factorize_rows(world, island);
+  fill_laws(world, island, h, soft);
+}
+
+// Kinetic energy, and the power of constant forces.
+struct Moving {
+  double energy = 0, power = 0;
+};
+template <class S>
+Moving moving(const WorldData<S>& world, const Island<S>& island) {
+  const Bodies<S>& all = world.bodies;
+  Moving sum;
+  for (int i : island.bodies) {
+    const auto momentum = S::force(all.inverse_mass[i], all.velocity[i]);
+    sum.energy += 0.5 * S::dot(momentum, all.velocity[i]);
+    // In space the work of torques is booked.
+    sum.power += S::dot(momentum, S::has_gyroscopes ? S::damped(all.acceleration[i], 1, 0) : all.acceleration[i]);
+  }
+  return sum;
+}
+
+// The energy of springs, less what was put in and plus what was taken.
+template <class S>
+double stored(const WorldData<S>& world, const Island<S>& island) {
+  double energy = world.accounts.taken - world.accounts.put_in;
+  for (const Segment<S>& segment : island.segments)
+    for (int slot = segment.begin; segment.batch->law && segment.batch->law->energy && slot < segment.end; ++slot)
+      energy += segment.batch->law->energy(*segment.batch, slot);
+  return energy;
+}
+
+// Impulses of the relaxation alone, into Batch::correction: `sign` -1 before it, 1 after it, 0 to end.
+template <class S>
+void part_impulses(const Island<S>& island, int sign) {
+  if (!island.works) return;
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    for (int i = begin * batch->ops->rows; i < end * batch->ops->rows; ++i)
+      batch->correction[i] = sign == 0 ? 0 : sign > 0 ? batch->lambda[i] - batch->correction[i] : batch->lambda[i];
+}
+
+template <class S>
+void relax(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  part_impulses(island, -1);
+  begin_kick(world, island);
+  for (const auto& [batch, begin, end, whole] : island.segments) {
+    if (!batch->law || batch->law->force) continue;
+    batch->law->fill(*batch, begin, end, h, world.settings);
+    std::fill(batch->softness.begin() + begin * batch->ops->rows, batch->softness.begin() + end * batch->ops->rows,
+              typename S::Scalar(0));
+  }
+  island.solver->relax(world, island);
+  part_impulses(island, 1);
+  book_kick(world, island, Impulses::relaxed, h);
+  part_impulses(island, 0);
+}
+
+// Books the energy that the joints gave to the island, or took, and takes out a gain since the start of the run. For a
+// constant force F, symplectic Euler keeps H + h/2 F v, not H. A gain that lies in the poses alone stays.
+template <class S>
+void take_gain(WorldData<S>& world, Island<S>& island, const Moving& start, const Moving& middle, double h,
+               double last_step, double stored) {
+  const auto kept = [](const Moving& at, double step) { return at.energy + 0.5 * step * at.power; };
+  const Moving end = moving(world, island);
+  const double before = kept(start, last_step > 0 ? last_step : h);
+  island.gained += kept(end, h) - before - h * middle.power + stored;
+  if (!(island.gained > 0)) return;
+  calm(world, island, island.gained);
+  const Moving calmed = moving(world, island);
+  const bool at_rest = end.energy - calmed.energy < 0.999 * island.gained;
+  island.gained = at_rest ? 0.0 : double(island.gained) + kept(calmed, h) - kept(end, h);
+}
+
+}  // namespace
+
+template <class S>
+void step_soft(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
+  using T = typename S::Scalar;
+  island.flow.longest = std::max(h, T(fading) * island.flow.longest);
+  const SoftSweep<T> rows = soft_sweep(h, double(island.flow.longest));
+  evaluate(world, island, h, rows);
+  begin_kick(world, island);
+  const Moving start = moving(world, island);
+  const double stored_at_start = stored(world, island);
+  apply_forces(world, island, h);
+  island.solver->soften(world, island, rows, last_step > 0 ? h / T(last_step) : T(0));
+  book_kick(world, island, Impulses::soft, h);
+  const Moving middle = moving(world, island);
+  integrate(world, island, h);
+  evaluate_anew(world, island, T(world.time) + h);
+  factorize_rows(world, island);
+  relax(world, island, h);
+  book_stiffness(world, island);
+  take_gain(world, island, start, middle, double(h), last_step, stored(world, island) - stored_at_start);
+  island.evaluated = true;
+  island.factored = !island.solver->exact;
+}
+
+#define CDOT_INSTANTIATE(S) template void step_soft(WorldData<S>&, Island<S>&, S::Scalar, double);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot
