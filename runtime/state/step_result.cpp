@@ -10,6 +10,8 @@ const char* what_went_wrong(StepProblem problem) {
     case StepProblem::not_finite: return "a pose or velocity became infinite or NaN";
     case StepProblem::joints_apart: return "Newton did not converge: the joints drifted apart in this step";
     case StepProblem::moved_far: return "the joints nearly contradict each other";
+    case StepProblem::too_large:
+      return "it has more than 200 bodies (in space 100) that move together, too many for radau5";
     case StepProblem::bad_step:
     case StepProblem::none: break;
   }
@@ -27,6 +29,7 @@ std::string likely_fix(StepProblem problem, OnFailure tried) {
     case StepProblem::moved_far:
       return "correct the anchors, lengths or angles of the joints of this loop, or remove one; a shorter step" +
              or_retry;
+    case StepProblem::too_large: return "integrator implicit, or dop853 with local_error";
     case StepProblem::bad_step: return "a finite step above 0 s";
     case StepProblem::none: break;
   }
@@ -38,6 +41,7 @@ const char* name_of(StepProblem problem) {
     case StepProblem::not_finite: return "not_finite";
     case StepProblem::joints_apart: return "joints_apart";
     case StepProblem::moved_far: return "moved_far";
+    case StepProblem::too_large: return "too_large";
     case StepProblem::bad_step: return "bad_step";
     case StepProblem::none: break;
   }

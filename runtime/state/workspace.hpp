@@ -8,8 +8,25 @@
 
 #include "runtime/direct/system.hpp"
 #include "runtime/number/broyden.hpp"
+#include "runtime/number/lu.hpp"
 
 namespace cdot {
+
+// Of an implicit Runge-Kutta method (step/collocation.hpp). m: velocity components of the island's bodies.
+template <class T>
+struct CollocationWorkspace {
+  std::vector<double> by_pose, by_velocity;  // d(dv/dt) by displacements and by velocities at the start, m x m by rows
+  std::vector<double> turns;                 // d(pose numbers)/dt of a unit velocity, by body and component
+  bool differentiated = false;               // these belong to Flow::start
+  Lu<double> real;
+  Lu<Complex> complex;
+  std::vector<double> real_side, real_turned;  // right-hand sides, by numbers and by velocity components
+  std::vector<Complex> complex_side, complex_turned;
+  std::vector<T> increments, changes;  // of the numbers at the stages, [stage][...]
+  std::vector<T> slopes;               // of the last step, [power][...]; for the first guess of the increments
+  bool foresees = false;               // slopes is set
+  std::vector<T> error;                // estimated, of the numbers at the end
+};
 
 template <class S>
 struct FlowWorkspace {
@@ -28,6 +45,7 @@ struct FlowWorkspace {
   std::vector<double> pivots, of_row;
   T start_residual = 0;        // largest C at the start of the step
   std::vector<T> start_turns;  // counters of whole turns there
+  CollocationWorkspace<T> collocation;
 };
 
 template <class S>

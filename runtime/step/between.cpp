@@ -54,12 +54,14 @@ void interpolate(Flow<S>& flow, const RungeKuttaOf<S>& method) {
   const size_t n = flow.now.size();
   const T h = flow.length, theta = T(1) - flow.ahead / h;
   const T *first = flow.rates.data(), *last = first + static_cast<size_t>(method.stages) * n;
+  const T* terms = flow.further_terms.data();
   for (size_t k = 0; k < n; ++k) {
-    const T d = flow.end[k] - flow.start[k], r = h * first[k] - d;
+    const T d = flow.end[k] - flow.start[k], r = (method.implicit ? terms[k] : h * first[k]) - d;
+    const T s = d - (method.implicit ? terms[n + k] : h * last[k]) - r;
     T sum = 0;
-    for (int i = method.further_terms - 1; i >= 0; --i)
-      sum = (i % 2 == 0 ? T(1) - theta : theta) * (flow.further_terms[static_cast<size_t>(i) * n + k] + sum);
-    sum = theta * (d - h * last[k] - r + sum);
+    for (int i = method.implicit ? -1 : method.further_terms - 1; i >= 0; --i)
+      sum = (i % 2 == 0 ? T(1) - theta : theta) * (terms[static_cast<size_t>(i) * n + k] + sum);
+    sum = theta * (s + sum);
     flow.now[k] = flow.start[k] + theta * (d + (T(1) - theta) * (r + sum));
   }
 }

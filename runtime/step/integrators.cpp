@@ -5,6 +5,7 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/solve/solver.hpp"
+#include "runtime/step/radau_tables.hpp"
 #include "runtime/step/runge_kutta.hpp"
 
 namespace cdot {
@@ -56,6 +57,7 @@ constexpr std::array<Stepper<S>, integrator_rows.size()> steppers{{
     {Integrator::rattle, step_rattle<S>, prepare_rattle<S>, true},
     {Integrator::rk4, runge_kutta<S, rk4<Real>>, prepare<S, rk4<Real>>, false},
     {Integrator::dop853, runge_kutta<S, dop853<Real>>, prepare<S, dop853<Real>>, false},
+    {Integrator::radau5, runge_kutta<S, radau5<Real>>, prepare<S, radau5<Real>>, false},
 }};
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
+#include "runtime/step/collocation.hpp"
 #include "runtime/step/events.hpp"
 #include "runtime/step/rank_loss.hpp"
 
@@ -73,9 +74,20 @@ double largest_error(const Flow<S>& flow, const RungeKuttaOf<S>& method, int est
   return worst;
 }
 
+template <class S, class F>
+double largest_error_of_collocation(const Flow<S>& flow, F unit) {
+  double worst = 0;
+  for (size_t k = 0; k < flow.now.size() - flow.work.size(); ++k) {
+    const double error = std::abs(double(flow.collocation.error[k])) / unit(k);
+    if (!(error <= worst)) worst = error;
+  }
+  return worst;
+}
+
 // Combines both estimates.
 template <class S, class F>
 double estimated_error(const Flow<S>& flow, const RungeKuttaOf<S>& method, typename S::Scalar h, F unit) {
+  if (method.implicit) return largest_error_of_collocation(flow, unit);
   const double first = largest_error(flow, method, 0, h, unit), second = largest_error(flow, method, 1, h, unit);
   if (second == 0) return first;
   return first * first / std::sqrt(first * first + 0.01 * second * second);
@@ -104,12 +116,9 @@ void set_numbers(WorldData<S>& world, Island<S>& island, const typename S::Scala
 }
 
 template <class S>
-void take_stage(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
-                typename S::Scalar time, typename S::Scalar h) {
-  using T = typename S::Scalar;
-  combine(island.flow, method.a[stage], stage, h);
+void evaluate_stage(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
+                    typename S::Scalar at) {
   set_numbers(world, island, island.flow.now.data());
-  const T at = time + T(method.c[stage]) * h;
   if (island.flow.projects_stages) {
     project(world, island, at, true);
   } else {
@@ -122,11 +131,20 @@ void take_stage(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
 }
 
 template <class S>
-void take_stages(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+void take_stage(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
+                typename S::Scalar time, typename S::Scalar h) {
+  combine(island.flow, method.a[stage], stage, h);
+  evaluate_stage(world, island, method, stage, time + typename S::Scalar(method.c[stage]) * h);
+}
+
+template <class S>
+bool take_stages(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                  typename S::Scalar h) {
+  if (method.implicit) return collocate(world, island, method, time, h);
   for (int stage = 1; stage < method.stages; ++stage) take_stage(world, island, method, stage, time, h);
   combine(island.flow, method.a[method.stages], method.stages, h);
   set_numbers(world, island, island.flow.now.data());
+  return true;
 }
 
 template <class S>
@@ -197,6 +215,7 @@ void prepare_runge_kutta(Island<S>& island, const RungeKuttaOf<S>& method) {
   size_t counters = 0;
   each_counters(island, [&](const auto*, int size) { counters += static_cast<size_t>(size); });
   flow.start_turns.assign(counters, 0);
+  if (method.implicit) prepare_collocation(island);
   count_guarded_rows(island);
   prepare_rank_loss(island, method);
 }
@@ -214,6 +233,7 @@ void keep_start(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
   } else {
     read_rates(world, island, 0, time);
   }
+  if (method.implicit) begin_collocation(island, goes_on);
   flow.start_residual = island.residual;
   auto* to = flow.start_turns.data();
   each_counters(island, [&](const auto* counters, int size) { to = std::copy_n(counters, size, to); });
@@ -233,12 +253,13 @@ void go_back(WorldData<S>& world, Island<S>& island) {
 #define CDOT_INSTANTIATE(S)                                                                               \
   template void read_numbers(const WorldData<S>&, const Island<S>&, S::Scalar*);                          \
   template void set_numbers(WorldData<S>&, Island<S>&, const S::Scalar*);                                 \
+  template void evaluate_stage(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, int, S::Scalar);        \
   template void take_stage(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, int, S::Scalar, S::Scalar); \
   template void project(WorldData<S>&, Island<S>&, S::Scalar, bool);                                      \
   template void prepare_runge_kutta(Island<S>&, const RungeKuttaOf<S>&);                                  \
   template void keep_start(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, bool);           \
   template void go_back(WorldData<S>&, Island<S>&);                                                       \
-  template void take_stages(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);     \
+  template bool take_stages(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);     \
   template void project_end(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                \
   template double error_of_step(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar, double);             \
   template double share_of_size(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar);

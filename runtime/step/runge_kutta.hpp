@@ -35,14 +35,20 @@ void read_numbers(const WorldData<S>& world, const Island<S>& island, typename S
 template <class S>
 void set_numbers(WorldData<S>& world, Island<S>& island, const typename S::Scalar* from);
 
-// The k of a stage at start + h sum_j a_stage,j k_j.
+// The k of a stage at Flow::now and time `at`.
+template <class S>
+void evaluate_stage(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
+                    typename S::Scalar at);
+
+// The same of an explicit method, at start + h sum_j a_stage,j k_j.
 template <class S>
 void take_stage(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
                 typename S::Scalar time, typename S::Scalar h);
 
-// The stages of a step of h that starts at `time`; leaves its end in the bodies, not yet projected.
+// The stages of a step of h that starts at `time`; leaves its end in the bodies, not yet projected. False if there is
+// no end: the equations of an implicit method could not be solved.
 template <class S>
-void take_stages(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+bool take_stages(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                  typename S::Scalar h);
 
 // Projects the present state onto the constraints and computes its accelerations. `fresh`: J is not yet that of the

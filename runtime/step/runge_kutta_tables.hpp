@@ -1,4 +1,4 @@
-// The coefficients of the explicit Runge-Kutta methods, as published: E. Hairer, S. P. Norsett, G. Wanner, "Solving
+// The coefficients of explicit Runge-Kutta methods, as published: E. Hairer, S. P. Norsett, G. Wanner, "Solving
 // Ordinary Differential Equations I", 2nd edition, 1993 (RK4: II.1; Dormand-Prince 8(5,3): II.5 and II.6).
 #pragma once
 
@@ -18,6 +18,7 @@ struct RungeKutta {
   // method. Two estimates are combined as |first|^2 / sqrt(|first|^2 + 0.01 |second|^2).
   double error[2][most_stages];
   bool error_at_end;  // an estimate needs the k of the end
+  int error_order;    // power of h by which the estimate falls
   // Between the ends, at t + theta h, with d = y(t + h) - y(t), r = h (k_start) - d, s = d - h k_end - r:
   //   y(t) + theta (d + (1 - theta) (r + theta (s + (1 - theta) (f_0 + theta (f_1 + ...)))))
   // where the first terms are Hermite's cubic and f_i = h sum_j between_ij k_j. The further stages are the rows of a
@@ -25,6 +26,9 @@ struct RungeKutta {
   int further_stages;
   int further_terms;
   Real between[4][most_stages];
+  // Implicit (radau_tables.hpp): all k but the first are solved for together. The two terms are the slopes at the ends
+  // of a cubic, h sum_j between_ij k_j.
+  bool implicit = false;
 };
 
 // clang-format off
@@ -33,7 +37,7 @@ inline constexpr RungeKutta<Real> rk4 = {
     4, 4, {0, 0.5L, 0.5L, 1, 1},
     {{}, {0.5L}, {0, 0.5L}, {0, 0, 1}, {1.0L / 6, 1.0L / 3, 1.0L / 3, 1.0L / 6}},
     // Difference from the third-order weights 1/6, 1/3, 1/3, 1/15, 1/10.
-    {{0, 0, 0, 0.1, -0.1}, {}}, true, 0, 0, {}};
+    {{0, 0, 0, 0.1, -0.1}, {}}, true, 4, 0, 0, {}};
 // clang-format on
 
 template <class Real>
@@ -88,6 +92,7 @@ inline constexpr RungeKutta<Real> dop853 = {
       3.1116436695781989440891606237e-1 - 0.733846688281611857341361741547, -1.52160949662516078556178806805e-1,
       2.01365400804030348374776537501e-1, 4.47106157277725905176885569043e-2 - 0.0220588235294117647058823529412}},
     false,
+    8,
     3,
     4,
     {{-0.84289382761090128651353491142e1L, 0, 0, 0, 0, 0.56671495351937776962531783590L,

@@ -9,6 +9,7 @@
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/step/between.hpp"
+#include "runtime/step/collocation.hpp"
 #include "runtime/step/events.hpp"
 #include "runtime/step/integrators.hpp"
 #include "runtime/step/rank_loss.hpp"
@@ -63,7 +64,18 @@ double first_event(const Flow<S>& flow) {
   return first;
 }
 
-// Goes to the first event of a step of h that passed one. Returns the time from the step's start to the event.
+// Takes a step of h and projects its end.
+template <class S>
+bool go_to(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+           typename S::Scalar h) {
+  go_back(world, island);
+  if (!take_stages(world, island, method, time, h)) return false;
+  project_end(world, island, method, time + h);
+  return true;
+}
+
+// Goes to the first event of a step of h that passed one. Returns the time from the step's start to the event; 0 if an
+// implicit method found no end.
 template <class S>
 typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                typename S::Scalar time, typename S::Scalar h) {
@@ -76,9 +88,7 @@ typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const Run
     const double share = search % 3 == 2 ? 0.5 : std::clamp(first_event(flow), 0.001, 0.999);
     const T at = low + T(share) * (high - low);
     if (!(at > low && at < high)) break;
-    go_back(world, island);
-    take_stages(world, island, method, time, at);
-    project_end(world, island, method, time + at);
+    if (!go_to(world, island, method, time, at)) return T(0);
     const double margin = furthest(flow.margins_chosen, flow.margins);
     if (margin < passed) {
       high = at;
@@ -89,10 +99,7 @@ typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const Run
       flow.low.assign(flow.margins.begin(), flow.margins.end());
     }
   }
-  go_back(world, island);
-  take_stages(world, island, method, time, high);
-  project_end(world, island, method, time + high);
-  return high;
+  return go_to(world, island, method, time, high) ? high : T(0);
 }
 
 // The length of the next step: near `best`, with `left` to the end of step(h), at most `reach`. A step that ends at
@@ -120,8 +127,12 @@ bool went_astray(const WorldData<S>& world, const Island<S>& island, typename S:
 template <class S, class F>
 double try_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                 typename S::Scalar h, F error_now) {
-  take_stages(world, island, method, time, h);
+  if (!take_stages(world, island, method, time, h)) return std::numeric_limits<double>::quiet_NaN();
   double error = method.error_at_end ? 0 : error_now();
+  if (method.implicit && error > 1) {
+    refine_error(world, island, method, time, h);
+    error = error_now();
+  }
   if (!(error <= 1)) return error;
   project_end(world, island, method, time + h);
   if (method.error_at_end) error = error_now();
@@ -190,7 +201,7 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
       return error_of_step(island, method, h, std::max(world.settings.local_error, noise));
     });
     // 0.9 of the longest allowed step; a NaN counts as the largest error.
-    const double factor = std::clamp(0.9 * std::pow(error, -1.0 / method.order), 0.2, 5.0);
+    const double factor = std::clamp(0.9 * std::pow(error, -1.0 / method.error_order), 0.2, 5.0);
     flow.next_step = h * T(error <= 1e300 ? factor : 0.2);
     if (tries_with_care(world, island, method, reach, h, noise)) {
       --attempt;  // its length says nothing about the error
@@ -297,6 +308,11 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
       flow.length = go_to_event(world, island, method, time, flow.length);
       ++world.counts->events;
       ++events;
+      if (!(flow.length > T(0))) {
+        go_back(world, island);
+        fall_back_to_euler(world, island, time, left);
+        return h;
+      }
       flow.known = false;
     }
     count_step<S>(world.counts, flow.length);
@@ -311,6 +327,10 @@ template <class S>
 void step_runge_kutta(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
+  if (method.implicit && !fits_collocation(island)) {
+    island.trouble = StepProblem::too_large;
+    return;
+  }
   if (world.last_step > 0) scale_forces(island, T(1 / world.last_step));
   clear_correction(world, island);
   flow.projects_stages = false;  // of the last call

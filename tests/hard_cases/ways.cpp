@@ -10,8 +10,9 @@ namespace {
 
 Ways of_solver(Solver solver) {
   Ways ways;
-  for (const auto& row : integrators)
-    for (const bool single : {false, true}) ways.push_back({solver, row.method, single});
+  for (const IntegratorRow& row : integrator_rows)
+    for (const bool single : {false, true})
+      if (row.any_solver || !sweeps(solver)) ways.push_back({solver, row.integrator, single});
   return ways;
 }
 
@@ -40,8 +41,9 @@ std::string integrators_text(const Ways& ways, Solver solver) {
     const char* precision = exact && single ? "" : exact ? " (double)" : " (float)";
     text += fmt::format("{}{}{}", text.empty() ? "" : ", ", row.name, precision);
   }
-  if (doubles == integrators.size()) return "all (double)";
-  return whole == integrators.size() ? "all" : text;
+  const std::size_t all = of_solver(solver).size() / 2;
+  if (doubles == all) return "all (double)";
+  return whole == all ? "all" : text;
 }
 
 }  // namespace

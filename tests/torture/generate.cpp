@@ -71,7 +71,7 @@ void Growth::choose_method() {
   Scene& scene = made_.scene;
   Settings& s = scene.settings;
   s.solver = random_.chance(0.7) ? Solver::direct : Solver::iterative;
-  s.integrator = integrators[static_cast<std::size_t>(random_.below(5))].method;
+  s.integrator = integrators[static_cast<std::size_t>(random_.below(static_cast<int>(integrators.size())))].method;
   scene.single = random_.chance(0.4);
   s.solver = wish_.solver.value_or(s.solver);
   s.integrator = wish_.integrator.value_or(s.integrator);
@@ -86,6 +86,7 @@ void Growth::choose_method() {
     s.local_error = random_.log_between(1e-8, 1e-4) * scales_.length;
   if (random_.chance(0.2)) scene.on_failure = OnFailure::retry;
   if (mistake_in_methods(s)) s.drift = Drift::projection;
+  if (mistake_in_methods(s)) s.solver = Solver::direct;
   scene.step = random_.log_between(0.002, 0.1) / scales_.rate;
   scene.duration = wish_.steps * scene.step;
   if (random_.chance(anchored_ ? 0.8 : 0.2)) {

@@ -4,11 +4,12 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <string_view>
 
 namespace cdot {
 
-enum class Integrator { euler, implicit, rattle, rk4, dop853 };
+enum class Integrator { euler, implicit, rattle, rk4, dop853, radau5 };
 
 enum class Level {
   velocity,     // impulses keep J v = -dC/dt
@@ -24,25 +25,29 @@ struct IntegratorRow {
   bool projects;          // drift = projection is a part of the method
   bool forces_springs;    // springs on coordinates act as forces; otherwise they are rows of the solver
   bool symmetric;         // a step of -h undoes a step of h
+  bool any_solver;        // otherwise the direct one only
   double stable_radians;  // largest h omega at which an oscillation stays bounded
 };
 
+inline constexpr double always = std::numeric_limits<double>::infinity();
 // stable: symplectic Euler and RATTLE are stable up to 2 exactly. The Runge-Kutta methods are stable up to the point
-// where their stability regions cut the imaginary axis.
+// where their stability regions cut the imaginary axis. Radau IIA is stable at every h omega.
 // clang-format off
 inline constexpr std::array integrator_rows{
-    //                                          order, level,                stiffens, projects, springs, symmetric, stable
+    //                                          order, level,                stiffens, projects, springs, symmetric, solver
     // Symplectic Euler: cheap.
-    IntegratorRow{Integrator::euler,    "euler",    1, Level::velocity,     false,    false,    false,   false,     2},
+    IntegratorRow{Integrator::euler,    "euler",    1, Level::velocity,     false,    false,    false,   false,     true, 2},
     // The implicit midpoint rule: light chains under heavy loads and stiff springs stay stable, energy and momentum are
     // kept. With sweeps, or without the projection, linearly implicit Euler.
-    IntegratorRow{Integrator::implicit, "implicit", 2, Level::velocity,     true,     false,    false,   false,     2},
+    IntegratorRow{Integrator::implicit, "implicit", 2, Level::velocity,     true,     false,    false,   false,     true, 2},
     // RATTLE keeps C and Cdot to round-off.
-    IntegratorRow{Integrator::rattle,   "rattle",   2, Level::velocity,     false,    true,     true,    true,      2},
+    IntegratorRow{Integrator::rattle,   "rattle",   2, Level::velocity,     false,    true,     true,    true,      true, 2},
     // Runge-Kutta on accelerations; poses and velocities are projected after each step.
-    IntegratorRow{Integrator::rk4,      "rk4",      4, Level::acceleration, false,    false,    true,    false,     2.828},
+    IntegratorRow{Integrator::rk4,      "rk4",      4, Level::acceleration, false,    false,    true,    false,     true, 2.828},
     // Dormand-Prince, likewise.
-    IntegratorRow{Integrator::dop853,   "dop853",   8, Level::acceleration, false,    false,    true,    false,     5},
+    IntegratorRow{Integrator::dop853,   "dop853",   8, Level::acceleration, false,    false,    true,    false,     true, 5},
+    // Radau IIA, likewise; implicit: stiff springs, dampers and tensions do not shorten its steps.
+    IntegratorRow{Integrator::radau5,   "radau5",   5, Level::acceleration, false,    false,    true,    false,     false, always},
 };
 // clang-format on
 

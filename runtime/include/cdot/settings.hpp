@@ -53,7 +53,7 @@ enum class Kernels {
 struct Settings {
   Solver solver = Solver::direct;
   Integrator integrator = Integrator::euler;
-  // For rk4 and dop853. 0: step(h) takes steps of h / substeps. Above 0: the method chooses its steps, each with an
+  // For rk4, dop853 and radau5. 0: step(h) takes steps of h / substeps. Above 0: the method chooses its steps, each with an
   // estimated error below this, in [m], [rad], [m/s] and [rad/s].
   double local_error = 0;
   Drift drift = Drift::projection;
@@ -77,7 +77,7 @@ constexpr bool takes_midpoint(const Settings& s) {
 // Why these methods exclude each other; nullptr if they do not.
 constexpr const char* mistake_in_methods(const Settings& s) {
   const bool accelerations = works_on_accelerations(s.integrator);
-  if (s.local_error > 0 && !accelerations) return "local_error chooses the steps of rk4 and dop853 only";
+  if (s.local_error > 0 && !accelerations) return "local_error chooses the steps of rk4, dop853 and radau5 only";
   if (s.local_error > 0 && s.local_error < 1e-20)
     return "no step has an error below round-off: local_error must be at least 1e-20";
   if (row_of(s.integrator).projects && s.drift != Drift::projection)
@@ -88,7 +88,9 @@ constexpr const char* mistake_in_methods(const Settings& s) {
     return "soft corrects Euler's steps only: other integrators need drift = projection";
   if (!accelerations) return nullptr;
   if (s.drift == Drift::baumgarte)
-    return "baumgarte corrects velocities of Euler's steps only: rk4 and dop853 need drift = projection";
+    return "baumgarte corrects velocities of Euler's steps only: rk4, dop853 and radau5 need drift = projection";
+  if (!row_of(s.integrator).any_solver && sweeps(s.solver))
+    return "radau5 differentiates the accelerations, for which sweeps are too inexact: it needs solver = direct";
   if (s.drift == Drift::none && sweeps(s.solver))
     return "only drift = projection removes the error that the iterative solver leaves in accelerations";
   return nullptr;

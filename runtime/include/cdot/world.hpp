@@ -168,7 +168,7 @@ class BasicWorld {
   int redundant_rows() const;
   // The weakest row of that factorisation.
   WeakestRow weakest_row() const;
-  // Counts of rk4 and dop853 since the World was made.
+  // Counts of rk4, dop853 and radau5 since the World was made.
   const StepCounts& step_counts() const;
   int island_count() const;
   int sleeping_islands() const;

@@ -52,7 +52,8 @@ const std::vector<Way>& all_ways() {
     std::vector<Way> ways;
     for (const IntegratorRow& row : integrator_rows)
       for (const auto& [suits, solver, drift, iterations, single, adaptive] : way_rows)
-        if (suits(row)) ways.push_back({row.integrator, solver, drift, iterations, single, adaptive});
+        if (suits(row) && (row.any_solver || !sweeps(solver)))
+          ways.push_back({row.integrator, solver, drift, iterations, single, adaptive});
     return ways;
   }();
   return ways;

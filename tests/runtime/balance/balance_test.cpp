@@ -32,6 +32,7 @@ std::vector<Method> methods() {
   std::vector<Method> all;
   for (const IntegratorRow& row : integrator_rows)
     for (Solver solver : {Solver::direct, Solver::iterative}) {
+      if (!row.any_solver && sweeps(solver)) continue;
       all.push_back({row.integrator, solver});
       if (row.level == Level::acceleration) all.push_back({row.integrator, solver, 1e-8});
     }

@@ -47,6 +47,7 @@ long allocations_of_a_run(Solver solver, Drift drift, Integrator integrator) {
 // True if a World accepts this combination; setup_test.cpp tests the refused ones.
 bool runs(Solver solver, Drift drift, Integrator integrator) {
   if (integrator == Integrator::rattle) return drift == Drift::projection;
+  if (!row_of(integrator).any_solver && sweeps(solver)) return false;
   if (!works_on_accelerations(integrator)) return true;
   return drift == Drift::projection || (drift == Drift::none && solver == Solver::direct);
 }

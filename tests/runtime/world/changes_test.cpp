@@ -196,7 +196,7 @@ TEST(Changes, ToTheSameForcesDoNothing) {
       set_friction(pushed, 2, 1, {0.1});
       set_spring(pushed, 3, 1, {.softness = {.by_frequency = false, .stiffness = 20, .damping = 1}, .rest = 0.2});
     }
-    const bool accelerations = s.integrator == Integrator::rk4 || s.integrator == Integrator::dop853;
+    const bool accelerations = works_on_accelerations(s.integrator);
     EXPECT_LE(apart(alone, pushed), s.local_error > 0 ? 2e-3 : accelerations ? 1e-6 : 0) << name;
   });
   std::printf("%d methods\n", methods);

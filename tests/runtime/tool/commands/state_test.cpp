@@ -28,7 +28,8 @@ TEST(State, ARunInTwoPartsWritesTheSameRows) {
   for (const char* name : {"four_bar", "machine", "spatial/gyroscope", "pulley_ratio2"}) {
     for (const char* method :
          {"", " --solver iterative", " --integrator rk4", " --integrator dop853 --local-error 1e-7",
-          " --integrator dop853 --local-error 1e-7 --every 0.05"}) {
+          " --integrator dop853 --local-error 1e-7 --every 0.05", " --integrator radau5",
+          " --integrator radau5 --local-error 1e-6 --every 0.05"}) {
       const auto whole = folder / "whole.csv", rest = folder / "rest.csv", state = folder / "at.state";
       const std::string run = "simulate " + scene(name) + method + " --until 0.6 --tolerance 1";
       const CommandResult first = cdot_run(run + " -o " + quoted(whole) + " --at 0.25 --save-state " + quoted(state));

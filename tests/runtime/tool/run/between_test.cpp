@@ -120,8 +120,8 @@ TEST_P(Between, ATumblingBodyKeepsItsMomentum) {
   EXPECT_LT(longest_way, 0.1);  // no jumps from state to state
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Between, testing::Values(Integrator::rk4, Integrator::dop853),
-                         [](const auto& info) { return info.param == Integrator::rk4 ? "rk4" : "dop853"; });
+INSTANTIATE_TEST_SUITE_P(Methods, Between, testing::Values(Integrator::rk4, Integrator::dop853, Integrator::radau5),
+                         [](const auto& info) { return std::string(row_of(info.param).name); });
 
 }  // namespace
 }  // namespace cdot::test::between_test

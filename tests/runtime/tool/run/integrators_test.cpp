@@ -16,10 +16,10 @@ namespace {
 struct Problem {
   const char* scene;
   double until;  // [s]
-  // The coarsest steps for methods of second, fourth and eighth order [s]; 0: no step shows the order.
+  // The coarsest steps for methods of second, fourth or fifth, and eighth order [s]; 0: no step shows the order.
   double coarse2 = 0, coarse4 = 0, coarse8 = 0;
 
-  double coarsest(int order) const { return order == 2 ? coarse2 : order == 4 ? coarse4 : coarse8; }
+  double coarsest(int order) const { return order == 2 ? coarse2 : order <= 5 ? coarse4 : coarse8; }
 };
 
 struct Case {
@@ -191,7 +191,7 @@ TEST(HeavyLoad, OnBeadsConverges) { converges(true); }
 // A rope of 1 m between a body and the ground above it, slack at first. The rope becomes taut at a known time and stops
 // the fall. Fixed and adaptive steps find that time.
 TEST(Events, ARopeGoesTautInTime) {
-  for (const Integrator integrator : {Integrator::rk4, Integrator::dop853}) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::dop853, Integrator::radau5}) {
     World<double> world({.integrator = integrator, .gravity_y = -9.81});
     const int ball = world.add_body({.y = -0.5, .mass = 2, .inertia = 0.1});
     world.add_joint({"max_distance", {world.ground(), ball}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {1.0}}}, {}});
@@ -208,7 +208,7 @@ TEST(Events, ARopeGoesTautInTime) {
 // A motor of bounded force pushes a block on a slide: constant acceleration up to the motor's speed, then constant
 // speed. The position has a closed form.
 TEST(Events, AMotorReachesItsSpeed) {
-  for (const Integrator integrator : {Integrator::rk4, Integrator::dop853}) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::dop853, Integrator::radau5}) {
     World<double> world({.integrator = integrator});
     const int block = world.add_body({.mass = 2, .inertia = 0.1});
     const int slide = world.add_joint({"prismatic", {block, world.ground()}, {{"pa", {0, 0}}, {"t", {0, 1}}}, {}});

@@ -11,7 +11,7 @@
 namespace cdot::test::rescue_test {
 namespace {
 
-constexpr Integrator methods[] = {Integrator::rk4, Integrator::dop853};
+constexpr Integrator methods[] = {Integrator::rk4, Integrator::dop853, Integrator::radau5};
 
 class Rescue : public testing::TestWithParam<std::tuple<Integrator, double>> {};
 
@@ -141,7 +141,7 @@ TEST(RescueOfASpatialChain, TakesPartsOfTheStepFirst) {
 }
 
 std::string name_of(Integrator integrator, double local_error) {
-  return std::string(integrator == Integrator::rk4 ? "rk4" : "dop853") + (local_error == 0 ? "_fixed" : "_adaptive");
+  return std::string(row_of(integrator).name) + (local_error == 0 ? "_fixed" : "_adaptive");
 }
 
 constexpr double local_errors[] = {0, 1e-6};

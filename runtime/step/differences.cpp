@@ -1,0 +1,126 @@
+// The derivatives of an island's accelerations by its poses and velocities, from differences.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/solve/projection.hpp"
+#include "runtime/solve/solve.hpp"
+#include "runtime/step/collocation.hpp"
+
+namespace cdot {
+namespace {
+
+template <class S>
+typename S::Velocity along(int component, typename S::Scalar by) {
+  typename S::Scalar numbers[S::freedom] = {};
+  numbers[component] = by;
+  return S::read_velocity(numbers);
+}
+
+// f(row, component of dv/dt) for all bodies.
+template <class S, class F>
+void each_acceleration(const WorldData<S>& world, const Island<S>& island, F f) {
+  size_t row = 0;
+  for (int i : island.bodies) {
+    typename S::Scalar rate[S::freedom];
+    S::write(world.bodies.velocity_rate[i], rate);
+    for (const auto number : rate) f(row++, number);
+  }
+}
+
+// (dv/dt - base) / by into a column.
+template <class S>
+void write_column(const WorldData<S>& world, const Island<S>& island, std::vector<double>& to, size_t column,
+                  double by) {
+  const size_t m = island.bodies.size() * S::freedom;
+  const auto& base = island.flow.collocation.real_turned;
+  each_acceleration(world, island, [&](size_t row, auto number) {
+    to[row * m + column] = (double(number) - base[row]) / by;
+  });
+}
+
+// Half the digits of a length of the island, of a turn, or of a velocity.
+template <class S>
+typename S::Scalar length_of_difference(const Island<S>& island, int component, typename S::Scalar size) {
+  using T = typename S::Scalar;
+  const T unit = component < S::lengths ? T(island.size) : T(1);
+  return std::sqrt(std::numeric_limits<T>::epsilon()) * std::max(unit, std::abs(size));
+}
+
+template <class S>
+void by_velocities(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
+  using T = typename S::Scalar;
+  size_t column = 0;
+  for (int i : island.bodies) {
+    const auto at = world.bodies.velocity[i];
+    T v[S::freedom];
+    S::write(at, v);
+    for (int c = 0; c < S::freedom; ++c, ++column) {
+      const T by = length_of_difference(island, c, v[c]);
+      world.bodies.velocity[i] = S::sum(at, along<S>(c, 1), by);
+      evaluate_anew(world, island, time);  // restores dC/dt, which gamma replaced; K and its factor stay
+      accelerate(world, island, time);
+      write_column(world, island, island.flow.collocation.by_velocity, column, double(by));
+    }
+    world.bodies.velocity[i] = at;
+  }
+}
+
+template <class S>
+void by_poses(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
+  using T = typename S::Scalar;
+  // Round-off of poses far from the origin.
+  const T round_off = std::sqrt(std::numeric_limits<T>::epsilon()) * round_off_of(world, island);
+  size_t column = 0;
+  for (int i : island.bodies) {
+    const auto at = world.bodies.pose[i];
+    for (int c = 0; c < S::freedom; ++c, ++column) {
+      const T by = length_of_difference(island, c, round_off);
+      world.bodies.pose[i] = S::moved(at, along<S>(c, by));
+      evaluate_anew(world, island, time);
+      island.factored = false;
+      accelerate(world, island, time);
+      T moved[S::freedom];
+      S::write(S::difference(world.bodies.pose[i], at), moved);
+      write_column(world, island, island.flow.collocation.by_pose, column, double(moved[c]));
+    }
+    world.bodies.pose[i] = at;
+  }
+}
+
+// The columns of B of every body.
+template <class S>
+void note_turns(const WorldData<S>& world, Island<S>& island) {
+  auto* to = island.flow.collocation.turns.data();
+  for (int i : island.bodies)
+    for (int c = 0; c < S::freedom; ++c) {
+      typename S::Scalar rate[S::pose_numbers];
+      S::write_rate(world.bodies.pose[i], along<S>(c, 1), rate);
+      to = std::copy_n(rate, S::pose_numbers, to);
+    }
+}
+
+}  // namespace
+
+template <class S>
+void differentiate(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
+  CollocationWorkspace<typename S::Scalar>& work = island.flow.collocation;
+  go_back(world, island);
+  evaluate_anew(world, island, time);
+  island.factored = false;
+  accelerate(world, island, time);
+  each_acceleration(world, island, [&](size_t row, auto number) { work.real_turned[row] = double(number); });
+  note_turns(world, island);
+  by_velocities(world, island, time);
+  by_poses(world, island, time);
+  go_back(world, island);
+  work.differentiated = true;
+}
+
+#define CDOT_INSTANTIATE(S) template void differentiate(WorldData<S>&, Island<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

@@ -1,0 +1,143 @@
+// Radau IIA: its coefficients satisfy the conditions of the theory, and steps do not shrink with stiffness.
+#include <cmath>
+#include <fmt/core.h>
+
+#include "runtime/number/lu.hpp"
+#include "runtime/step/radau_tables.hpp"
+#include "tests/runtime/mechanisms.hpp"
+#include "tests/runtime/spatial_support.hpp"
+
+namespace cdot::test::radau_test {
+namespace {
+
+constexpr int stages = 3;
+constexpr const RungeKutta<double>& method = radau5<double>;
+double c(int i) { return method.c[i + 1]; }
+double a(int i, int j) { return method.a[i + 1][j + 1]; }
+double b(int j) { return method.a[method.stages][j + 1]; }
+
+// B(5): sum_j b_j c_j^(q-1) = 1/q for q <= 5. C(3): sum_j a_ij c_j^(q-1) = c_i^q / q for q <= 3. Together they give the
+// fifth order (Hairer, Wanner, IV.5).
+TEST(RadauTable, MeetsTheSimplifyingAssumptions) {
+  for (int q = 1; q <= 5; ++q) {
+    double sum = 0;
+    for (int j = 0; j < stages; ++j) sum += b(j) * std::pow(c(j), q - 1);
+    EXPECT_NEAR(sum, 1.0 / q, 1e-15);
+    for (int i = 0; q <= 3 && i < stages; ++i) {
+      double of_stage = 0;
+      for (int j = 0; j < stages; ++j) of_stage += a(i, j) * std::pow(c(j), q - 1);
+      EXPECT_NEAR(of_stage, std::pow(c(i), q) / q, 1e-15);
+    }
+  }
+  double sixth = 0;
+  for (int j = 0; j < stages; ++j) sixth += b(j) * std::pow(c(j), 5);
+  EXPECT_GT(std::abs(sixth - 1.0 / 6), 1e-3);
+}
+
+// Stiffly accurate: the last stage is the end. The start has no part in the stages.
+TEST(RadauTable, EndsWithItsLastStage) {
+  EXPECT_EQ(c(stages - 1), 1);
+  for (int j = 0; j < stages; ++j) EXPECT_EQ(b(j), a(stages - 1, j));
+  for (int i = 0; i <= method.stages; ++i) EXPECT_EQ(method.a[i][0], 0);
+}
+
+// |R(z)| with R(z) = 1 + z b (1 - z A)^-1 e
+double stability(Complex z) {
+  Lu<Complex> lu;
+  lu.reserve(stages);
+  for (size_t i = 0; i < stages; ++i)
+    for (size_t j = 0; j < stages; ++j)
+      lu.at(i, j) = Complex{i == j ? 1.0 : 0.0} - a(static_cast<int>(i), static_cast<int>(j)) * z;
+  EXPECT_TRUE(lu.factor());
+  Complex x[stages] = {{1}, {1}, {1}};
+  lu.solve(x);
+  Complex sum{1};
+  for (int j = 0; j < stages; ++j) sum = sum + b(j) * (z * x[j]);
+  return std::hypot(sum.re, sum.im);
+}
+
+TEST(RadauTable, IsLStable) {
+  for (double y = 1e-3; y < 1e6; y *= 1.1) EXPECT_LE(stability({0, y}), 1 + 1e-14) << y;
+  for (const Complex direction : {Complex{-1, 0}, Complex{0, 1}, Complex{-1, 2}})
+    EXPECT_LT(stability(1e8 * direction), 1e-7);
+  EXPECT_NEAR(stability({-1, 0}), std::exp(-1), 1e-4);
+}
+
+TEST(RadauTable, PartsNewtonsMatrix) {
+  constexpr const RadauTransformation& by = radau_transformation;
+  const double parts[stages][stages] = {{by.real, 0, 0}, {0, by.alpha, -by.beta}, {0, by.beta, by.alpha}};
+  for (int i = 0; i < stages; ++i)
+    for (int j = 0; j < stages; ++j) {
+      double one = 0, same = 0, inverse = 0;
+      for (int k = 0; k < stages; ++k) {
+        one += radau_inverse<double>[i][k] * a(k, j);
+        same += by.T[i][k] * by.inverse[k][j];
+        for (int l = 0; l < stages; ++l) inverse += by.T[i][k] * parts[k][l] * by.inverse[l][j];
+      }
+      EXPECT_NEAR(one, i == j, 1e-14);
+      EXPECT_NEAR(same, i == j, 1e-14);
+      EXPECT_NEAR(inverse, radau_inverse<double>[i][j], 1e-13);
+    }
+}
+
+// The estimate is of third order: f(y) + sum_i e_i z_i / h = 0 for y = t^q, q = 1, 2, 3.
+TEST(RadauTable, EstimatesCubicsToBeExact) {
+  for (int q = 1; q <= 4; ++q) {
+    double sum = q == 1;
+    for (int i = 0; i < stages; ++i) sum += radau_error[i] * std::pow(c(i), q);
+    if (q <= 3) EXPECT_NEAR(sum, 0, 1e-14);
+    else EXPECT_GT(std::abs(sum), 0.01);
+  }
+}
+
+// The slopes at the ends of a step are those of the polynomial through the k.
+TEST(RadauTable, ContinuesTheSlopes) {
+  for (int q = 0; q < stages; ++q) {
+    double at_start = 0, at_end = 0;
+    for (int j = 0; j < stages; ++j) {
+      at_start += method.between[0][j + 1] * std::pow(c(j), q);
+      at_end += method.between[1][j + 1] * std::pow(c(j), q);
+    }
+    EXPECT_NEAR(at_start, q == 0, 1e-14);
+    EXPECT_NEAR(at_end, 1, 1e-14);
+  }
+}
+
+Settings by(Integrator integrator, double local_error = 0, double gravity_y = 0) {
+  return {.integrator = integrator, .local_error = local_error, .gravity_y = gravity_y};
+}
+
+// A bob on a spring falls from the horizontal, at first without tension.
+World<double> sprung_pendulum(const Settings& settings, double stiffness, double damping) {
+  World<double> world(settings);
+  const int bob = world.add_body({.x = 1, .mass = 1, .inertia = 0.1});
+  world.add_spring({.body_a = world.ground(),
+                    .body_b = bob,
+                    .stiffness = stiffness,
+                    .rest_length = 1,
+                    .damping = damping});
+  return world;
+}
+
+TEST(Radau, StiffSpringsDoNotShortenItsSteps) {
+  World<double> rigid(by(Integrator::dop853, 1e-10, -9.81));
+  const int bob = rigid.add_body({.x = 1, .mass = 1, .inertia = 0.1});
+  distance(rigid, rigid.ground(), bob, 1);
+  for (int k = 0; k < 40; ++k) rigid.step(0.05);
+  const auto end = rigid.pose(bob);
+  long long most = 0, least = 1'000'000;
+  for (double stiffness = 1e4; stiffness < 2e10; stiffness *= 100) {
+    World<double> world = sprung_pendulum(by(Integrator::radau5, 1e-6, -9.81), stiffness, 0.1 * std::sqrt(stiffness));
+    for (int k = 0; k < 40; ++k) ASSERT_TRUE(world.step(0.05));
+    const StepCounts& counts = world.step_counts();
+    const double off = std::hypot(world.pose(bob).x - end.x, world.pose(bob).y - end.y);
+    fmt::print("  {:.0e} N/m: {} steps, {} rejected, {} evaluations, {:.1e} m from the rigid one\n", stiffness,
+               counts.taken, counts.rejected, counts.evaluations, off);
+    EXPECT_EQ(counts.rescued, 0);
+    most = std::max(most, counts.evaluations), least = std::min(least, counts.evaluations);
+  }
+  EXPECT_LT(most, 2 * least);
+}
+
+}  // namespace
+}  // namespace cdot::test::radau_test
