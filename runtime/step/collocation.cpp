@@ -112,8 +112,7 @@ void guess_increments(Flow<S>& flow, const RungeKuttaOf<S>& method, typename S::
   for (int i = 0; i < stages; ++i) {
     const T s = share <= T(furthest_guess) ? T(method.c[i + 1]) * share : T(0);
     T* z = work.increments.data() + static_cast<size_t>(i) * n;
-    for (size_t k = 0; k < n; ++k)
-      z[k] = s * (work.slopes[k] + s * (work.slopes[n + k] + s * work.slopes[2 * n + k]));
+    for (size_t k = 0; k < n; ++k) z[k] = s * (work.slopes[k] + s * (work.slopes[n + k] + s * work.slopes[2 * n + k]));
   }
 }
 
@@ -163,8 +162,8 @@ void improve(Flow<S>& flow, typename S::Scalar h) {
                    work.complex_turned);
   for (int i = 0; i < stages; ++i)
     for (size_t k = 0; k < count; ++k)
-      work.changes[static_cast<size_t>(i) * n + k] =
-          T(by.T[i][0] * work.real_side[k] + by.T[i][1] * work.complex_side[k].re + by.T[i][2] * work.complex_side[k].im);
+      work.changes[static_cast<size_t>(i) * n + k] = T(
+          by.T[i][0] * work.real_side[k] + by.T[i][1] * work.complex_side[k].re + by.T[i][2] * work.complex_side[k].im);
 }
 
 // Adds the changes to z. Returns the largest in its unit.
@@ -316,10 +315,10 @@ void refine_error(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>&
   set_end(world, island, method, h);
 }
 
-#define CDOT_INSTANTIATE(S)                                \
-  template bool fits_collocation(const Island<S>&);        \
-  template void prepare_collocation(Island<S>&);           \
-  template void begin_collocation(Island<S>&, bool);       \
+#define CDOT_INSTANTIATE(S)                                                                         \
+  template bool fits_collocation(const Island<S>&);                                                 \
+  template void prepare_collocation(Island<S>&);                                                    \
+  template void begin_collocation(Island<S>&, bool);                                                \
   template bool collocate(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar); \
   template void refine_error(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)

@@ -36,9 +36,8 @@ void write_column(const WorldData<S>& world, const Island<S>& island, std::vecto
                   double by) {
   const size_t m = island.bodies.size() * S::freedom;
   const auto& base = island.flow.collocation.real_turned;
-  each_acceleration(world, island, [&](size_t row, auto number) {
-    to[row * m + column] = (double(number) - base[row]) / by;
-  });
+  each_acceleration(world, island,
+                    [&](size_t row, auto number) { to[row * m + column] = (double(number) - base[row]) / by; });
 }
 
 // Half the digits of a length of the island, of a turn, or of a velocity.

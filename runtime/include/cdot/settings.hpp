@@ -53,8 +53,8 @@ enum class Kernels {
 struct Settings {
   Solver solver = Solver::direct;
   Integrator integrator = Integrator::euler;
-  // For rk4, dop853 and radau5. 0: step(h) takes steps of h / substeps. Above 0: the method chooses its steps, each with an
-  // estimated error below this, in [m], [rad], [m/s] and [rad/s].
+  // For rk4, dop853 and radau5. 0: step(h) takes steps of h / substeps. Above 0: the method chooses its steps, each
+  // with an estimated error below this, in [m], [rad], [m/s] and [rad/s].
   double local_error = 0;
   Drift drift = Drift::projection;
   int iterations = 10;     // of the iterative solver, per substep

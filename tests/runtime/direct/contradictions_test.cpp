@@ -9,8 +9,8 @@
 namespace cdot::test {
 namespace {
 
-constexpr Integrator all_integrators[] = {Integrator::euler, Integrator::implicit, Integrator::rattle, Integrator::rk4,
-                                          Integrator::dop853, Integrator::radau5};
+constexpr Integrator all_integrators[] = {Integrator::euler, Integrator::implicit, Integrator::rattle,
+                                          Integrator::rk4,   Integrator::dop853,   Integrator::radau5};
 
 // Three rods of 1, 1 and 2.02 m in a line.
 void add_triangle(World<double>& world) {

@@ -11,8 +11,8 @@
 namespace cdot::test {
 namespace {
 
-constexpr Integrator all_integrators[] = {Integrator::euler, Integrator::implicit, Integrator::rattle, Integrator::rk4,
-                                          Integrator::dop853, Integrator::radau5};
+constexpr Integrator all_integrators[] = {Integrator::euler, Integrator::implicit, Integrator::rattle,
+                                          Integrator::rk4,   Integrator::dop853,   Integrator::radau5};
 
 Settings method(Integrator integrator, double gravity_y) {
   Settings s = settings(Solver::direct, Drift::projection, gravity_y);
