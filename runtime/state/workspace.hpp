@@ -18,6 +18,10 @@ struct CollocationWorkspace {
   std::vector<double> by_pose, by_velocity;  // d(dv/dt) by displacements and by velocities at the start, m x m by rows
   std::vector<double> turns;                 // d(pose numbers)/dt of a unit velocity, by body and component
   bool differentiated = false;               // these belong to Flow::start
+  // Known forces, those of springs and dampers, by row: their accelerations; their own derivatives.
+  std::vector<double> by_force, force_by_pose, force_by_velocity;
+  std::vector<double> base, base_forces;  // accelerations and forces at the start
+  std::vector<T> forces, laws;            // forces taken at the stages and those of their laws, [stage][row]
   Lu<double> real;
   Lu<Complex> complex;
   std::vector<double> real_side, real_turned;  // right-hand sides, by numbers and by velocity components

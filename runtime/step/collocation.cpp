@@ -6,7 +6,11 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/solve/projection.hpp"
+#include "runtime/solve/solve.hpp"
+#include "runtime/solve/solver.hpp"
 #include "runtime/step/radau_tables.hpp"
+#include "runtime/step/shifted_systems.hpp"
 
 namespace cdot {
 namespace {
@@ -49,59 +53,6 @@ double unit_of(const WorldData<S>& world, const Island<S>& island, size_t k) {
   return std::max(velocity ? unit + size : unit, last_bits / goal_of(world) * size);
 }
 
-// A = shift - J_v - J_q / shift
-template <class T, class Number>
-bool factor(const CollocationWorkspace<T>& work, Number shift, Lu<Number>& lu) {
-  const size_t m = lu.size();
-  const Number by = inverse_of(shift);
-  for (size_t r = 0; r < m; ++r)
-    for (size_t c = 0; c < m; ++c) {
-      const double of_velocity = work.by_velocity[r * m + c], of_pose = work.by_pose[r * m + c];
-      lu.at(r, c) = (r == c ? shift : Number{}) - (of_velocity * Number{1} + of_pose * by);
-    }
-  return lu.factor();
-}
-
-// B^+ r of each body: the columns of B are orthogonal.
-template <class S, class Number>
-void turn_back(const std::vector<double>& turns, const std::vector<Number>& side, std::vector<Number>& to) {
-  const double* turn = turns.data();
-  for (size_t k = 0; k < to.size(); ++k, turn += S::pose_numbers) {
-    const Number* r = side.data() + k / S::freedom * numbers_per_body<S>;
-    Number sum{};
-    double square = 0;
-    for (int p = 0; p < S::pose_numbers; ++p) sum = sum + turn[p] * r[p], square += turn[p] * turn[p];
-    to[k] = (1 / square) * sum;
-  }
-}
-
-// side = (shift - df/dy)^-1 side
-template <class S, class Number>
-void solve_shifted(const CollocationWorkspace<typename S::Scalar>& work, Lu<Number>& lu, Number shift,
-                   std::vector<Number>& side, std::vector<Number>& turned) {
-  const size_t m = lu.size();
-  const Number by = inverse_of(shift);
-  turn_back<S>(work.turns, side, turned);
-  const auto velocity_of = [&](size_t k) -> Number& {
-    return side[k / S::freedom * numbers_per_body<S> + S::pose_numbers + k % S::freedom];
-  };
-  for (size_t r = 0; r < m; ++r) {
-    Number sum{};
-    for (size_t c = 0; c < m; ++c) sum = sum + work.by_pose[r * m + c] * turned[c];
-    velocity_of(r) = velocity_of(r) + by * sum;
-  }
-  for (size_t k = 0; k < m; ++k) turned[k] = velocity_of(k);
-  lu.solve(turned.data());
-  const double* turn = work.turns.data();
-  for (size_t k = 0; k < m; ++k, turn += S::pose_numbers) {
-    velocity_of(k) = turned[k];
-    Number* r = side.data() + k / S::freedom * numbers_per_body<S>;
-    for (int p = 0; p < S::pose_numbers; ++p) r[p] = r[p] + turn[p] * turned[k];
-  }
-  for (size_t k = 0; k < side.size(); k += numbers_per_body<S>)
-    for (size_t p = k; p < k + S::pose_numbers; ++p) side[p] = by * side[p];
-}
-
 // z_i = h_old int_1^(1 + c_i h / h_old) k of the last step's polynomial; otherwise 0.
 template <class S>
 void guess_increments(Flow<S>& flow, const RungeKuttaOf<S>& method, typename S::Scalar h) {
@@ -116,7 +67,32 @@ void guess_increments(Flow<S>& flow, const RungeKuttaOf<S>& method, typename S::
   }
 }
 
-// The k of the stages at the present increments.
+// The k of a stage with the forces taken for it, and the forces of their laws.
+template <class S>
+void evaluate_with_forces(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
+                          typename S::Scalar at) {
+  auto& work = island.flow.collocation;
+  const size_t first = static_cast<size_t>(stage - 1) * work.base_forces.size();
+  if (island.flow.projects_stages) {
+    evaluate_stage(world, island, method, stage, at);
+    each_known_force(island, [&](const Batch<S>& batch, int i, size_t row) {
+      work.forces[first + row] = work.laws[first + row] = batch.lower[i];
+    });
+    return;
+  }
+  set_numbers(world, island, island.flow.now.data());
+  evaluate_anew(world, island, at);
+  island.factored = false;
+  ask_for_gamma(world, island, at);
+  each_known_force(island, [&](Batch<S>& batch, int i, size_t row) {
+    work.laws[first + row] = batch.lower[i];
+    batch.lower[i] = batch.upper[i] = work.forces[first + row];
+  });
+  island.solver->accelerations(world, island);
+  note_stage(world, island, method, stage, at);
+}
+
+// The k of the stages at the present increments and forces.
 template <class S>
 void evaluate_stages(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                      typename S::Scalar h) {
@@ -126,7 +102,42 @@ void evaluate_stages(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<
   for (int i = 0; i < stages; ++i) {
     const T* z = flow.collocation.increments.data() + static_cast<size_t>(i) * n;
     for (size_t k = 0; k < n; ++k) flow.now[k] = flow.start[k] + z[k];
-    evaluate_stage(world, island, method, i + 1, time + T(method.c[i + 1]) * h);
+    evaluate_with_forces(world, island, method, i + 1, time + T(method.c[i + 1]) * h);
+  }
+}
+
+// Adds da/dF (law(y) - F) to the k of the stages.
+template <class S>
+void add_missing_forces(Flow<S>& flow) {
+  using T = typename S::Scalar;
+  const CollocationWorkspace<T>& work = flow.collocation;
+  const size_t rows = work.base_forces.size(), m = work.base.size(), n = flow.now.size();
+  for (size_t i = 0; i < stages; ++i)
+    for (size_t k = 0; k < m && rows > 0; ++k) {
+      double sum = 0;
+      for (size_t row = 0; row < rows; ++row)
+        sum += work.by_force[k * rows + row] * double(work.laws[i * rows + row] - work.forces[i * rows + row]);
+      flow.rates[(i + 1) * n + index_of_velocity<S>(k)] += T(sum);
+    }
+}
+
+// F = law(y) + dlaw/dy dy
+template <class S>
+void take_forces(Flow<S>& flow) {
+  using T = typename S::Scalar;
+  CollocationWorkspace<T>& work = flow.collocation;
+  const size_t rows = work.base_forces.size(), m = work.base.size(), n = flow.now.size();
+  for (size_t i = 0; i < stages && rows > 0; ++i) {
+    const T* change = work.changes.data() + i * n;
+    for (size_t k = 0; k < work.real_side.size(); ++k) work.real_side[k] = double(change[k]);
+    turn_back<S>(work.turns, work.real_side, work.real_turned);
+    for (size_t row = 0; row < rows; ++row) {
+      double sum = 0;
+      for (size_t k = 0; k < m; ++k)
+        sum += work.force_by_pose[row * m + k] * work.real_turned[k] +
+               work.force_by_velocity[row * m + k] * work.real_side[index_of_velocity<S>(k)];
+      work.forces[i * rows + row] = work.laws[i * rows + row] + T(sum);
+    }
   }
 }
 
@@ -193,8 +204,10 @@ bool find_increments(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<
   double before = 0;
   for (int round = 0; round < most; ++round) {
     evaluate_stages(world, island, method, time, h);
+    add_missing_forces(island.flow);
     improve(island.flow, h);
     const double change = take_changes(world, island);
+    take_forces(island.flow);
     if (!std::isfinite(change)) return false;
     const double rate = change / before;  // of convergence
     // All that the next rounds would change.
@@ -262,6 +275,11 @@ void prepare_collocation(Island<S>& island) {
   work.complex_side.assign(count, {}), work.complex_turned.assign(m, {});
   for (auto* numbers : {&work.increments, &work.changes, &work.slopes}) numbers->assign(stages * n, 0);
   work.error.assign(n, 0);
+  size_t rows = 0;
+  each_known_force(island, [&](const Batch<S>&, int, size_t) { ++rows; });
+  work.base.assign(m, 0.0), work.base_forces.assign(rows, 0.0);
+  for (auto* matrix : {&work.by_force, &work.force_by_pose, &work.force_by_velocity}) matrix->assign(m * rows, 0.0);
+  work.forces.assign(stages * rows, 0), work.laws.assign(stages * rows, 0);
 }
 
 // k(theta) = k_3 + (theta - 1) d + (theta - 1) (theta - c_2) e through the stages, integrated from 1 on.
@@ -288,15 +306,17 @@ void begin_collocation(Island<S>& island, bool goes_on) {
 template <class S>
 bool collocate(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                typename S::Scalar h) {
+  using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
-  CollocationWorkspace<typename S::Scalar>& work = flow.collocation;
+  CollocationWorkspace<T>& work = flow.collocation;
   std::fill(flow.pivots.begin(), flow.pivots.end(), 1.0);
   if (!work.differentiated) differentiate(world, island, time);
   const double per_time = 1 / double(h);
   constexpr const RadauTransformation& by = radau_transformation;
-  if (!factor(work, by.real * per_time, work.real)) return false;
-  if (!factor(work, Complex{by.alpha * per_time, by.beta * per_time}, work.complex)) return false;
+  if (!factor_shifted(work, by.real * per_time, work.real)) return false;
+  if (!factor_shifted(work, Complex{by.alpha * per_time, by.beta * per_time}, work.complex)) return false;
   guess_increments(flow, method, h);
+  for (size_t k = 0; k < work.forces.size(); ++k) work.forces[k] = T(work.base_forces[k % work.base_forces.size()]);
   if (!find_increments(world, island, method, time, h)) return false;
   take_slopes(flow, h);
   set_end(world, island, method, h);

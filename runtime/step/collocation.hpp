@@ -7,6 +7,10 @@
 //   (s - J_v - J_q / s) dv = r' + J_q B^+ r / s,   dq = (r + B dv) / s,
 // half as large. df/dy comes from differences of accelerations, anew at every step: a step depends on nothing but its
 // start.
+//
+// The forces of springs and dampers are unknowns of their own, f = a(y, F) with F = law(y): with y alone, Newton would
+// converge only where a stiff spring turns by less than sqrt(m / k) / h in a step. From the forces F of a round follow
+//   f = a(y, F) + da/dF (law(y) - F),   then F = law(y) + dlaw/dy dy.
 #pragma once
 
 #include "runtime/step/runge_kutta.hpp"
@@ -37,8 +41,19 @@ template <class S>
 void refine_error(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                   typename S::Scalar h);
 
-// df/dy at Flow::start (differences.cpp). Leaves the bodies there.
+// df/dy, da/dF and dlaw/dy at Flow::start (differences.cpp). Leaves the bodies there.
 template <class S>
 void differentiate(WorldData<S>& world, Island<S>& island, typename S::Scalar time);
+
+// f(batch, i, k) for every row with a known force, its k-th.
+template <class S, class F>
+void each_known_force(const Island<S>& island, F f) {
+  size_t k = 0;
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    if (!batch.law || !batch.law->force) continue;
+    for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i) f(batch, i, k++);
+  }
+}
 
 }  // namespace cdot

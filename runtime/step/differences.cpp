@@ -7,6 +7,7 @@
 
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
+#include "runtime/solve/solver.hpp"
 #include "runtime/step/collocation.hpp"
 
 namespace cdot {
@@ -30,14 +31,17 @@ void each_acceleration(const WorldData<S>& world, const Island<S>& island, F f) 
   }
 }
 
-// (dv/dt - base) / by into a column.
+// The changes of accelerations and known forces since the start, over `by`, into a column.
 template <class S>
-void write_column(const WorldData<S>& world, const Island<S>& island, std::vector<double>& to, size_t column,
-                  double by) {
-  const size_t m = island.bodies.size() * S::freedom;
-  const auto& base = island.flow.collocation.real_turned;
+void write_column(const WorldData<S>& world, Island<S>& island, std::vector<double>& rates, std::vector<double>& forces,
+                  size_t column, double by) {
+  const auto& work = island.flow.collocation;
+  const size_t m = work.base.size();
   each_acceleration(world, island,
-                    [&](size_t row, auto number) { to[row * m + column] = (double(number) - base[row]) / by; });
+                    [&](size_t row, auto now) { rates[row * m + column] = (double(now) - work.base[row]) / by; });
+  each_known_force(island, [&](const Batch<S>& batch, int i, size_t row) {
+    forces[row * m + column] = (double(batch.lower[i]) - work.base_forces[row]) / by;
+  });
 }
 
 // Half the digits of a length of the island, of a turn, or of a velocity.
@@ -51,6 +55,7 @@ typename S::Scalar length_of_difference(const Island<S>& island, int component, 
 template <class S>
 void by_velocities(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   using T = typename S::Scalar;
+  auto& work = island.flow.collocation;
   size_t column = 0;
   for (int i : island.bodies) {
     const auto at = world.bodies.velocity[i];
@@ -61,7 +66,7 @@ void by_velocities(WorldData<S>& world, Island<S>& island, typename S::Scalar ti
       world.bodies.velocity[i] = S::sum(at, along<S>(c, 1), by);
       evaluate_anew(world, island, time);  // restores dC/dt, which gamma replaced; K and its factor stay
       accelerate(world, island, time);
-      write_column(world, island, island.flow.collocation.by_velocity, column, double(by));
+      write_column(world, island, work.by_velocity, work.force_by_velocity, column, double(by));
     }
     world.bodies.velocity[i] = at;
   }
@@ -70,6 +75,7 @@ void by_velocities(WorldData<S>& world, Island<S>& island, typename S::Scalar ti
 template <class S>
 void by_poses(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   using T = typename S::Scalar;
+  auto& work = island.flow.collocation;
   // Round-off of poses far from the origin.
   const T round_off = std::sqrt(std::numeric_limits<T>::epsilon()) * round_off_of(world, island);
   size_t column = 0;
@@ -83,9 +89,34 @@ void by_poses(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
       accelerate(world, island, time);
       T moved[S::freedom];
       S::write(S::difference(world.bodies.pose[i], at), moved);
-      write_column(world, island, island.flow.collocation.by_pose, column, double(moved[c]));
+      write_column(world, island, work.by_pose, work.force_by_pose, column, double(moved[c]));
     }
     world.bodies.pose[i] = at;
+  }
+}
+
+// The accelerations of unit forces: a solve without velocities, other forces or gamma.
+template <class S>
+void by_forces(WorldData<S>& world, Island<S>& island) {
+  using T = typename S::Scalar;
+  auto& work = island.flow.collocation;
+  const size_t rows = work.base_forces.size();
+  for (const Segment<S>& segment : island.segments) {
+    auto& bias = segment.batch->bias;
+    std::fill(bias.begin() + segment.begin * segment.batch->ops->rows,
+              bias.begin() + segment.end * segment.batch->ops->rows, T(0));
+  }
+  std::vector<double>& base = work.real_turned;  // of rows that push with a force of their own
+  for (size_t column = 0; column <= rows; ++column) {
+    each_known_force(island, [&](Batch<S>& batch, int i, size_t row) {
+      batch.lower[i] = batch.upper[i] = T(row + 1 == column ? 1 : 0);
+    });
+    for (int i : island.bodies) world.bodies.velocity_rate[i] = {};
+    island.solver->accelerations(world, island);
+    each_acceleration(world, island, [&](size_t row, auto now) {
+      if (column == 0) base[row] = double(now);
+      else work.by_force[row * rows + column - 1] = double(now) - base[row];
+    });
   }
 }
 
@@ -110,9 +141,12 @@ void differentiate(WorldData<S>& world, Island<S>& island, typename S::Scalar ti
   evaluate_anew(world, island, time);
   island.factored = false;
   accelerate(world, island, time);
-  each_acceleration(world, island, [&](size_t row, auto number) { work.real_turned[row] = double(number); });
+  each_acceleration(world, island, [&](size_t row, auto now) { work.base[row] = double(now); });
+  each_known_force(island,
+                   [&](const Batch<S>& batch, int i, size_t row) { work.base_forces[row] = double(batch.lower[i]); });
   note_turns(world, island);
   by_velocities(world, island, time);
+  if (!work.base_forces.empty()) by_forces(world, island);
   by_poses(world, island, time);
   go_back(world, island);
   work.differentiated = true;

@@ -126,6 +126,12 @@ void evaluate_stage(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S
     island.factored = false;
     accelerate(world, island, at);
   }
+  note_stage(world, island, method, stage, at);
+}
+
+template <class S>
+void note_stage(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
+                typename S::Scalar at) {
   read_rates(world, island, stage, at);
   if (stage < method.stages) note_pivots(island, stage);
 }
@@ -254,6 +260,7 @@ void go_back(WorldData<S>& world, Island<S>& island) {
   template void read_numbers(const WorldData<S>&, const Island<S>&, S::Scalar*);                          \
   template void set_numbers(WorldData<S>&, Island<S>&, const S::Scalar*);                                 \
   template void evaluate_stage(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, int, S::Scalar);        \
+  template void note_stage(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, int, S::Scalar);            \
   template void take_stage(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, int, S::Scalar, S::Scalar); \
   template void project(WorldData<S>&, Island<S>&, S::Scalar, bool);                                      \
   template void prepare_runge_kutta(Island<S>&, const RungeKuttaOf<S>&);                                  \

@@ -40,7 +40,12 @@ template <class S>
 void evaluate_stage(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
                     typename S::Scalar at);
 
-// The same of an explicit method, at start + h sum_j a_stage,j k_j.
+// Reads the k of a stage from the present rates of the bodies.
+template <class S>
+void note_stage(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
+                typename S::Scalar at);
+
+// The k of an explicit method's stage at start + h sum_j a_stage,j k_j.
 template <class S>
 void take_stage(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
                 typename S::Scalar time, typename S::Scalar h);

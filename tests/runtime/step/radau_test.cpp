@@ -131,6 +131,35 @@ TEST(Radau, StiffSpringsDoNotShortenItsSteps) {
   }
 }
 
+// A bob on a spring falls from the horizontal, at first without tension. Its direction turns, so that the spring's
+// force is far from linear; the motion nears that on a rigid rod like 1 / k.
+TEST(Radau, StiffSpringsThatTurnDoNotShortenItsSteps) {
+  World<double> rigid(by(Integrator::dop853, 1e-10, -9.81));
+  const int bob = rigid.add_body({.x = 1, .mass = 1, .inertia = 0.1});
+  distance(rigid, rigid.ground(), bob, 1);
+  run(rigid, 2, 0.05);
+  const auto end = rigid.pose(bob);
+  for (double stiffness = 1e4; stiffness < 2e10; stiffness *= 100) {
+    World<double> world(by(Integrator::radau5, 1e-6, -9.81));
+    world.add_body({.x = 1, .mass = 1, .inertia = 0.1});
+    world.add_spring({.body_a = world.ground(),
+                      .body_b = bob,
+                      .stiffness = stiffness,
+                      .rest_length = 1,
+                      .damping = 0.1 * std::sqrt(stiffness)});
+    run(world, 2, 0.05);
+    const StepCounts& counts = world.step_counts();
+    const Balance balance = world.balance();
+    const double off = std::hypot(world.pose(bob).x - end.x, world.pose(bob).y - end.y);
+    fmt::print("  {:.0e} N/m: {} steps, {} rejected, {} evaluations, {:.1e} m from the rigid one, {:.1e} J lost\n",
+               stiffness, counts.taken, counts.rejected, counts.evaluations, off, -balance.method());
+    EXPECT_EQ(counts.rescued, 0);
+    EXPECT_LT(off, 200 / stiffness + 1e-6);
+    EXPECT_LT(counts.evaluations, 8000);
+    EXPECT_NEAR(balance.method(), 0, 1e-4);
+  }
+}
+
 // m x'' = -c x' - k x with c = 1e5 N s/m on 1 kg creeps as x = exp(-k t / c), from the start on or after its first 10
 // us.
 TEST(Radau, StiffDampersDoNotShortenItsSteps) {
@@ -150,6 +179,17 @@ TEST(Radau, StiffDampersDoNotShortenItsSteps) {
       EXPECT_LT(counts.taken, 100);
       EXPECT_EQ(counts.rescued, 0);
     }
+}
+
+// Its matrices are dense: an island that is too large is refused, not waited for.
+TEST(Radau, RefusesLargeIslands) {
+  World<double> world(by(Integrator::radau5));
+  add_chain(world, 201, 0.3);
+  const StepResult result = world.step(0.01);
+  EXPECT_EQ(result.problem, StepProblem::too_large);
+  EXPECT_EQ(result.island, 0);
+  EXPECT_NE(in_words(result, "", "").find("more than 200 bodies"), std::string::npos);
+  EXPECT_NE(likely_fix(result.problem, OnFailure::stop).find("dop853"), std::string::npos);
 }
 
 }  // namespace

@@ -55,6 +55,7 @@ TEST(Setup, MistakesInBodiesAreNamed) {
   EXPECT_NO_THROW(World<double>({.integrator = Integrator::rk4, .local_error = 1e-18}));
   EXPECT_THROW(World<double>({.integrator = Integrator::rattle, .drift = Drift::none}), Error);
   EXPECT_THROW(World<double>({.integrator = Integrator::rk4, .drift = Drift::baumgarte}), Error);
+  EXPECT_THROW(World<double>({.solver = Solver::iterative, .integrator = Integrator::radau5}), Error);
   EXPECT_THROW(World<double>({.solver = Solver::iterative, .integrator = Integrator::dop853, .drift = Drift::none}),
                Error);
 }
