@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <ranges>
 #include <tuple>
 
 #include <cdot/methods.hpp>
@@ -252,10 +253,10 @@ void Search::try_candidate(Integrator integrator, double most) {
   }
 }
 
-// Those that take stiffness implicitly.
+// Those that take stiffness implicitly, high orders first.
 void Search::try_stiff(double most) {
-  for (const IntegratorRow& row : integrator_rows)
-    if (row.stiffens && !done()) try_candidate(row.integrator, most);
+  for (const IntegratorRow& row : std::views::reverse(integrator_rows))
+    if ((row.stiffens || row.stable_radians == always) && !done()) try_candidate(row.integrator, most);
 }
 
 RunResult Search::run() {
