@@ -1,6 +1,6 @@
-// The stages of an implicit Runge-Kutta method (radau_tables.hpp): z_i = h sum_j a_ij f(y + z_j) for the increments z
-// of an island's numbers, by Newton with df/dy at the start of the step. (E. Hairer, G. Wanner, "Solving Ordinary
-// Differential Equations II", 1996, IV.8.)
+// The stages of an implicit Runge-Kutta method (runge_kutta_tables.hpp): z_i = h sum_j a_ij f(y + z_j) for the
+// increments z of an island's numbers, by Newton with df/dy at the start of the step. (E. Hairer, G. Wanner, "Solving
+// Ordinary Differential Equations II", 1996, IV.8.)
 //
 // Poses follow from velocities: dq/dt = B(q) v, with B constant within a step of Newton's matrix. For the shift s of an
 // eigenvalue, (s - df/dy) (dq, dv) = (r, r') is then, with J_q by displacements and J_v by velocities,

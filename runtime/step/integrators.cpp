@@ -5,7 +5,6 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/solve/solver.hpp"
-#include "runtime/step/radau_tables.hpp"
 #include "runtime/step/runge_kutta.hpp"
 
 namespace cdot {

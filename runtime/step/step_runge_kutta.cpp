@@ -64,18 +64,19 @@ double first_event(const Flow<S>& flow) {
   return first;
 }
 
-// Takes a step of h and projects its end.
+// Takes a step of h again and projects its end. If an implicit method finds none, stays at the start.
 template <class S>
 bool go_to(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
            typename S::Scalar h) {
   go_back(world, island);
-  if (!take_stages(world, island, method, time, h)) return false;
-  project_end(world, island, method, time + h);
-  return true;
+  const bool found = take_stages(world, island, method, time, h);
+  if (found) project_end(world, island, method, time + h);
+  else go_back(world, island);
+  return found;
 }
 
-// Goes to the first event of a step of h that passed one. Returns the time from the step's start to the event; 0 if an
-// implicit method found no end.
+// Goes to the first event of a step of h that passed one. Returns the time from the step's start to the event; 0 if
+// go_to() fails: Euler's method then finishes the step.
 template <class S>
 typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                typename S::Scalar time, typename S::Scalar h) {
@@ -307,15 +308,10 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
     if (flow.guarded > 0 && furthest(flow.margins_chosen, flow.margins) < passed) {
       flow.length = go_to_event(world, island, method, time, flow.length);
       ++world.counts->events;
-      ++events;
-      if (!(flow.length > T(0))) {
-        go_back(world, island);
-        fall_back_to_euler(world, island, time, left);
-        return h;
-      }
+      events = flow.length > T(0) ? events + 1 : most_events + 1;
       flow.known = false;
     }
-    count_step<S>(world.counts, flow.length);
+    if (flow.length > T(0)) count_step<S>(world.counts, flow.length);
     done = flow.length == left ? h : done + flow.length;
   }
   return done;
