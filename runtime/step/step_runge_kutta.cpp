@@ -142,7 +142,7 @@ double try_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
 }
 
 // True if the attempt at a step of h came near a loss of rank of K: goes back for one with projected stages, of a
-// length h that leads them away from it. `noise`: see Passage.
+// length h that leads them away from it; 0 if the method cannot pass there. `noise`: see Passage.
 template <class S>
 bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar longest,
                      typename S::Scalar& h, double& noise) {
@@ -150,6 +150,12 @@ bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<
   if (island.flow.projects_stages || world.settings.drift != Drift::projection) return false;
   const Passage<T> passage = passage_of(world, island, method, h, longest);
   if (!passage.near) return false;
+  if (method.implicit) {
+    // Newton's old df/dy misleads it there. No shorter step would help: Euler's method finishes this one.
+    h = T(0);
+    go_back(world, island);
+    return true;
+  }
   island.flow.projects_stages = true;
   ++world.counts->steered;
   go_back(world, island);
@@ -175,6 +181,7 @@ typename S::Scalar take_fixed_step(WorldData<S>& world, Island<S>& island, const
         try_step(world, island, method, time, h, [&] { return share_of_size(island, method, h) / allowed; });
     double noise = 0;
     if (tries_with_care(world, island, method, longest, h, noise)) {
+      if (!(h > T(0))) return h;
       share = careful;
       continue;
     }
@@ -205,6 +212,7 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
     const double factor = std::clamp(0.9 * std::pow(error, -1.0 / method.error_order), 0.2, 5.0);
     flow.next_step = h * T(error <= 1e300 ? factor : 0.2);
     if (tries_with_care(world, island, method, reach, h, noise)) {
+      if (!(h > T(0))) break;
       --attempt;  // its length says nothing about the error
       continue;
     }
