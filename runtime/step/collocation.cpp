@@ -9,7 +9,6 @@
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
-#include "runtime/step/shifted_systems.hpp"
 
 namespace cdot {
 namespace {
