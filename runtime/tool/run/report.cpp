@@ -108,6 +108,20 @@ std::string warning_of_accuracy(const Scene& scene, const RunResult& result) {
       result.first_rescue);
 }
 
+std::string error_text(const Scene& scene, const TrajectoryError& error) {
+  return fmt::format(
+      "  trajectory      off by about {:.1g} m and {:.1g} rad ({}, t = {:.6g} s), by halved steps at {} places\n",
+      error.position, error.angle, body_name(scene, error.body), error.time, error.samples);
+}
+
+text::Json error_json(const Scene& scene, const TrajectoryError& error) {
+  return {{"position", error.position},
+          {"angle", error.angle},
+          {"time", error.time},
+          {"body", body_name(scene, error.body)},
+          {"samples", error.samples}};
+}
+
 }  // namespace
 
 // The scene with the method that ran.
@@ -143,6 +157,7 @@ std::string summary_text(const Scene& asked, const RunResult& result) {
   text += fmt::format("  energy          {:.6g} J at the start, {:.6g} J at the end, largest change {:.3g} J\n",
                       result.energy_start, result.energy_end, result.energy_drift);
   text += balance_text(result.balance);
+  if (result.error.samples > 0) text += error_text(scene, result.error);
   if (result.redundant_rows > 0) text += fmt::format("  redundant rows  {}\n", result.redundant_rows);
   const std::string losses = rank_losses_text(scene, result.rank_losses);
   if (!losses.empty()) text += fmt::format("  rank            {}\n", losses);
@@ -216,6 +231,7 @@ std::string summary_json(const Scene& asked, const RunResult& result) {
                          {"events", result.counts.events},
                          {"rescued", result.counts.rescued},
                          {"steered", result.counts.steered}};
+  if (result.error.samples > 0) json["trajectory_error"] = error_json(scene, result.error);
   if (result.advice) json["advice"] = advice_json(*result.advice);
   if (result.failed_step) json["failed_step"] = failed_step_json(scene, *result.failed_step);
   if (result.choice) json["accuracy"] = choice_json(*result.choice);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "runtime/tool/run/error_estimate.hpp"
 #include "runtime/tool/run/process.hpp"
 #include "runtime/tool/run/requested_frames.hpp"
 
@@ -131,6 +132,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   result.energy_start = before.energy;
   auto next_diagnosis = options.diagnose_times.begin();
   RankWatch rank;
+  ErrorEstimate<S> error(scene, steps.count());
   for (long long k = 0;; ++k) {
     judge(scene, after, result);
     if (k > 0) rank.look(after.time, world.weakest_row());
@@ -139,6 +141,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     if (result.first_rescue < 0 && world.step_counts().rescued > 0) result.first_rescue = after.time;
     if (every_step) options.row(after);
     requested.after_step(before, after);
+    if (k > 0) error.after_step(before, after, k);
     if (options.save_at && result.state.empty() && after.time >= *options.save_at * (1 - 1e-12))
       result.state = world.snapshot();
     const auto due =
@@ -149,6 +152,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     if (result.stopped && !options.diagnose_times.empty()) look(scene, world, result);
     if (k == steps.count() || result.stopped || Interrupt::asked()) break;
     requested.before_step(world, after, steps.time(k + 1));
+    error.before_step(world, k + 1);
     const double start = cpu_now();
     const StepResult step = world.step(steps.length(k + 1));
     result.cpu += cpu_now() - start;
@@ -167,6 +171,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   }
   rank.end();
   result.rank_losses = rank.found();
+  result.error = error.error();
   finish(scene, world, result);
   return result;
 }

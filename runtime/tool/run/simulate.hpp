@@ -9,6 +9,7 @@
 #include <cdot/snapshot.hpp>
 
 #include "runtime/tool/run/choice.hpp"
+#include "runtime/tool/run/error_estimate.hpp"
 #include "runtime/tool/run/frame.hpp"
 #include "runtime/tool/run/rank_watch.hpp"
 #include "runtime/tool/run/worst.hpp"
@@ -53,6 +54,7 @@ struct RunResult {
   double energy_start = 0, energy_end = 0,
          energy_drift = 0;  // [J]; drift: the largest |E - E_start|
   BalanceWatch balance;     // after every step
+  TrajectoryError error;    // of fixed steps
   std::optional<TriedFix> advice;
   int redundant_rows = 0;
   std::vector<RankLoss> rank_losses;

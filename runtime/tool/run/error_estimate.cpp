@@ -1,0 +1,105 @@
+#include "runtime/tool/run/error_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <cdot/rotation.hpp>
+#include <cdot/spaces.hpp>
+
+namespace cdot {
+namespace {
+
+// A sample costs about four steps, so it takes 5 % of these. A short run has more, for some milliseconds at most.
+constexpr long long steps_per_sample = 80, fewest_samples = 12;
+constexpr double half_turn = 3.141592653589793;  // a larger error of an angle has no meaning
+
+using Vector = std::array<double, 3>;
+
+void add_to(Vector& sum, const Vector& a, double scale) {
+  for (std::size_t k = 0; k < 3; ++k) sum[k] += scale * a[k];
+}
+double square(const Vector& a) { return a[0] * a[0] + a[1] * a[1] + a[2] * a[2]; }
+Vector minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
+Vector position(const BodyState& b) { return {b.x, b.y, b.z}; }
+Vector velocity(const BodyState& b) { return {b.vx, b.vy, b.vz}; }
+Vector spin(const BodyState& b) { return {b.wx, b.wy, b.wz + b.w}; }
+
+Vector turn(const BodyState& from, const BodyState& to) {
+  const auto orientation = [](const BodyState& b) { return spatial::oriented(0.0, 0.0, 0.0, b.e0, b.e1, b.e2, b.e3); };
+  const auto r = spatial::turn_between(orientation(from), orientation(to));
+  return {r.x, r.y, r.z + to.angle - from.angle};
+}
+
+// The time in which a motion of these sums of squares changes, at most `most`.
+double time_scale(double speed, double change, double most) {
+  return change > 0 ? std::min(most, std::sqrt(speed / change)) : most;
+}
+
+Scene with_finer_steps(Scene scene) {
+  scene.settings.substeps *= 2;
+  if (sweeps(scene.settings.solver)) scene.settings.iterations *= 4;
+  return scene;
+}
+
+}  // namespace
+
+template <class S>
+ErrorEstimate<S>::ErrorEstimate(const Scene& scene, long long steps)
+    : finer_(with_finer_steps(scene)),
+      share_(1 / (1 - std::pow(0.5, row_of(scene.settings.integrator).order))),
+      spacing_(std::clamp(steps / fewest_samples, 1LL, steps_per_sample)),
+      next_(scene.settings.local_error > 0 ? steps + 1 : (spacing_ + 1) / 2),
+      sums_(scene.bodies.size()) {}
+
+template <class S>
+void ErrorEstimate<S>::before_step(const BasicWorld<S>& run, long long k) {
+  if (k == next_) run.snapshot_into(start_);
+}
+
+template <class S>
+void ErrorEstimate<S>::after_step(const Frame& before, const Frame& after, long long k) {
+  if (k != next_) return;
+  if (!world_) world_ = build_world_in<S>(finer_);
+  world_->restore(start_);
+  if (world_->step(after.time - before.time)) {
+    const Frame finer = frame_of(*world_, after.time, static_cast<int>(after.bodies.size()));
+    add(before, after, finer, static_cast<double>(k - last_));
+    last_ = k;
+  }
+  // Between half and one and a half of the spacing, spread evenly by the golden ratio: no multiple of a period.
+  const double turns = 0.6180339887498949 * (error_.samples + 1);
+  next_ = k + std::max(1LL, static_cast<long long>(static_cast<double>(spacing_) * (0.5 + turns - std::floor(turns))));
+}
+
+template <class S>
+void ErrorEstimate<S>::add(const Frame& before, const Frame& after, const Frame& finer, double steps) {
+  const double h = after.time - before.time, scale = share_ * steps;
+  for (std::size_t k = 0; k < sums_.size(); ++k) {
+    const BodyState &from = before.bodies[k], &to = after.bodies[k], &better = finer.bodies[k];
+    add_to(sums_[k].position, minus(position(to), position(better)), scale);
+    add_to(sums_[k].angle, turn(better, to), scale);
+    add_to(sums_[k].velocity, minus(velocity(to), velocity(better)), scale);
+    add_to(sums_[k].spin, minus(spin(to), spin(better)), scale);
+    speeds_[0] += square(velocity(to)), speeds_[1] += square(spin(to));
+    changes_[0] += square(minus(velocity(to), velocity(from))) / (h * h);
+    changes_[1] += square(minus(spin(to), spin(from))) / (h * h);
+  }
+  ++error_.samples;
+  const double linear = time_scale(speeds_[0], changes_[0], after.time),
+               angular = time_scale(speeds_[1], changes_[1], after.time);
+  for (std::size_t k = 0; k < sums_.size(); ++k) {
+    const double position = std::sqrt(square(sums_[k].position)) + linear * std::sqrt(square(sums_[k].velocity));
+    const double angle =
+        std::min(half_turn, std::sqrt(square(sums_[k].angle)) + angular * std::sqrt(square(sums_[k].spin)));
+    if (std::max(position, angle) > std::max(error_.position, error_.angle))
+      error_.time = after.time, error_.body = static_cast<int>(k);
+    error_.position = std::max(error_.position, position), error_.angle = std::max(error_.angle, angle);
+  }
+}
+
+#define CDOT_INSTANTIATE(S) template class ErrorEstimate<S>;
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot
