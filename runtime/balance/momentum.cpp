@@ -104,7 +104,7 @@ void find_free_motions(const WorldData<S>& world, Island<S>& island, Bodies<S>& 
   for (int i : island.bodies) {
     // A body that cannot turn absorbs torques.
     const auto turned = S::weighted(world.bodies.inverse_mass[i], rigid_motion<S>(typename S::Pose{}, S::freedom - 1));
-    island.spins_freely = island.spins_freely && (norm(twist<double>(turned).angular) > 0 || island.bodies.size() == 1);
+    island.spins_freely = island.spins_freely && norm(twist<double>(turned).angular) > 0;
   }
   if (!island.floats) return;
   scatter(island, at);
@@ -132,6 +132,10 @@ void compare_momentum(const WorldData<S>& world, const Island<S>& island, Balanc
   if (island.momentum.empty() || island.momentum[6] < 0) return;
   const auto now = momentum_of(world, island);
   const double time = world.time - island.momentum[6];
+  // Slower motions are rest: the momentum of round-off alone would have no scale.
+  const auto slow = by_precision<typename S::Scalar>(1e-3, 1e-6);
+  const auto least = slow * now.mass * island.size,
+             least_spin = slow * (now.inertia.xx + now.inertia.yy + now.inertia.zz);
   const auto compare = [&](const double* start, const auto& sum, const auto& given, auto size,
                            Balance::Momentum& worst) {
     const Vector change = doubles(sum) - Vector{start[0], start[1], start[2]} - time * doubles(given);
@@ -139,10 +143,10 @@ void compare_momentum(const WorldData<S>& world, const Island<S>& island, Balanc
     // By share; 0 / 0 is no error.
     if (worst.body < 0 || !(mine.error * worst.scale <= worst.error * mine.scale)) worst = mine;
   };
-  compare(island.momentum.data(), now.linear, now.force, now.linear_size, balance.linear);
+  compare(island.momentum.data(), now.linear, now.force, now.linear_size + least, balance.linear);
   // Constant forces at moving places have a torque that is not constant.
   if (island.spins_freely && !pushed(world, island))
-    compare(island.momentum.data() + 3, now.spin, now.torque, now.spin_size, balance.angular);
+    compare(island.momentum.data() + 3, now.spin, now.torque, now.spin_size + least_spin, balance.angular);
 }
 
 #define CDOT_INSTANTIATE(S)                                                     \

@@ -3,18 +3,18 @@
 #include <fmt/format.h>
 #include <thread>
 
+#include <cdot/balance.hpp>
+
 #include "runtime/direct/ldlt.hpp"
 #include "runtime/tool/run/frame.hpp"
 #include "tests/torture/observer.hpp"
 #include "tests/torture/scene_text.hpp"
+#include "tests/torture/trial.hpp"
 
 namespace cdot::torture {
 namespace {
 
-constexpr double resolved = 0.5;  // largest Accounts::roughest of a resolved motion
-
-constexpr int most_steps = 30000;  // of a run with shorter steps
-constexpr int dear = 300;          // evaluations of an island's accelerations in a step, on average
+constexpr int dear = 300;  // evaluations of an island's accelerations in a step, on average
 
 template <class T>
 constexpr double start_tolerance = std::is_same_v<T, double> ? 1e-9 : 1e-4;
@@ -25,7 +25,6 @@ constexpr double held_tolerance = std::is_same_v<T, double> ? 1e-10 : 1e-4;
 template <class T>
 constexpr double just_passed = std::is_same_v<T, double> ? 3e-9 : 3e-4;
 
-constexpr double turns_round = 0.5;   // of unit rows, in a step
 constexpr double nearly_lost = 0.05;  // of the rows' independence at the start
 
 // The smallest pivot of K, as a share of the diagonal, that differs from round-off and from the pivot of a redundant
@@ -49,14 +48,6 @@ double share_of_step(int k) {
   return 0.2 + 0.8 * (turns - std::floor(turns));
 }
 
-Verdict verdict(Outcome outcome, std::string what, std::string detail, double value = 0, double bound = 0,
-                int step = 0) {
-  Verdict v;
-  v.outcome = outcome, v.what = std::move(what), v.detail = std::move(detail);
-  v.value = value, v.bound = bound, v.step = step;
-  return v;
-}
-
 // An estimate of the rounded operations on a body's velocity in a step: each row of each of its joints, once per solve.
 double operations_of(const Scene& scene) {
   std::vector<int> rows(scene.bodies.size() + 1, 1);
@@ -69,8 +60,6 @@ double operations_of(const Scene& scene) {
   const double sweeps = s.solver == Solver::iterative ? 3 * s.iterations : 10;
   return *std::max_element(rows.begin(), rows.end()) * stages * sweeps * s.substeps;
 }
-
-bool judged_by_order(const std::string& what) { return what.starts_with("energy") || what == "angular momentum"; }
 
 template <class S>
 class Trial {
@@ -95,6 +84,7 @@ class Trial {
   Gap gap_now(BasicWorld<S>& world) const;
   std::optional<Verdict> look_at_momentum(const Motion& now, const BasicWorld<S>& world, double gap, int k);
   std::optional<Verdict> look_at_energy(double energy, int k) const;
+  std::optional<Verdict> look_at_balance(const Balance& balance, int k) const;
   Verdict bits() const;
 
   // The error of sweeps is of first order in the step for every method.
@@ -111,7 +101,7 @@ class Trial {
   Motion start_;
   double independence_ = 1;                // at the start
   std::vector<typename S::Place> places_;  // of the scene's bodies, before the step
-  double start_energy_ = 0, torques_ = 0;
+  double start_energy_ = 0, pushes_ = 0, torques_ = 0;
   std::optional<Accounts> accounts_;
   Snapshot middle_, end_;
 };
@@ -163,14 +153,15 @@ std::optional<Verdict> Trial<S>::look_at_momentum(const Motion& now, const Basic
   double impulses = 0;
   for (int j = 0; j < world.joint_count(); ++j)
     for (const double lambda : world.impulse(j)) impulses += std::abs(lambda);
-  torques_ += impulses * (gap * sizes_.length + operations_ * std::numeric_limits<T>::epsilon() * sizes_.length);
+  const double rounded = impulses * operations_ * std::numeric_limits<T>::epsilon();
+  pushes_ += rounded, torques_ += impulses * gap * sizes_.length + rounded * sizes_.length;
   // M contains h dJ'lambda/dq: an impulse with a lever arm, times the rotation of a step.
   if (scene_->settings.integrator == Integrator::implicit) {
     double fastest = 0;
     for (const BodyMotion& body : now.bodies) fastest = std::max(fastest, norm(body.w) + norm(body.v) / sizes_.length);
     torques_ += impulses * sizes_.length * fastest * scene_->step;
   }
-  const double linear = accounts_->momentum_round_off();
+  const double linear = accounts_->momentum_round_off() + pushes_;
   const double angular = accounts_->angular_round_off() + accounts_->angular_order_error() + torques_;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double p = std::abs(now.linear[axis] - start_.linear[axis]);
@@ -192,6 +183,18 @@ std::optional<Verdict> Trial<S>::look_at_energy(double energy, int k) const {
   if (laws_.energy_falls && !(rise <= bound)) return verdict(Outcome::broken, "energy rises", "", rise, bound, k);
   if (laws_.energy_kept && !sweeps && scene_->settings.integrator != Integrator::implicit && !(-rise <= bound))
     return verdict(Outcome::broken, "energy falls", "", -rise, bound, k);
+  return {};
+}
+
+// Energy less work put in and taken: with sources and sinks too, only the method's own errors are left, of the energy
+// and of the work.
+template <class S>
+std::optional<Verdict> Trial<S>::look_at_balance(const Balance& balance, int k) const {
+  const Settings& s = scene_->settings;
+  const bool judged = laws_.smooth && s.solver == Solver::direct && s.drift == Drift::projection && !asked_->changes;
+  if (k < 2 || !judged) return {};
+  const double bound = 2 * accounts_->order_error() + 4 * accounts_->round_off_energy(), rest = balance.method();
+  if (!(rest <= bound)) return verdict(Outcome::broken, "energy without a source", "", rest, bound, k);
   return {};
 }
 
@@ -239,7 +242,8 @@ std::optional<Verdict> Trial<S>::look(BasicWorld<S>& world, int k) {
                    gap.joint < 0 ? "" : scene_->joints[static_cast<std::size_t>(gap.joint)].definition.type, gap.share,
                    held_tolerance<T>, k);
   if (auto broken = look_at_momentum(now, world, gap.share, k)) return broken;
-  return look_at_energy(frame.energy, k);
+  if (auto broken = look_at_energy(frame.energy, k)) return broken;
+  return look_at_balance(world.balance(), k);
 }
 
 template <class S>
@@ -359,6 +363,8 @@ auto in_space_of(const Scene& scene, F f) {
   return scene.single ? f(Spatial<float>{}) : f(Spatial<double>{});
 }
 
+}  // namespace
+
 Verdict judge_once(const Scene& scene, const Asked& asked) {
   return in_space_of(scene, [&](auto space) { return judge_in<decltype(space)>(scene, asked); });
 }
@@ -367,45 +373,6 @@ double most_turned(const Scene& scene, const Asked& asked) {
   return in_space_of(scene, [&](auto space) { return Trial<decltype(space)>(scene, asked).most_turned(); });
 }
 
-// True for invariants that need a short step. Equal bits hold at every step; so does linear momentum while the summed
-// terms stay bounded.
-bool may_be_the_step(const Verdict& v) {
-  return v.what == "finite" || v.what == "C" || v.what == "momentum" || judged_by_order(v.what);
-}
-
-}  // namespace
-
 int steps_of(const Scene& scene) { return static_cast<int>(std::ceil(scene.duration / scene.step * (1 - 1e-12))); }
-
-Verdict judge(const Scene& scene, const Asked& asked) {
-  const Verdict seen = judge_once(scene, asked);
-  if (!seen.broken() || !may_be_the_step(seen) || asked.refinements == 0) return seen;
-  Scene finer = scene;
-  finer.duration = seen.step * scene.step;
-  Asked without_bits = asked;
-  without_bits.bits = false;
-  Verdict again = seen;
-  for (int k = 0; k < asked.refinements && 4 * steps_of(finer) <= most_steps; ++k) {
-    finer.step /= 4;
-    again = judge_once(finer, without_bits);
-    if (!again.broken())
-      return verdict(Outcome::limited, fmt::format("the step is too long: {}", seen.what),
-                     fmt::format("holds at a step {:.0f} times shorter", scene.step / finer.step), seen.value,
-                     seen.bound, seen.step);
-  }
-  const bool as_forces =
-      scene.settings.integrator == Integrator::rattle || works_on_accelerations(scene.settings.integrator);
-  if (as_forces && stiff(scene, finer.step, seen.length))
-    return verdict(Outcome::limited, fmt::format("a spring too stiff for a force at any step tried: {}", seen.what), "",
-                   seen.value, seen.bound, seen.step);
-  if (judged_by_order(seen.what) && most_turned(finer, without_bits) > turns_round)
-    return verdict(Outcome::limited, fmt::format("no step tried resolves how a joint's directions turn: {}", seen.what),
-                   "", seen.value, seen.bound, seen.step);
-  const bool unresolved = again.roughest > resolved && again.what != "C" && again.what != "finite";
-  if (unresolved && !laws_of(scene).smooth)
-    return verdict(Outcome::limited, fmt::format("no step tried resolves the motion: {}", seen.what), "", seen.value,
-                   seen.bound, seen.step);
-  return seen;
-}
 
 }  // namespace cdot::torture

@@ -25,7 +25,7 @@ struct Balance {
   double small = 0;
 
   // Over the islands that touch no immovable body and have no drag, the worst. The error is the change of an island's
-  // momentum less what gravity and constant forces gave; the scale is the sum of its bodies' |momentum|. 0: no island.
+  // momentum less what gravity and forces gave; the scale is the sum of its bodies' |momentum|, plus that of rest.
   struct Momentum {
     double error = 0, scale = 0;  // [kg m/s], or [kg m^2/s] about the centre of mass
     int body = -1;                // the island's first
