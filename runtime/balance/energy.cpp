@@ -1,4 +1,5 @@
 // The energy of a state.
+#include <algorithm>
 #include <cmath>
 
 #include <cdot/spaces.hpp>
@@ -37,6 +38,19 @@ double potential_of(const WorldData<S>& world, const Batch<S>& batch, int slot, 
   return batch.law->energy(one_slot, 0);
 }
 
+// M^-1 of a body at another pose, to which its inertia tensor turns with it. Model::turning ascends.
+template <class S>
+typename S::InverseMass inverse_mass_at(const WorldData<S>& world, int body, const typename S::Pose& pose) {
+  auto m = world.bodies.inverse_mass[body];
+  if constexpr (S::has_gyroscopes) {
+    const auto at = std::lower_bound(world.turning.begin(), world.turning.end(), body);
+    if (at == world.turning.end() || *at != body) return m;
+    auto gyroscope = world.gyroscopes[static_cast<size_t>(at - world.turning.begin())];
+    S::set_inertia(gyroscope, pose, m, {});
+  }
+  return m;
+}
+
 }  // namespace
 
 // By the difference of k over 2 epsilon seconds.
@@ -57,7 +71,7 @@ double power_of_stiffness(const WorldData<S>& world, const Batch<S>& batch, int 
       const int body = batch.body[slot * bodies + k];
       one_slot.body[k] = k;
       few.pose[k] = S::moved(world.bodies.pose[body], S::sum({}, v[body], side ? epsilon : -epsilon));
-      few.effective_mass[k] = world.bodies.effective_mass[body];
+      few.effective_mass[k] = inverse_mass_at(world, body, few.pose[k]);
     }
     batch.ops->evaluate(one_slot, 0, 1, few, time);
     batch.ops->effective_mass(one_slot, 0, 1, few);

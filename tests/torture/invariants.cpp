@@ -193,7 +193,10 @@ std::optional<Verdict> Trial<S>::look_at_balance(const Balance& balance, int k) 
   const Settings& s = scene_->settings;
   const bool judged = laws_.smooth && s.solver == Solver::direct && s.drift == Drift::projection && !asked_->changes;
   if (k < 2 || !judged) return {};
-  const double bound = 2 * accounts_->order_error() + 4 * accounts_->round_off_energy(), rest = balance.method();
+  const double sums = balance.kinetic + std::abs(balance.potential) + std::abs(balance.put_in) + balance.taken;
+  const double rounded =
+      accounts_->round_off_energy() + k * operations_ * std::numeric_limits<double>::epsilon() * sums;
+  const double bound = 2 * accounts_->order_error() + rounded, rest = balance.method();
   if (!(rest <= bound)) return verdict(Outcome::broken, "energy without a source", "", rest, bound, k);
   return {};
 }

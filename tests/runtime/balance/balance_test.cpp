@@ -274,6 +274,27 @@ TEST(Balance, ASpringByFrequencyPutsInWhatItsStiffnessChanges) {
   }
 }
 
+// The stiffness follows the effective mass, and with it an inertia tensor that turns with its body.
+TEST(Balance, ASpringByFrequencyFollowsATurningTensor) {
+  Settings s;
+  s.integrator = Integrator::dop853;
+  SpatialWorld<double> world(s);
+  SpatialBodyDefinition body{.wx = 3, .wy = -2, .wz = 1, .mass = 1};
+  body.inertia = {0.2, 0.6, 0.7, 0.05, 0, 0};
+  const int top = world.add_body(body);
+  world.add_joint({"spherical",
+                   {world.ground(), top},
+                   {{"pa", {0.3, 0.1, 0}}, {"pb", {0.3, 0, 0.2}}},
+                   Softness{.by_frequency = true, .frequency = 1}});
+  BalanceWatch seen;
+  for (int k = 0; k < 200; ++k) {
+    ASSERT_TRUE(world.step(0.01));
+    seen.look(world.balance());
+  }
+  EXPECT_GT(std::abs(seen.last.put_in), 0.01);
+  EXPECT_LT(seen.energy.share(), 1e-7);
+}
+
 // Momentum: of bodies that nothing holds, and only of these.
 TEST(Balance, KnowsWhoseMomentumIsConserved) {
   for (const Method& method : methods()) {
