@@ -8,7 +8,7 @@
 #include <cdot/methods.hpp>
 #include <cdot/recommended.hpp>
 
-#include "runtime/tool/run/worst.hpp"
+#include "runtime/tool/watch/worst.hpp"
 
 namespace cdot::hard {
 namespace {

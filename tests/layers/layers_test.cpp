@@ -56,7 +56,9 @@ const std::vector<std::string> rooms = {
     "runtime/effects",     // motor, limit, spring, friction, breaking
     "runtime/diagnose",
     // cdot-run.
-    "runtime/tool/scene", "runtime/tool/run",
+    "runtime/tool/scene",
+    "runtime/tool/watch",  // ranks and concerns along a run
+    "runtime/tool/run",
     "runtime/tool/search", // many runs of a scene: for an accuracy, for advice
     "runtime/tool/viewer", "runtime/tool/accuracy", "runtime/tool/commands",
     "runtime/tool",

@@ -11,9 +11,9 @@
 #include "runtime/tool/run/choice.hpp"
 #include "runtime/tool/run/error_estimate.hpp"
 #include "runtime/tool/run/frame.hpp"
-#include "runtime/tool/run/rank_watch.hpp"
-#include "runtime/tool/run/worst.hpp"
 #include "runtime/tool/scene/scene.hpp"
+#include "runtime/tool/watch/rank_watch.hpp"
+#include "runtime/tool/watch/worst.hpp"
 
 namespace cdot {
 

@@ -1,5 +1,5 @@
 // Losses of rank along a run.
-#include "runtime/tool/run/rank_watch.hpp"
+#include "runtime/tool/watch/rank_watch.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
-#include "runtime/tool/run/rank_watch.hpp"
+#include "runtime/tool/watch/rank_watch.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "runtime/tool/run/worst.hpp"
+#include "runtime/tool/watch/worst.hpp"
 
 namespace cdot {
 namespace {

@@ -1,5 +1,5 @@
 // Diagnoses at several times -> the worst of each island.
-#include "runtime/tool/run/worst.hpp"
+#include "runtime/tool/watch/worst.hpp"
 
 #include <algorithm>
 #include <set>
