@@ -89,8 +89,10 @@ class Budget {
 };
 
 // Three methods that share little: the highest order on accelerations, a symmetric method on impulses, and another
-// order on accelerations.
-constexpr bool on_accelerations(const IntegratorRow& row) { return row.level == Level::acceleration; }
+// order on accelerations. An implicit one leaves errors of its Newton.
+constexpr bool on_accelerations(const IntegratorRow& row) {
+  return row.level == Level::acceleration && row.stable_radians < always;
+}
 constexpr Integrator first_method = most_exact(on_accelerations);
 constexpr Integrator second_method = most_exact([](const IntegratorRow& row) { return row.symmetric; });
 constexpr Integrator third_method =

@@ -243,7 +243,8 @@ void Search::try_candidate(Integrator integrator, double most) {
     spent += now.price;
     if (now.whole) {
       yardstick_.see(now.frames);
-      if (adaptive) left_ = std::min(left_, std::max(most_first_runs * now.price, least_left_));
+      // A stiff candidate has a bound of its own.
+      if (adaptive && !(first_price_ > 0)) left_ = std::min(left_, std::max(most_first_runs * now.price, least_left_));
       if (last.whole) judge(last, now);
     }
     const std::optional<double> share = next_share(last, now, idle);

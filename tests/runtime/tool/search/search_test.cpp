@@ -104,6 +104,28 @@ TEST(DefaultAccuracy, LeavesAtRestWhatStands) {
   }
 }
 
+// A bob on a damped spring: radau5 where stiffness is dear, dop853 where it is not or where the accuracy is high.
+TEST(SearchedAccuracy, IsReachedAtEveryStiffness) {
+  for (const double stiffness : {1e4, 1e6, 1e8, 1e10})
+    for (const double accuracy : {1e-4, 1e-6, 1e-8}) {
+      const Scene scene =
+          read_scene(fmt::format("duration = 2\naccuracy = {}\n"
+                                 "[[body]]\nname = \"bob\"\nposition = [1, 0]\nmass = 1\ninertia = 0.1\n"
+                                 "[[spring]]\nbodies = [\"world\", \"bob\"]\nstiffness = {}\nrest = 1\ndamping = {}\n",
+                                 accuracy, stiffness, 0.1 * std::sqrt(stiffness)),
+                     "bob");
+      std::string warnings;
+      const RunResult result = simulate(scene, {}, warnings);
+      const Choice& choice = result.choice.value();
+      fmt::print("  {:.0e} N/m, {:.0e}: {}, {} evaluations\n", stiffness, accuracy,
+                 name_of(integrators, choice.integrator), choice.evaluations);
+      EXPECT_TRUE(choice.reached) << stiffness << " " << accuracy;
+      if (stiffness == 1e10 && accuracy == 1e-4) {
+        EXPECT_EQ(choice.integrator, Integrator::radau5);
+      }
+    }
+}
+
 TEST(SearchedAccuracy, IsWhatTheRunClaims) {
   double worst = 0;
   for (const Problem& problem : problems)
