@@ -5,14 +5,14 @@
 namespace cdot {
 namespace {
 
-constexpr double same_time = 1e-6;  // of a step
+constexpr double close_time = 1e-6;  // of a step
 
 }  // namespace
 
 template <class S>
 RequestedFrames<S>::RequestedFrames(const Scene& scene)
     : scene_(scene),
-      slack_(same_time * scene.step),
+      slack_(close_time * scene.step),
       adaptive_(scene.settings.local_error > 0),
       takes_parts_(!sweeps(scene.settings.solver) && scene.settings.drift != Drift::baumgarte) {}
 
