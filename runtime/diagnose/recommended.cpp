@@ -1,4 +1,4 @@
-// What each island is -> the integrator for fixed steps.
+// The stiffness, spin and size of each island -> the integrator for fixed steps.
 #include <algorithm>
 #include <array>
 #include <chrono>

@@ -51,7 +51,7 @@ void write_files(const std::string& output, const AccuracyReport& report) {
 
 constexpr double share_of_searches = 0.1;  // of the budget
 
-// What `simulate --accuracy` finds for every decade that the sweep reaches.
+// The methods that `simulate --accuracy` finds for every decade that the sweep reaches.
 std::vector<Searched> searched(const AccuracyReport& report, double budget, const Stop& stop) {
   std::vector<Searched> all;
   const double start = cpu_now();

@@ -32,7 +32,7 @@ std::string euler_text(const Choice& choice) {
                      choice.left_to_euler == 1 ? " was" : "s were", choice.first_left_to_euler);
 }
 
-// What the run lacks; empty if it has the accuracy.
+// The reason why the run fails; empty if it has the accuracy.
 std::string lack(const Choice& choice) {
   if (choice.reached) return {};
   const std::string asked = fmt::format("accuracy {:.1e} {}", choice.asked, unit_of(choice));

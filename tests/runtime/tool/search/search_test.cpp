@@ -30,7 +30,7 @@ const Problem problems[] = {
 };
 constexpr double four_bar_until = 0.7;  // [s]: before two motions are possible
 
-// What the run claims, and its distance from the reference in the same unit.
+// The error that the run claims, and its distance from the reference in the same unit.
 struct Measured {
   Choice choice;
   double error = 0, reference = 0;
