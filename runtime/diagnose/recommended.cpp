@@ -80,12 +80,11 @@ constexpr struct {
 };
 // clang-format on
 
-// Adds the difference between another gravity and the present one to all accelerations.
+// Adds the difference between another gravity and the present one to the accelerations of an island.
 template <class S>
-void turn_gravity(WorldData<S>& world, const Settings& from, const Settings& to) {
+void turn_gravity(WorldData<S>& world, const Island<S>& island, const Settings& from, const Settings& to) {
   using T = typename S::Scalar;
-  for (int i = 0; i < world.bodies.count(); ++i) {
-    if (world.bodies.immovable(i)) continue;
+  for (int i : island.bodies) {
     auto& a = world.bodies.acceleration[i];
     a = S::sum(S::sum(a, S::gravity(from), T(-1)), S::gravity(to), T(1));
   }
@@ -114,12 +113,12 @@ void look_at_every_side(WorldData<S>& world, Island<S>& island, double h, Traits
       Settings turned = s;
       turned.gravity_x = turned.gravity_y = turned.gravity_z = 0;
       turned.*side = sign * weight;
-      turn_gravity(world, now, turned);
+      turn_gravity(world, island, now, turned);
       now = turned;
       look_at_stiffest(world, island, h, traits);
     }
   }
-  turn_gravity(world, now, s);
+  turn_gravity(world, island, now, s);
 }
 
 template <class S>

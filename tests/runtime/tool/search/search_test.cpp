@@ -30,6 +30,21 @@ const Problem problems[] = {
 };
 constexpr double four_bar_until = 0.7;  // [s]: before two motions are possible
 
+struct Recorded {
+  RunResult result;
+  std::vector<Frame> rows;
+};
+
+Recorded recorded(const Scene& scene, double seconds_between_rows) {
+  Recorded run;
+  RunOptions options;
+  options.row_times = every(seconds_between_rows, scene.duration);
+  options.row = [&](const Frame& frame) { run.rows.push_back(frame); };
+  std::string warnings;
+  run.result = simulate(scene, options, warnings);
+  return run;
+}
+
 // The error that the run claims, and its distance from the reference in the same unit.
 struct Measured {
   Choice choice;
@@ -88,12 +103,7 @@ TEST(DefaultAccuracy, LeavesAtRestWhatStands) {
     Scene scene = scene_named(name);
     scene.step = 0;
     const Yardstick yardstick(scene);
-    std::vector<Frame> rows;
-    RunOptions options;
-    options.row_times = every(0.5, scene.duration);
-    options.row = [&](const Frame& frame) { rows.push_back(frame); };
-    std::string warnings;
-    const RunResult result = simulate(scene, options, warnings);
+    const auto [result, rows] = recorded(scene, 0.5);
     EXPECT_TRUE(result.choice->reached) << name;
     double moved = 0;
     for (const Frame& row : rows) moved = std::max(moved, yardstick.apart(row, rows.front()));
@@ -153,12 +163,7 @@ Scene chaotic() {
 
 TEST(SearchedAccuracy, OfAChaoticMotionIsToldByTime) {
   Scene scene = chaotic();
-  std::vector<Frame> rows;
-  RunOptions options;
-  options.row_times = every(0.5, scene.duration);
-  options.row = [&](const Frame& frame) { rows.push_back(frame); };
-  std::string warnings;
-  const RunResult result = simulate(scene, options, warnings);
+  const auto [result, rows] = recorded(scene, 0.5);
   const Choice& choice = result.choice.value();
   ASSERT_FALSE(choice.reached);
   EXPECT_GT(choice.holds_until, 5);
@@ -169,17 +174,14 @@ TEST(SearchedAccuracy, OfAChaoticMotionIsToldByTime) {
             std::string::npos);
   Scene asked = chaotic();
   asked.accuracy = 1e-4;
-  const RunResult failed = simulate(asked, {}, warnings);
+  const RunResult failed = recorded(asked, 0.5).result;
   EXPECT_NE(failure(asked, failed).find("holds up to t = "), std::string::npos) << failure(asked, failed);
   // Up to that time another method agrees.
   Scene other = chaotic();
   other.step = 1e-4;
   other.settings.integrator = Integrator::rk4;
   other.duration = choice.holds_until;
-  std::vector<Frame> rk4;
-  options.row = [&](const Frame& frame) { rk4.push_back(frame); };
-  options.row_times = every(0.5, other.duration);
-  simulate(other, options, warnings);
+  const std::vector<Frame> rk4 = recorded(other, 0.5).rows;
   double apart = 0;
   for (std::size_t k = 0; k < rk4.size(); ++k)
     apart = std::max(apart, cdot::apart(rk4[k], rows[k], scene.dimension).larger());
@@ -223,11 +225,8 @@ TEST(SearchedAccuracy, BelowRoundOffEndsTheSearchSoon) {
 TEST(SearchedAccuracy, IsTheSameWithAndWithoutOutputs) {
   const Scene scene = scene_named("crank_rocker");
   std::string warnings;
-  RunOptions options;
-  std::vector<Frame> rows;
-  options.row_times = every(0.01, scene.duration);
-  options.row = [&](const Frame& frame) { rows.push_back(frame); };
-  const RunResult with = simulate(scene, options, warnings), without = simulate(scene, {}, warnings);
+  const auto [with, rows] = recorded(scene, 0.01);
+  const RunResult without = simulate(scene, {}, warnings);
   EXPECT_EQ(rows.size(), 201u);
   EXPECT_EQ(with.choice->local_error, without.choice->local_error);
   EXPECT_EQ(with.choice->achieved, without.choice->achieved);
