@@ -195,12 +195,11 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
   for (size_t k = 0; k < island.bodies.size(); ++k) {
     const int i = island.bodies[k];
     const auto& from = impulses == Impulses::rattle_end ? island.flow.velocity[k] : start[i];
-    mean[i] = S::damped(S::sum(from, v[i], T(1)), T(0.5), T(0.5));
+    mean[i] = impulses == Impulses::middle ? v[i] : S::damped(S::sum(from, v[i], T(1)), T(0.5), T(0.5));
   }
   const bool at_end = impulses == Impulses::euler || impulses == Impulses::soft;
   const auto* const acted = at_end ? v.data() : start.data();
   Work work;
-  if (impulses == Impulses::middle) std::copy(v.begin(), v.end(), mean.begin());
   const bool of_rows = impulses == Impulses::drift || impulses == Impulses::dampers || impulses == Impulses::end ||
                        impulses == Impulses::relaxed;
   if (!of_rows) work_on_bodies(world, island, start.data(), mean.data(), impulses != Impulses::middle, at_end, h, work);
