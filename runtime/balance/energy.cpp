@@ -1,10 +1,10 @@
 // The energy of a state.
-#include <algorithm>
 #include <cmath>
 
 #include <cdot/spaces.hpp>
 
 #include "runtime/balance/balance.hpp"
+#include "runtime/state/gyroscopes.hpp"
 
 namespace cdot {
 namespace {
@@ -38,16 +38,12 @@ double potential_of(const WorldData<S>& world, const Batch<S>& batch, int slot, 
   return batch.law->energy(one_slot, 0);
 }
 
-// M^-1 of a body at another pose, to which its inertia tensor turns with it. Model::turning ascends.
+// M^-1 of a body at another pose, to which its inertia tensor turns with it.
 template <class S>
 typename S::InverseMass inverse_mass_at(const WorldData<S>& world, int body, const typename S::Pose& pose) {
   auto m = world.bodies.inverse_mass[body];
-  if constexpr (S::has_gyroscopes) {
-    const auto at = std::lower_bound(world.turning.begin(), world.turning.end(), body);
-    if (at == world.turning.end() || *at != body) return m;
-    auto gyroscope = world.gyroscopes[static_cast<size_t>(at - world.turning.begin())];
-    S::set_inertia(gyroscope, pose, m, {});
-  }
+  if constexpr (S::has_gyroscopes)
+    with_gyroscope(world, body, [&](auto gyroscope) { S::set_inertia(gyroscope, pose, m, {}); });
   return m;
 }
 

@@ -10,6 +10,7 @@
 #include "runtime/rows/laws.hpp"
 #include "runtime/rows/parameters.hpp"
 #include "runtime/state/add_rows.hpp"
+#include "runtime/state/gyroscopes.hpp"
 #include "runtime/state/probe.hpp"
 #include "runtime/world/islands.hpp"
 
@@ -107,14 +108,6 @@ void check_joint_bodies(const WorldData<S>& world, const JointType& type, const 
       if (bodies[i] == bodies[j] && !world.bodies.immovable(bodies[i]))
         throw Error(fmt::format("joint `{}` names the same movable body twice", type.name));
   }
-}
-
-// f(gyroscope) if the body's inertia tensor turns with it.
-template <class S, class F>
-void with_gyroscope(WorldData<S>& world, int body, F f) {
-  const auto found = std::lower_bound(world.turning.begin(), world.turning.end(), body);
-  if (found != world.turning.end() && *found == body)
-    f(world.gyroscopes[static_cast<size_t>(found - world.turning.begin())]);
 }
 
 template <class S>

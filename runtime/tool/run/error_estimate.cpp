@@ -26,8 +26,7 @@ Vector velocity(const BodyState& b) { return {b.vx, b.vy, b.vz}; }
 Vector spin(const BodyState& b) { return {b.wx, b.wy, b.wz + b.w}; }
 
 Vector turn(const BodyState& from, const BodyState& to) {
-  const auto orientation = [](const BodyState& b) { return spatial::oriented(0.0, 0.0, 0.0, b.e0, b.e1, b.e2, b.e3); };
-  const auto r = spatial::turn_between(orientation(from), orientation(to));
+  const auto r = spatial::turn_between(orientation_of(from), orientation_of(to));
   return {r.x, r.y, r.z + to.angle - from.angle};
 }
 

@@ -3,8 +3,6 @@
 
 #include <cmath>
 
-#include <cdot/rotation.hpp>
-
 namespace cdot {
 namespace {
 
@@ -27,10 +25,6 @@ BodyState state_of(const spatial::Place& q, const spatial::Velocity<T>& v) {
           q.e1, q.e2, q.e3, double(v.wx), double(v.wy), double(v.wz)};
 }
 
-spatial::Pose<double> orientation_of(const BodyState& b) {
-  return spatial::oriented(0.0, 0.0, 0.0, b.e0, b.e1, b.e2, b.e3);
-}
-
 // The orientation at the share s of a step. The rotation vector r from its start follows the cubic whose slopes are the
 // angular velocities; at the end, to fourth order, dr/dt = w - r x w / 2 + r x (r x w) / 12.
 void turn(const BodyState& a, const BodyState& b, double h, double s, BodyState& to) {
@@ -46,6 +40,10 @@ void turn(const BodyState& a, const BodyState& b, double h, double s, BodyState&
 }
 
 }  // namespace
+
+spatial::Pose<double> orientation_of(const BodyState& b) {
+  return spatial::oriented(0.0, 0.0, 0.0, b.e0, b.e1, b.e2, b.e3);
+}
 
 std::span<const StateColumn> state_columns(Dimension dimension) {
   using B = BodyState;

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include <cdot/rotation.hpp>
 #include <cdot/world.hpp>
 
 namespace cdot {
@@ -13,6 +14,9 @@ struct BodyState {
   double z = 0, vz = 0;           // these and the rest: only in space
   double e0 = 1, e1 = 0, e2 = 0, e3 = 0, wx = 0, wy = 0, wz = 0;
 };
+
+// Of a body in space; the position is left out.
+spatial::Pose<double> orientation_of(const BodyState& body);
 
 // The numbers of a state in a file, by the names of their columns.
 struct StateColumn {

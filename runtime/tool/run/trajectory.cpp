@@ -138,7 +138,6 @@ double cpu_of(const Scene& scene, const Way& way, const Knob& knob, const std::v
 }
 
 Apart apart(const BodyState& a, const BodyState& b, Dimension dimension) {
-  const auto orientation = [](const BodyState& s) { return spatial::oriented(0.0, 0.0, 0.0, s.e0, s.e1, s.e2, s.e3); };
   return {std::hypot(a.x - b.x, a.y - b.y, a.z - b.z),
           dimension == Dimension::planar ? std::abs(a.angle - b.angle)
                                          : spatial::norm(spatial::turn_between(orientation(a), orientation(b)))};

@@ -119,8 +119,7 @@ namespace {
 
 // The angle between two orientations; q and -q are the same.
 double turn_between(const BodyState& a, const BodyState& b) {
-  const auto pose = [](const BodyState& s) { return spatial::oriented(0.0, 0.0, 0.0, s.e0, s.e1, s.e2, s.e3); };
-  return spatial::norm(spatial::turn_between(pose(a), pose(b)));
+  return spatial::norm(spatial::turn_between(orientation_of(a), orientation_of(b)));
 }
 
 }  // namespace
