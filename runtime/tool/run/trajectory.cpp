@@ -140,7 +140,7 @@ double cpu_of(const Scene& scene, const Way& way, const Knob& knob, const std::v
 Apart apart(const BodyState& a, const BodyState& b, Dimension dimension) {
   return {std::hypot(a.x - b.x, a.y - b.y, a.z - b.z),
           dimension == Dimension::planar ? std::abs(a.angle - b.angle)
-                                         : spatial::norm(spatial::turn_between(orientation(a), orientation(b)))};
+                                         : spatial::norm(spatial::turn_between(orientation_of(a), orientation_of(b)))};
 }
 
 Apart apart(const Frame& a, const Frame& b, Dimension dimension) {
