@@ -48,7 +48,7 @@ void Tally::add(const Mechanism& mechanism, const Verdict& verdict) {
   for (const SceneJoint& joint : mechanism.scene.joints) types.insert(joint.definition.type);
   for (const std::string& type : types) ++joints_[{mechanism.scene.dimension, type}][way];
   for (const std::string& reason : mechanism.refused) ++reasons_["a joint refused: " + kind_of(reason)];
-  if (verdict.outcome != Outcome::held)
+  if (!verdict.what.empty())
     ++reasons_[fmt::format("{}: {} ({})", word(verdict.outcome), kind_of(verdict.what),
                            verdict.outcome == Outcome::refused ? "" : way)];
 }

@@ -8,6 +8,7 @@
 
 #include <cdot/methods.hpp>
 
+#include "tests/torture/advice.hpp"
 #include "tests/torture/scene_text.hpp"
 #include "tests/torture/shrink.hpp"
 #include "tests/torture/tally.hpp"
@@ -22,7 +23,7 @@ struct Options {
   Wish wish;
   std::string method, keep, scene;
   int dimension = 0;
-  bool no_bits = false, no_shrink = false, print = false, varying = false, changes = false;
+  bool no_bits = false, no_shrink = false, print = false, varying = false, changes = false, advice = false;
 
   Asked asked() const {
     Asked asked;
@@ -60,7 +61,7 @@ void keep(const Options& options, const std::string& name, const std::string& te
 void report(const Options& options, std::uint64_t seed, const Scene& scene, const Verdict& verdict) {
   fmt::print("\nBROKEN {}\n  seed {:#x}, {}\n", told(verdict), seed, way_of(scene));
   std::fflush(stdout);  // shrinking may take a while
-  if (options.no_shrink) return;
+  if (options.no_shrink || options.advice) return;
   Asked asked = options.asked();
   asked.bits = verdict.what.starts_with("bits");
   Shrunk small = shrink(scene, verdict, asked);
@@ -77,13 +78,13 @@ void report(const Options& options, std::uint64_t seed, const Scene& scene, cons
 
 void say(const Verdict& verdict) {
   const char* words[] = {"held", "refused", "limited", "BROKEN"};
-  const std::string why = verdict.outcome == Outcome::held ? "" : ": " + told(verdict);
+  const std::string why = verdict.what.empty() ? "" : ": " + told(verdict);
   fmt::print("{}{}\n", words[static_cast<int>(verdict.outcome)], why);
 }
 
 int judge_file(const Options& options) {
   const Scene scene = read_scene(options.scene);
-  const Verdict verdict = judge(scene, options.asked());
+  const Verdict verdict = options.advice ? judge_advice(scene) : judge(scene, options.asked());
   say(verdict);
   return verdict.broken();
 }
@@ -97,7 +98,7 @@ int torture(const Options& options) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(k);
     const Mechanism mechanism = generate(seed, options.wish);
     if (options.print) fmt::print("{}\n", text_of(mechanism.scene));
-    const Verdict verdict = judge(mechanism.scene, asked);
+    const Verdict verdict = options.advice ? judge_advice(mechanism.scene) : judge(mechanism.scene, asked);
     tally.add(mechanism, verdict);
     if (verdict.broken()) report(options, seed, mechanism.scene, verdict);
     else if (options.count == 1) say(verdict);
@@ -126,6 +127,7 @@ int main(int count, char** arguments) {
   app.add_option("--scene", options.scene, "judge this scene and no other");
   app.add_flag("--varying", options.varying, "the lengths of the steps vary");
   app.add_flag("--changes", options.changes, "impulses, forces and the loss of a joint, while running");
+  app.add_flag("--advice", options.advice, "runs each by cdot-run, and follows its advice; judges nothing else");
   app.add_flag("--no-bits", options.no_bits, "without repetitions: three times as fast");
   app.add_flag("--no-shrink", options.no_shrink);
   app.add_flag("--print", options.print, "every scene");

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "tests/torture/advice.hpp"
 #include "tests/torture/scene_text.hpp"
 #include "tests/torture/shrink.hpp"
 #include "tests/torture/tally.hpp"
@@ -40,6 +41,19 @@ TEST(Torture, Bounded) {
       EXPECT_GT(tally.drawn(dimension, std::string(type.name)), 0) << type.name;
   EXPECT_GT(tally.count(Outcome::held), tally.mechanisms() * 3 / 4);
   fmt::print("{}", tally.text());
+}
+
+// The README follows the advice on a thousand mechanisms.
+TEST(Torture, AdviceCuresWhatItWasGivenFor) {
+  int followed = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const Mechanism mechanism = generate(seed, {.steps = steps});
+    const Verdict verdict = judge_advice(mechanism.scene);
+    followed += verdict.what == "advice";
+    EXPECT_FALSE(verdict.broken()) << "seed " << seed << ": " << verdict.detail << "\n" << text_of(mechanism.scene);
+  }
+  fmt::print("{} pieces of advice followed\n", followed);
+  EXPECT_GT(followed, 5);
 }
 
 // f(path, scene) for all scenes of a folder.

@@ -1,0 +1,38 @@
+#include "tests/runtime/tool/followed_advice.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+
+#include "tests/runtime/tool/support.hpp"
+
+namespace cdot::test {
+
+Ran simulated(const std::string& file, const std::string& options) {
+  const CommandResult result = cdot_run(fmt::format("simulate '{}' {} --json", file, options));
+  Ran ran{result.status, {}};
+  if (!result.out.empty()) ran.summary = nlohmann::json::parse(result.out);
+  return ran;
+}
+
+FollowedAdvice follow_advice(const std::string& file, const std::string& options) {
+  const Ran first = simulated(file, options);
+  if (first.summary.is_null()) return {false, "", fmt::format("{}, exit {}", no_summary, first.status)};
+  const bool advised = first.summary.contains("advice");
+  if (first.silent()) return {true, "", advised ? "advice without a need" : ""};
+  if (!advised) return {false, "", "neither silent nor with advice\n" + first.summary.dump(2)};
+  const auto& advice = first.summary["advice"];
+  const std::string pasted = advice["options"];
+  if (pasted.empty()) return {};
+  const double until = advice["until"];
+  const Ran second =
+      simulated(file, fmt::format("{} {}{}", options, pasted, until > 0 ? fmt::format(" --until {}", until) : ""));
+  if (!second.silent()) return {false, pasted, "is no cure: " + pasted + "\n" + second.summary.dump(2)};
+  const auto& method = second.summary["balance"]["method"];
+  const double energy = method["error"], scale = method["scale"], promised = advice["share"];
+  if (!(std::abs(energy) <= (1.001 * promised + 1e-15) * scale))
+    return {false, pasted,
+            fmt::format("{} keeps the energy to {:.3g}, {:.3g} promised", pasted, energy / scale, promised)};
+  return {false, pasted, ""};
+}
+
+}  // namespace cdot::test
