@@ -15,7 +15,7 @@ constexpr int poses_diagnosed = 8;
 
 struct Options {
   SceneOptions scene;
-  double accuracy = 0, tolerance = 0, energy_tolerance = 0, every = 0;
+  double accuracy = 0, tolerance = 0, energy_tolerance = 0, trajectory_tolerance = 0, every = 0;
   bool project = false, json = false;
   std::string csv, html, svg, save_state, from_state;
   std::vector<double> times;
@@ -41,6 +41,9 @@ void add_options(Line& line, Options& options) {
   line.add("--tolerance", &options.tolerance, "joint error above which the run has failed [m, rad]").positive();
   line.add("--energy-tolerance", &options.energy_tolerance,
            "share of the motion's energies and momenta that the method may lose; of energies that it makes up a tenth")
+      .positive();
+  line.add("--trajectory-tolerance", &options.trajectory_tolerance,
+           "share of sizes, and rad, of the trajectory's estimated error above which the run has failed")
       .positive();
   line.add("--project", &options.project, "project an inconsistent start onto C = 0");
   line.add("-o,--output", &options.csv,
@@ -85,6 +88,7 @@ int run(const Options& options) {
   Scene scene = scene_of(options.scene);
   if (options.tolerance > 0) scene.tolerance = options.tolerance;
   if (options.energy_tolerance > 0) scene.energy_tolerance = options.energy_tolerance;
+  if (options.trajectory_tolerance > 0) scene.trajectory_tolerance = options.trajectory_tolerance;
   if (options.project) scene.project = true;
   if (options.accuracy > 0) scene.accuracy = options.accuracy;
   std::FILE* summary = summary_beside({options.csv, options.html, options.svg, options.save_state});

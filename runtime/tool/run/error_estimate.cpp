@@ -6,11 +6,15 @@
 #include <cdot/rotation.hpp>
 #include <cdot/spaces.hpp>
 
+#include "runtime/tool/scene/extent.hpp"
+
 namespace cdot {
 namespace {
 
-// A sample costs about four steps, so it takes 5 % of these. A short run has more, for some milliseconds at most.
-constexpr long long steps_per_sample = 80, fewest_samples = 12;
+// A sample costs about five steps, so it takes 5 % of these. A short run has more, for some milliseconds at most.
+constexpr long long steps_per_sample = 100, fewest_samples = 12;
+// Of a finer step. A method that halves a step which it cannot solve would take the same parts of a half.
+constexpr int parts = 3;
 constexpr double half_turn = 3.141592653589793;  // a larger error of an angle has no meaning
 
 using Vector = std::array<double, 3>;
@@ -19,6 +23,7 @@ void add_to(Vector& sum, const Vector& a, double scale) {
   for (std::size_t k = 0; k < 3; ++k) sum[k] += scale * a[k];
 }
 double square(const Vector& a) { return a[0] * a[0] + a[1] * a[1] + a[2] * a[2]; }
+double norm(const Vector& a) { return std::sqrt(square(a)); }
 Vector minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 Vector position(const BodyState& b) { return {b.x, b.y, b.z}; }
@@ -36,7 +41,7 @@ double time_scale(double speed, double change, double most) {
 }
 
 Scene with_finer_steps(Scene scene) {
-  scene.settings.substeps *= 2;
+  scene.settings.substeps *= parts;
   if (sweeps(scene.settings.solver)) scene.settings.iterations *= 4;
   return scene;
 }
@@ -46,10 +51,13 @@ Scene with_finer_steps(Scene scene) {
 template <class S>
 ErrorEstimate<S>::ErrorEstimate(const Scene& scene, long long steps)
     : finer_(with_finer_steps(scene)),
-      share_(1 / (1 - std::pow(0.5, row_of(scene.settings.integrator).order))),
+      share_(1 / (1 - std::pow(1.0 / parts, row_of(scene.settings.integrator).order))),
       spacing_(std::clamp(steps / fewest_samples, 1LL, steps_per_sample)),
       next_(scene.settings.local_error > 0 ? steps + 1 : (spacing_ + 1) / 2),
-      sums_(scene.bodies.size()) {}
+      sums_(scene.bodies.size()),
+      size_(extents_of(scene).of_body) {
+  for (const double size : size_) is_point_.push_back(size == 0);
+}
 
 template <class S>
 void ErrorEstimate<S>::before_step(const BasicWorld<S>& run, long long k) {
@@ -73,6 +81,7 @@ void ErrorEstimate<S>::after_step(const Frame& before, const Frame& after, long 
 
 template <class S>
 void ErrorEstimate<S>::add(const Frame& before, const Frame& after, const Frame& finer, double steps) {
+  if (first_.bodies.empty()) first_ = before;
   const double h = after.time - before.time, scale = share_ * steps;
   for (std::size_t k = 0; k < sums_.size(); ++k) {
     const BodyState &from = before.bodies[k], &to = after.bodies[k], &better = finer.bodies[k];
@@ -87,14 +96,19 @@ void ErrorEstimate<S>::add(const Frame& before, const Frame& after, const Frame&
   ++error_.samples;
   const double linear = time_scale(speeds_[0], changes_[0], after.time),
                angular = time_scale(speeds_[1], changes_[1], after.time);
-  for (std::size_t k = 0; k < sums_.size(); ++k) {
-    const double position = std::sqrt(square(sums_[k].position)) + linear * std::sqrt(square(sums_[k].velocity));
-    const double angle =
-        std::min(half_turn, std::sqrt(square(sums_[k].angle)) + angular * std::sqrt(square(sums_[k].spin)));
-    if (std::max(position, angle) > std::max(error_.position, error_.angle))
-      error_.time = after.time, error_.body = static_cast<int>(k);
-    error_.position = std::max(error_.position, position), error_.angle = std::max(error_.angle, angle);
-  }
+  for (std::size_t k = 0; k < sums_.size(); ++k) judge(after, k, linear, angular);
+}
+
+template <class S>
+void ErrorEstimate<S>::judge(const Frame& after, std::size_t body, double linear, double angular) {
+  double& size = size_[body];
+  if (is_point_[body]) size = std::max(size, norm(minus(position(after.bodies[body]), position(first_.bodies[body]))));
+  const Sums& sums = sums_[body];
+  const double position = norm(sums.position) + linear * norm(sums.velocity);
+  const double angle = std::min(half_turn, norm(sums.angle) + angular * norm(sums.spin));
+  const double share = std::max(size > 0 ? position / size : 0, angle);
+  if (share > error_.share) error_.share = share, error_.time = after.time, error_.body = static_cast<int>(body);
+  error_.position = std::max(error_.position, position), error_.angle = std::max(error_.angle, angle);
 }
 
 #define CDOT_INSTANTIATE(S) template class ErrorEstimate<S>;

@@ -1,8 +1,8 @@
 // The error of a run's trajectory, estimated while it runs, for a few per cent of its cost.
 //
-// At some steps a second World starts from the same state and takes the step in halves, or with a hundredth of the
-// local error. A method of order p errs in the step by e = d / (1 - 2^-p), d being the difference (E. Hairer, S. P.
-// Norsett, G. Wanner, "Solving Ordinary Differential Equations I", 1993, II.4). The errors of the steps add up with
+// At some steps a second World starts from the same state and takes the step in three parts. A method of order p errs
+// in the step by e = d / (1 - 3^-p), d being the difference (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary
+// Differential Equations I", 1993, II.4). The errors of the steps add up with
 // their signs, as those of a symplectic method cancel along an orbit: an error s of velocities displaces a body by
 // s T, where T is the time in which the motion changes, the root of sum v^2 / sum a^2. Growth by chaos is not in it.
 #pragma once
@@ -20,9 +20,10 @@ namespace cdot {
 
 struct TrajectoryError {
   double position = 0, angle = 0;  // the largest of a body so far [m], [rad]
-  double time = 0;                 // of the larger [s]
-  int body = -1;
-  int samples = 0;  // 0: no estimate
+  double share = 0;                // the larger of the angle and of the position in sizes of the body's mechanism
+  double time = 0;                 // of the share [s]
+  int body = -1;                   // of the share
+  int samples = 0;                 // 0: no estimate
 };
 
 template <class S>
@@ -41,13 +42,17 @@ class ErrorEstimate {
     Vector position{}, angle{}, velocity{}, spin{};  // of a body's errors
   };
   void add(const Frame& before, const Frame& after, const Frame& finer, double steps);
+  void judge(const Frame& after, std::size_t body, double linear, double angular);
 
   Scene finer_;   // the scene by the finer method
-  double share_;  // 1 / (1 - 2^-p)
+  double share_;  // 1 / (1 - 3^-p)
   long long spacing_, next_, last_ = 0;
   Snapshot start_;
   std::optional<BasicWorld<S>> world_;
   std::vector<Sums> sums_;
+  std::vector<double> size_;  // of the mechanism of each body [m]; of a single point the distance that it travels
+  std::vector<bool> is_point_;
+  Frame first_;  // before the first sample
   Vector speeds_{}, changes_{};
   TrajectoryError error_;
 };

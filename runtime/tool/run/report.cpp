@@ -6,6 +6,7 @@
 
 #include "runtime/text/json.hpp"
 #include "runtime/tool/run/balance_report.hpp"
+#include "runtime/tool/run/error_report.hpp"
 #include "runtime/tool/run/simulate.hpp"
 
 namespace cdot {
@@ -13,8 +14,9 @@ namespace cdot {
 std::string in_words(const TriedFix& advice) {
   if (advice.tried.empty()) return "Nothing could be tried within the time";
   if (advice.options.empty()) return fmt::format("Tried in vain: `{}`", fmt::join(advice.tried, "`, `"));
-  return fmt::format("Tried: `{}` keeps energy and momentum to {:.1e} at {} times the cost{}", advice.options,
+  return fmt::format("Tried: `{}` keeps energy and momentum to {:.1e}{} at {} times the cost{}", advice.options,
                      advice.share,
+                     advice.off > 0 ? fmt::format(", and the trajectory to about {:.1e},", advice.off) : std::string(),
                      advice.cost < 10 ? fmt::format("{:.2g}", advice.cost) : fmt::format("{:.0f}", advice.cost),
                      advice.until > 0 ? fmt::format(", up to t = {:.6g} s", advice.until) : std::string());
 }
@@ -22,11 +24,8 @@ std::string in_words(const TriedFix& advice) {
 namespace {
 
 text::Json advice_json(const TriedFix& advice) {
-  return {{"options", advice.options},
-          {"share", advice.share},
-          {"cost", advice.cost},
-          {"until", advice.until},
-          {"tried", advice.tried}};
+  return {{"options", advice.options}, {"share", advice.share}, {"off", advice.off},
+          {"cost", advice.cost},       {"until", advice.until}, {"tried", advice.tried}};
 }
 
 // Springs follow the joints in the World.
@@ -76,6 +75,8 @@ std::string failure(const Scene& scene, const RunResult& result) {
   }
   if (const std::string lost = balance_failure(scene, result); !lost.empty())
     return fmt::format("{}. {}", lost, fix_of(result, "a shorter step"));
+  if (const std::string off = trajectory_failure(scene, result); !off.empty())
+    return fmt::format("{}. {}", off, fix_of(result, "a shorter step"));
   const std::string lack = result.choice ? accuracy_failure(*result.choice) : std::string();
   return lack.empty() ? lack : fmt::format("{}. {}", lack, fix_of_accuracy(*result.choice));
 }
@@ -106,20 +107,6 @@ std::string warning_of_accuracy(const Scene& scene, const RunResult& result) {
       "local error, or fixed steps of implicit or rattle",
       scene.settings.local_error, result.counts.rescued, result.counts.rescued == 1 ? " was" : "s were",
       result.first_rescue);
-}
-
-std::string error_text(const Scene& scene, const TrajectoryError& error) {
-  return fmt::format(
-      "  trajectory      off by about {:.1g} m and {:.1g} rad ({}, t = {:.6g} s), by halved steps at {} places\n",
-      error.position, error.angle, body_name(scene, error.body), error.time, error.samples);
-}
-
-text::Json error_json(const Scene& scene, const TrajectoryError& error) {
-  return {{"position", error.position},
-          {"angle", error.angle},
-          {"time", error.time},
-          {"body", body_name(scene, error.body)},
-          {"samples", error.samples}};
 }
 
 }  // namespace
@@ -174,6 +161,8 @@ std::string summary_text(const Scene& asked, const RunResult& result) {
     text += fmt::format("  warning         {}. Likely fix: {}\n", concern.what, concern.fix);
   if (const std::string lost = balance_warning(scene, result); !lost.empty())
     text += fmt::format("  warning         {}. {}\n", lost, fix_of(result, "a shorter step"));
+  if (const std::string off = trajectory_warning(scene, result); !off.empty())
+    text += fmt::format("  warning         {}. {}\n", off, fix_of(result, "a shorter step"));
   if (const std::string lack = warning_of_accuracy(scene, result); !lack.empty())
     text += fmt::format("  warning         {}\n", lack);
   const std::string why = failure(asked, result);
@@ -217,6 +206,7 @@ std::string summary_json(const Scene& asked, const RunResult& result) {
       {"energy_drift", result.energy_drift},
       {"balance", balance_json(result.balance)},
       {"warning", balance_warning(scene, result)},
+      {"trajectory_warning", trajectory_warning(scene, result)},
       {"accuracy_warning", warning_of_accuracy(scene, result)},
       {"redundant_rows", result.redundant_rows},
       {"rank_losses", rank_losses_json(scene, result.rank_losses)},

@@ -36,6 +36,7 @@ struct RunOptions {
 struct TriedFix {
   std::string options;             // of `cdot-run simulate`; empty: nothing that was tried is a cure
   double share = 0;                // the method's own share of energies and momenta with these options
+  double off = 0;                  // the trajectory's estimated error with them, in shares; 0: no estimate
   double cost = 0;                 // CPU time in units of the run's
   double until = 0;                // [s] up to which the trials ran; 0: like the run
   std::vector<std::string> tried;  // all options tried, in order

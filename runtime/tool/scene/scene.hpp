@@ -67,6 +67,7 @@ struct Scene {
   double accuracy = 0;                     // [m], [rad] that the run chooses a method for; 0: see chooses_method()
   double tolerance = 0.01;                 // [m], [rad] joint error above which a run has failed
   double energy_tolerance = 0.1;           // share of the energies that the method may lose
+  double trajectory_tolerance = 0;         // share of sizes and [rad] of the trajectory's estimated error; 0: none
   OnFailure on_failure = OnFailure::stop;  // of a step
   bool project = false;                    // project an inconsistent start onto C = 0
   std::vector<SceneBody> bodies;

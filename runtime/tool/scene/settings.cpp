@@ -74,6 +74,7 @@ constexpr Key<Scene> top_keys[] = {
     {"sleep_speed", "largest speed at rest [m/s, rad/s]", "0.001", read_number<Sign::positive, settings, &Settings::sleep_speed>},
     {"tolerance", "joint error above which the run has failed [m, rad]", "0.01", read_number<Sign::positive, &Scene::tolerance>},
     {"energy_tolerance", "share of the motion's energies and momenta that the method may lose; of energies that it makes up a tenth", "0.1", read_number<Sign::positive, &Scene::energy_tolerance>},
+    {"trajectory_tolerance", "share of each mechanism's size, and [rad]: of fixed steps, the estimated error of the trajectory above which the run has failed; a tenth of it warns", "none: 0.1 warns", read_number<Sign::positive, &Scene::trajectory_tolerance>},
     {"project", "project an inconsistent start onto C = 0", "false", read_flag<&Scene::project>},
     {"on_failure", "reaction to a step that fails", "stop", read_choice<failure_answers, &Scene::on_failure>, Where::everywhere, choices_of<failure_answers>},
 };

@@ -9,6 +9,7 @@
 #include <cdot/methods.hpp>
 
 #include "runtime/tool/run/balance_report.hpp"
+#include "runtime/tool/run/error_report.hpp"
 #include "runtime/tool/run/process.hpp"
 #include "runtime/tool/search/simulate.hpp"
 
@@ -89,7 +90,8 @@ std::vector<Candidate> finer_accuracies(const Scene& scene) {
 }  // namespace
 
 bool needs_advice(const Scene& scene, const RunResult& result) {
-  return !failure(scene, result).empty() || !balance_warning(scene, result).empty();
+  return !failure(scene, result).empty() || !balance_warning(scene, result).empty() ||
+         !trajectory_warning(scene, result).empty();
 }
 
 namespace {
@@ -97,22 +99,24 @@ namespace {
 // Of a run by a candidate.
 struct Trial {
   bool done = false, cures = false;  // done: it ended within its time
-  double share = 0, cpu = 0;
+  double share = 0, off = 0, cpu = 0;
 };
 
-Trial try_out(const Scene& scene, const RunOptions& options, double most) {
+// `off`: the trajectory was, so a cure needs an estimate.
+Trial try_out(const Scene& scene, const RunOptions& options, double most, bool off) {
   const std::vector<double> numbers = in_child(most, [&]() -> std::vector<double> {
     std::string warnings;
     try {
       const RunResult result = simulate(scene, options, warnings);
-      const bool cures = !result.interrupted && !needs_advice(scene, result);
-      return {cures ? 1.0 : 0.0, worst_share(result.balance), result.cpu};
+      const bool known = !off || result.choice || result.error.samples > 0;
+      const bool cures = known && !result.interrupted && !needs_advice(scene, result);
+      return {cures ? 1.0 : 0.0, worst_share(result.balance), result.error.share, result.cpu};
     } catch (const std::exception&) {
       return {};  // for example a state of another method
     }
   });
-  if (numbers.size() != 3) return {};
-  return {true, numbers[0] != 0, numbers[1], numbers[2]};
+  if (numbers.size() != 4) return {};
+  return {true, numbers[0] != 0, numbers[1], numbers[2], numbers[3]};
 }
 
 // A picked integrator is named with other options: with these another one might be picked.
@@ -131,6 +135,7 @@ TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunRes
   if (share < 1) advice.until = result.start + share * (result.time - result.start);
   RunOptions trial_options;
   trial_options.from = options.from;
+  const bool off = !trajectory_warning(scene, result).empty() || !trajectory_failure(scene, result).empty();
   double left = most_cpu;
   for (const Candidate& candidate :
        chooses_method(scene) ? finer_accuracies(scene) : candidates_for(scene, result.failed_step.has_value())) {
@@ -140,12 +145,12 @@ TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunRes
     if (advice.until > 0) changed.duration = advice.until;
     const double most = std::min(left, most_cpu_of_a_trial);
     if (!(most > 0) || Interrupt::asked()) break;
-    const Trial trial = try_out(changed, trial_options, most);
+    const Trial trial = try_out(changed, trial_options, most, off);
     left -= trial.done ? trial.cpu : most;
     advice.tried.push_back(candidate.options + named_with(scene, candidate));
     if (!trial.cures) continue;
     advice.options = advice.tried.back();
-    advice.share = trial.share;
+    advice.share = trial.share, advice.off = trial.off;
     advice.cost = trial.cpu / std::max(share * result.cpu, 1e-9);
     break;
   }

@@ -6,11 +6,11 @@
 
 namespace cdot {
 
-// True if the run failed, or its balance warns.
+// True if the run failed, or its balance or the estimate of its trajectory warns.
 bool needs_advice(const Scene& scene, const RunResult& result);
 
 // Searches the candidates in a fixed order for the first whose run over the same time passes without a failure and
-// without a warning of its balance. The trials have a bounded CPU time; a candidate that does not end within it is
+// without such a warning. The trials have a bounded CPU time; a candidate that does not end within it is
 // none.
 TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunResult& result);
 

@@ -1,10 +1,13 @@
 // The error that a run estimates of itself, against its distance from a run of much higher accuracy.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <cdot/methods.hpp>
 
+#include "runtime/tool/run/error_report.hpp"
 #include "runtime/tool/run/trajectory.hpp"
+#include "runtime/tool/search/advice.hpp"
 #include "tests/runtime/tool/support.hpp"
 
 namespace cdot::test::error_estimate_test {
@@ -70,11 +73,57 @@ TEST(ErrorEstimate, FollowsTheOrderOfTheMethod) {
   }
 }
 
+// The midpoint rule halves a step that it cannot solve: the parts of a half would be the same.
+TEST(ErrorEstimate, SeesStepsThatTheMethodDivides) {
+  Scene scene = mechanism("spatial/gyroscope", Integrator::implicit, 1.0 / 60);
+  const double is = true_error(scene).larger(), said = estimate(scene).share;
+  fmt::print("off by {:.1e}, estimated {:.1e}\n", is, said);
+  EXPECT_GE(said, 0.15 * is);
+}
+
 TEST(ErrorEstimate, OfOwnStepsIsNone) {
   Scene scene = scene_named("compound_pendulum");
   scene.settings.integrator = Integrator::dop853;
   scene.settings.local_error = 1e-6;
   EXPECT_EQ(estimate(scene).samples, 0);  // a method that chooses its steps has an estimate of its own
+}
+
+// A pendulum at a coarse step is off by some per cent: the tolerance decides between silence, a warning and a failure.
+TEST(ErrorEstimate, PassesWarnsOrFailsByTheToleranceOfTheScene) {
+  Scene scene = mechanism("compound_pendulum", Integrator::rattle, 0.05);
+  const auto with = [&](double tolerance) {
+    scene.trajectory_tolerance = tolerance;
+    std::string warnings;
+    const RunResult result = simulate(scene, {}, warnings);
+    EXPECT_EQ(failure(scene, result).empty(), trajectory_failure(scene, result).empty());
+    EXPECT_EQ(needs_advice(scene, result),
+              !failure(scene, result).empty() || !trajectory_warning(scene, result).empty());
+    return std::pair{failure(scene, result), trajectory_warning(scene, result)};
+  };
+  const double share = estimate(scene).share;
+  ASSERT_GT(share, 0.02);
+  EXPECT_EQ(with(11 * share), std::pair(std::string(), std::string()));
+  EXPECT_NE(with(9 * share).second.find("the trajectory of \"rod\" is off by about"), std::string::npos);
+  EXPECT_NE(with(0.9 * share).first.find("the trajectory of \"rod\" is off by about"), std::string::npos);
+  EXPECT_EQ(with(0).second.empty(), share <= 0.1);
+  EXPECT_EQ(with(0).first, "");
+}
+
+// A light chain under a heavy load at a game's step: what is advised was tried, and holds when pasted.
+TEST(ErrorEstimate, WarnsWithAFixThatHolds) {
+  const std::string file = (source_dir() / "tests/hard_cases/heavy_load/planar.toml").string();
+  const auto ran = [&](const std::string& options) {
+    const CommandResult result = cdot_run(fmt::format("simulate '{}' {} --json", file, options));
+    EXPECT_EQ(result.status, 0);
+    return nlohmann::json::parse(result.out);
+  };
+  const auto warned = ran("");
+  EXPECT_NE(warned["trajectory_warning"], "");
+  const std::string pasted = warned["advice"]["options"];
+  ASSERT_NE(pasted, "");
+  const auto cured = ran(pasted);
+  EXPECT_EQ(cured["trajectory_warning"], "");
+  EXPECT_NEAR(double(cured["trajectory_error"]["share"]), double(warned["advice"]["off"]), 1e-12);
 }
 
 }  // namespace

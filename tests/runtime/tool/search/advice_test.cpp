@@ -94,13 +94,16 @@ TEST(Balance, AnEnergyWithoutASourceFailsTheRunAndKeepsItsOutput) {
 TEST(Balance, ASharePassesWarnsOrFailsByTheToleranceOfTheScene) {
   const TemporaryFolder folder;
   const std::string file = written(folder, two_bodies);
-  const Ran coarse = simulated(file, "--integrator euler --step 0.05 --energy-tolerance 100");
+  const Ran coarse =
+      simulated(file, "--integrator euler --step 0.05 --trajectory-tolerance 100 --energy-tolerance 100");
   const double error = coarse.summary["balance"]["method"]["error"];
   const double scale = coarse.summary["balance"]["method"]["scale"];
   const double share = std::abs(error) / scale;
   ASSERT_GT(share, 1e-3);
   const auto with = [&](double tolerance) {
-    return simulated(file, fmt::format("--integrator euler --step 0.05 --energy-tolerance {}", tolerance));
+    return simulated(
+        file,
+        fmt::format("--integrator euler --step 0.05 --trajectory-tolerance 100 --energy-tolerance {}", tolerance));
   };
   EXPECT_TRUE(with(101 * share).silent());
   const Ran warned = with(9 * share);

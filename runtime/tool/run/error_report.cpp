@@ -1,0 +1,47 @@
+// A TrajectoryError -> words.
+#include "runtime/tool/run/error_report.hpp"
+
+#include <fmt/format.h>
+
+namespace cdot {
+namespace {
+
+// Over all scenes and hard cases at their own steps, the estimate was above this share wherever the error was, save for
+// impacts and bodies of 1e-6 of their neighbours' mass. It may be far above the error: without a tolerance of the scene
+// it fails no run.
+constexpr double usual_share = 0.1;
+constexpr double small_share = 0.1;  // of the tolerance: a warning
+
+// The estimate in words if it exceeds a share.
+std::string above(double share, const Scene& scene, const RunResult& result) {
+  const TrajectoryError& error = result.error;
+  if (result.choice || !(error.share > share)) return {};
+  return fmt::format(
+      "the trajectory of {} is off by about {:.2g} of its mechanism's size or of 1 rad by t = {:.6g} s, above {:.2g}",
+      body_name(scene, error.body), error.share, error.time, share);
+}
+
+}  // namespace
+
+std::string trajectory_failure(const Scene& scene, const RunResult& result) {
+  return scene.trajectory_tolerance > 0 ? above(scene.trajectory_tolerance, scene, result) : std::string();
+}
+
+std::string trajectory_warning(const Scene& scene, const RunResult& result) {
+  if (!trajectory_failure(scene, result).empty()) return {};
+  return above(scene.trajectory_tolerance > 0 ? small_share * scene.trajectory_tolerance : usual_share, scene, result);
+}
+
+std::string error_text(const Scene& scene, const TrajectoryError& error) {
+  return fmt::format(
+      "  trajectory      off by about {:.1g} m and {:.1g} rad ({}, t = {:.6g} s), by shorter steps at {} places\n",
+      error.position, error.angle, body_name(scene, error.body), error.time, error.samples);
+}
+
+text::Json error_json(const Scene& scene, const TrajectoryError& error) {
+  return {
+      {"position", error.position},           {"angle", error.angle},    {"share", error.share}, {"time", error.time},
+      {"body", body_name(scene, error.body)}, {"samples", error.samples}};
+}
+
+}  // namespace cdot

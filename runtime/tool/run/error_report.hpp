@@ -1,0 +1,19 @@
+// The estimated error of a trajectory -> its verdict in words, and its part of the summary.
+#pragma once
+
+#include <string>
+
+#include "runtime/text/json.hpp"
+#include "runtime/tool/run/simulate.hpp"
+
+namespace cdot {
+
+// Why the estimate fails the run, or only warns; empty if it does neither. Without a fix. A run that was searched for
+// has an error that was measured instead.
+std::string trajectory_failure(const Scene& scene, const RunResult& result);
+std::string trajectory_warning(const Scene& scene, const RunResult& result);
+
+std::string error_text(const Scene& scene, const TrajectoryError& error);
+text::Json error_json(const Scene& scene, const TrajectoryError& error);
+
+}  // namespace cdot
