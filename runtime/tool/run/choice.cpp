@@ -21,6 +21,12 @@ namespace {
 
 const char* unit_of(const Choice& choice) { return choice.of_size ? "of its size and of 1 rad" : "m, rad"; }
 
+std::string budget_text(const Choice& choice) {
+  return choice.ended_by_budget
+             ? fmt::format("; the search ended at its budget, after {:.3g} s of CPU time", choice.cpu_before)
+             : std::string();
+}
+
 std::string steps_text(const Choice& choice) {
   return choice.local_error > 0 ? fmt::format("local error {:.1e}", choice.local_error)
                                 : fmt::format("steps of {:.6g} s", choice.step);
@@ -35,13 +41,14 @@ std::string euler_text(const Choice& choice) {
 // The reason why the run fails; empty if it has the accuracy.
 std::string lack(const Choice& choice) {
   if (choice.reached) return {};
-  const std::string asked = fmt::format("accuracy {:.1e} {}", choice.asked, unit_of(choice));
+  const std::string asked = fmt::format("accuracy {:.1e} {}", choice.asked, unit_of(choice)),
+                    rest = euler_text(choice) + budget_text(choice);
   if (!std::isfinite(choice.achieved))
     return fmt::format("{} is not known: no two runs of one method ended well within the search's budget{}", asked,
-                       euler_text(choice));
-  if (choice.achieved <= choice.asked) return fmt::format("{} is not assured{}", asked, euler_text(choice));
+                       rest);
+  if (choice.achieved <= choice.asked) return fmt::format("{} is not assured{}", asked, rest);
   return fmt::format("{} holds up to t = {:.6g} s; later on two runs differ by up to {:.1e}{}", asked,
-                     choice.holds_until, choice.achieved, euler_text(choice));
+                     choice.holds_until, choice.achieved, rest);
 }
 
 bool fails(const Choice& choice) {
@@ -73,6 +80,7 @@ text::Json choice_json(const Choice& choice) {
           {"step", choice.step},
           {"achieved", choice.achieved},
           {"reached", choice.reached},
+          {"ended_by_budget", choice.ended_by_budget},
           {"holds_until", choice.holds_until},
           {"left_to_euler", choice.left_to_euler},
           {"evaluations", choice.evaluations},

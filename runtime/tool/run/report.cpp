@@ -25,7 +25,8 @@ namespace {
 
 text::Json advice_json(const TriedFix& advice) {
   return {{"options", advice.options}, {"share", advice.share}, {"off", advice.off},
-          {"cost", advice.cost},       {"until", advice.until}, {"tried", advice.tried}};
+          {"cost", advice.cost},       {"steps", advice.steps}, {"evaluations", advice.evaluations},
+          {"until", advice.until},     {"tried", advice.tried}};
 }
 
 // Springs follow the joints in the World.
@@ -216,11 +217,9 @@ std::string summary_json(const Scene& asked, const RunResult& result) {
       {"concerns", concerns_json(concerns_about(scene, result.diagnosis, true))},
   };
   if (result.counts.taken > 0)
-    json["own_steps"] = {{"taken", result.counts.taken},
-                         {"rejected", result.counts.rejected},
-                         {"events", result.counts.events},
-                         {"rescued", result.counts.rescued},
-                         {"steered", result.counts.steered}};
+    json["own_steps"] = {{"evaluations", result.counts.evaluations}, {"taken", result.counts.taken},
+                         {"rejected", result.counts.rejected},       {"events", result.counts.events},
+                         {"rescued", result.counts.rescued},         {"steered", result.counts.steered}};
   if (result.error.samples > 0) json["trajectory_error"] = error_json(scene, result.error);
   if (result.advice) json["advice"] = advice_json(*result.advice);
   if (result.failed_step) json["failed_step"] = failed_step_json(scene, *result.failed_step);

@@ -27,7 +27,8 @@ struct RunOptions {
   std::string doing;                   // before the progress: "dop853, local error 1e-06: "
   // Called at the start and after every step with the work so far; false ends the run there.
   std::function<bool(const Frame&, const StepCounts&)> look;
-  Snapshot from;  // to continue from; empty: the scene's start
+  double search_cpu = 60;  // [s] after which the search for a method ends with the best run so far
+  Snapshot from;           // to continue from; empty: the scene's start
   // When to save RunResult::state: at the first step that ends then or later.
   std::optional<double> save_at;
 };
@@ -38,6 +39,8 @@ struct TriedFix {
   double share = 0;                // the method's own share of energies and momenta with these options
   double off = 0;                  // the trajectory's estimated error with them, in shares; 0: no estimate
   double cost = 0;                 // CPU time in units of the run's
+  long long steps = 0;             // and their price in counts: of steps, or of the intervals of those that a method
+  long long evaluations = 0;       // chooses, and of accelerations
   double until = 0;                // [s] up to which the trials ran; 0: like the run
   std::vector<std::string> tried;  // all options tried, in order
 };

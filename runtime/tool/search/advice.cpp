@@ -44,6 +44,10 @@ Candidate by_integrator(const Scene& scene, Integrator integrator, double local_
           }};
 }
 
+Candidate project() {
+  return {"--project", [](Scene& changed) { changed.project = true; }};
+}
+
 Candidate both(const Candidate& a, const Candidate& b) {
   return {a.options + " " + b.options, [=](Scene& scene) { a.change(scene), b.change(scene); }};
 }
@@ -51,7 +55,6 @@ Candidate both(const Candidate& a, const Candidate& b) {
 // `fails`: the run ended at a step that failed.
 std::vector<Candidate> candidates_for(const Scene& scene, bool fails) {
   std::vector<Candidate> all;
-  const Candidate project{"--project", [](Scene& changed) { changed.project = true; }};
   const Settings& settings = scene.settings;
   if (scene.on_failure == OnFailure::stop && fails)
     all.push_back({"--on-failure retry", [](Scene& changed) { changed.on_failure = OnFailure::retry; }});
@@ -72,8 +75,8 @@ std::vector<Candidate> candidates_for(const Scene& scene, bool fails) {
   if (settings.local_error == 0)
     all.push_back(both(by_integrator(scene, Integrator::rattle, 0), by_step(scene.step / 8)));
   if (!scene.project && !scene.joints.empty()) {
-    all.push_back(project);
-    all.push_back(both(by_integrator(scene, Integrator::dop853, 1e-6), project));
+    all.push_back(project());
+    all.push_back(both(by_integrator(scene, Integrator::dop853, 1e-6), project()));
   }
   return all;
 }
@@ -84,6 +87,7 @@ std::vector<Candidate> finer_accuracies(const Scene& scene) {
   for (const double share : {1e-1, 1e-3})
     all.push_back({fmt::format("--accuracy {:.0e}", share * asked),
                    [=](Scene& changed) { changed.accuracy = std::stod(fmt::format("{:.0e}", share * asked)); }});
+  if (!scene.project && !scene.joints.empty()) all.push_back(project());
   return all;
 }
 
@@ -100,6 +104,7 @@ namespace {
 struct Trial {
   bool done = false, cures = false;  // done: it ended within its time
   double share = 0, off = 0, cpu = 0;
+  long long steps = 0, evaluations = 0;
 };
 
 // `off`: the trajectory was, so a cure needs an estimate.
@@ -110,13 +115,15 @@ Trial try_out(const Scene& scene, const RunOptions& options, double most, bool o
       const RunResult result = simulate(scene, options, warnings);
       const bool known = !off || result.choice || result.error.samples > 0;
       const bool cures = known && !result.interrupted && !needs_advice(scene, result);
-      return {cures ? 1.0 : 0.0, worst_share(result.balance), result.error.share, result.cpu};
+      return {cures ? 1.0 : 0.0, worst_share(result.balance),       result.error.share,
+              result.cpu,        static_cast<double>(result.steps), static_cast<double>(result.counts.evaluations)};
     } catch (const std::exception&) {
       return {};  // for example a state of another method
     }
   });
-  if (numbers.size() != 4) return {};
-  return {true, numbers[0] != 0, numbers[1], numbers[2], numbers[3]};
+  if (numbers.size() != 6) return {};
+  return {
+      true, numbers[0] != 0, numbers[1], numbers[2], numbers[3], std::llround(numbers[4]), std::llround(numbers[5])};
 }
 
 // A picked integrator is named with other options: with these another one might be picked.
@@ -132,9 +139,16 @@ TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunRes
   const Interrupt interrupt;
   TriedFix advice;
   const double share = result.cpu > cpu_of_a_trial ? cpu_of_a_trial / result.cpu : 1;
-  if (share < 1) advice.until = result.start + share * (result.time - result.start);
   RunOptions trial_options;
   trial_options.from = options.from;
+  if (share < 1) {
+    advice.until = result.start + share * (result.time - result.start);
+    // A cure of what is not yet ill is none.
+    Scene begun = scene;
+    begun.duration = advice.until;
+    const Trial same = try_out(begun, trial_options, most_cpu_of_a_trial, false);
+    if (!same.done || same.cures) return advice;
+  }
   const bool off = !trajectory_warning(scene, result).empty() || !trajectory_failure(scene, result).empty();
   double left = most_cpu;
   for (const Candidate& candidate :
@@ -151,6 +165,7 @@ TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunRes
     if (!trial.cures) continue;
     advice.options = advice.tried.back();
     advice.share = trial.share, advice.off = trial.off;
+    advice.steps = trial.steps, advice.evaluations = trial.evaluations;
     advice.cost = trial.cpu / std::max(share * result.cpu, 1e-9);
     break;
   }

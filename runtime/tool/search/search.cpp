@@ -38,11 +38,12 @@ constexpr int most_idle = 3;       // refinements in a row without that
 
 // --- Prices, in evaluations of an island's accelerations; measured for steps with fixed length.
 constexpr double price_of_step(const IntegratorRow& row) { return row.stiffens ? 4 : row.projects ? 3 : 2; }
-// All runs of a search together: about a minute, or 20 times the price of steps of a millisecond.
+// All runs of a search together: about half a minute. RunOptions::search_cpu ends it where prices deceive.
 constexpr double most_work = 1e8;  // evaluations times bodies
+// Or so many times the price of steps of a millisecond, if
 constexpr double most_millisecond_runs = 20;
-// Or so many times the price of the first run that has ended with steps of its own: 1e-12 of its local error costs 32
-// times as much.
+// that is more than so many times the price of the first run that has ended with steps of its own: 1e-12 of its local
+// error costs 32 times as much.
 constexpr double most_first_runs = 40;
 // A run that has taken `suspicious` evaluations and is on the way to `dear` may be stiff. If the fastest oscillation of
 // tensions and springs explains a share of that price, methods for stiff scenes get the same share to be cheaper.
@@ -113,7 +114,8 @@ class Search {
     const double bodies = std::max<double>(1, static_cast<double>(scene.bodies.size()));
     const double steps = scene.duration / default_step * yardstick_.mechanisms();
     least_left_ = most_millisecond_runs * price_of_step(row_of(Integrator::euler)) * steps;
-    left_ = std::max(most_work / bodies, least_left_);
+    left_ = most_work / bodies;
+    least_left_ = std::min(left_, least_left_);
   }
 
   RunResult run();
@@ -128,7 +130,9 @@ class Search {
   bool balanced(const Attempt& attempt) const {
     return attempt.result.balance.energy.share() <= scene_.energy_tolerance;
   }
-  bool done() const { return stopped_ || best_.reached; }
+  bool out_of_budget() const { return cpu_ > options_.search_cpu || left_ <= 0; }
+  bool done() const { return stopped_ || best_.reached || out_of_budget(); }
+  bool in_reach(const Attempt& now, double most) const;
   double price_of(const Try& knob) const {
     return price_of_step(knob.row()) * knob.parts * intervals_of_own_steps * yardstick_.mechanisms();
   }
@@ -143,7 +147,7 @@ class Search {
   Attempt best_;
   double first_price_ = 0;  // to which the first run was on the way when it became dear
   double stiff_price_ = 0;  // the part of it that stiffness explains
-  bool may_be_dear_ = false, stopped_ = false;
+  bool may_be_dear_ = true, stopped_ = false;
   bool sensitive_ = false;  // refined in vain: the motion itself forbids more
   int runs_ = 0;
   double price_ = 0, cpu_ = 0;  // of all runs
@@ -163,10 +167,11 @@ Attempt Search::attempt(const Try& knob, double most) {
   if (may_be_dear_) options.diagnose_times = {2 * solved.duration};  // only if the run is stopped
   options.progress = options_.progress;
   options.doing = name_of(knob) + ": ";
-  const double interval = solved.duration / intervals_of_own_steps;
+  const double interval = solved.duration / intervals_of_own_steps, began = cpu_now();
   options.look = [&](const Frame& frame, const StepCounts& counts) {
     if (std::abs(frame.time - static_cast<double>(attempt.frames.size()) * interval) < 1e-6 * interval)
       attempt.frames.push_back(frame);
+    if (cpu_ + cpu_now() - began > options_.search_cpu) return false;
     if (!knob.adaptive()) return true;
     attempt.price = static_cast<double>(counts.evaluations);
     const double foreseen = frame.time > 0 ? attempt.price * solved.duration / frame.time : 0;
@@ -178,8 +183,8 @@ Attempt Search::attempt(const Try& knob, double most) {
   };
   std::string ignored;
   attempt.result = run_once(solved, options, runs_ == 0 ? warnings_ : ignored);
-  if (!knob.adaptive()) attempt.price = price_of(knob);
   const RunResult& result = attempt.result;
+  attempt.price = knob.adaptive() ? static_cast<double>(result.counts.evaluations) : price_of(knob);
   stiff_price_ = 0;
   for (const WorstOfIsland& island : result.diagnosis)
     stiff_price_ += evaluations_per_step * solved.duration * std::sqrt(std::max(0.0, island.island.stiffest.square)) /
@@ -187,6 +192,7 @@ Attempt Search::attempt(const Try& knob, double most) {
   attempt.whole = result.finite && !result.failed_step && !result.stopped && !result.interrupted;
   stopped_ = result.interrupted;
   ++runs_;
+  may_be_dear_ = false;
   price_ += attempt.price, left_ -= attempt.price, cpu_ += result.cpu;
   return attempt;
 }
@@ -219,6 +225,9 @@ void Search::keep(Attempt&& attempt) {
 // The share of the last error that the next run may have; nothing if this candidate has no prospects.
 std::optional<double> Search::next_share(const Attempt& last, const Attempt& now, int& idle) {
   if (now.result.stopped) return {};
+  const bool failed_before = !last.frames.empty() && !last.whole;
+  // Smaller local errors get no further.
+  if (now.knob.adaptive() && !now.whole && failed_before && now.result.time <= last.result.time) return {};
   if (!now.whole) return stricter;
   if (!last.whole) return now.knob.adaptive() ? stricter : 0.5;
   // Two runs agree on a motion whose energy balance fails: finer ones would agree with them.
@@ -228,6 +237,13 @@ std::optional<double> Search::next_share(const Attempt& last, const Attempt& now
   if (!now.knob.adaptive() && idle > most_idle) return {};
   // Where the motion magnifies every difference, runs agree no more at all: then the time counts.
   return std::max(stricter, aim * yardstick_.asked() / now.achieved);
+}
+
+// False for a stiff candidate if fixed steps so fine that they should reach the accuracy cost more than `most`.
+bool Search::in_reach(const Attempt& now, double most) const {
+  if (!(first_price_ > 0) || now.knob.adaptive() || !std::isfinite(now.achieved)) return true;
+  const double shorter = std::pow(now.achieved / yardstick_.asked(), 1.0 / now.knob.row().order);
+  return shorter * now.price <= most;
 }
 
 void Search::try_candidate(Integrator integrator, double most) {
@@ -248,14 +264,16 @@ void Search::try_candidate(Integrator integrator, double most) {
       if (last.whole) judge(last, now);
     }
     const std::optional<double> share = next_share(last, now, idle);
-    knob = share ? finer(*knob, *share, now.result.counts.rescued > 0) : std::nullopt;
+    knob = share && in_reach(now, most - spent) ? finer(*knob, *share, now.result.counts.rescued > 0) : std::nullopt;
     keep(Attempt(now));
     last = std::move(now);
   }
 }
 
-// Those that take stiffness implicitly, high orders first.
+// Those that take stiffness implicitly, high orders first. But what stands still costs the lowest order next to
+// nothing: its first two runs, of equal and of twice as many steps as intervals.
 void Search::try_stiff(double most) {
+  try_candidate(Integrator::implicit, 3 * price_of({Integrator::implicit}));
   for (const IntegratorRow& row : std::views::reverse(integrator_rows))
     if ((row.stiffens || row.stable_radians == always) && !done()) try_candidate(row.integrator, most);
 }
@@ -266,19 +284,16 @@ RunResult Search::run() {
   std::ranges::stable_sort(candidates, std::greater<>(), [](const IntegratorRow& row) {
     return std::tuple(row.level == Level::acceleration, row.order, row.stiffens);
   });
-  may_be_dear_ = true;
   auto to_come = static_cast<double>(candidates.size());
   for (const IntegratorRow& row : candidates) {
     if (done() || sensitive_) break;
-    try_candidate(row.integrator, may_be_dear_ ? left_ : left_ / to_come);
+    try_candidate(row.integrator, runs_ == 0 ? left_ : left_ / to_come);
     --to_come;
     if (first_price_ > 0) {
-      may_be_dear_ = false;
       if (stiff_price_ > share_of_stiff * first_price_) try_stiff(share_of_stiff * first_price_);
       first_price_ = 0;
       if (!done()) try_candidate(row.integrator, left_);
     }
-    may_be_dear_ = false;
   }
   RunResult result = std::move(best_.result);
   const Choice choice = choice_of(best_);
@@ -305,6 +320,7 @@ Choice Search::choice_of(const Attempt& attempt) const {
   choice.holds_until = attempt.holds_until;
   choice.left_to_euler = attempt.result.counts.rescued;
   choice.first_left_to_euler = attempt.result.first_rescue;
+  choice.ended_by_budget = !attempt.reached && out_of_budget();
   choice.evaluations = std::llround(attempt.price);
   choice.runs_before = runs_ - 1;
   choice.evaluations_before = std::llround(price_ - attempt.price);

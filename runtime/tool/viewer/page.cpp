@@ -3,6 +3,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include <cdot/methods.hpp>
+
 #include "runtime/text/json.hpp"
 #include "runtime/tool/viewer/assets.hpp"
 #include "runtime/tool/viewer/marks.hpp"
@@ -210,7 +212,7 @@ std::vector<double> film_times(const Scene& scene) {
   return every(std::max(scene.duration / frames, scene.step), scene.duration);
 }
 
-std::string html_page(const Scene& scene, const std::vector<Frame>& film) {
+std::string html_page(const Scene& scene, const std::vector<Frame>& film, const std::string& report) {
   std::string stage, script(viewer_film_js);
   Json run;
   if (scene.dimension == Dimension::planar) {
@@ -227,11 +229,15 @@ std::string html_page(const Scene& scene, const std::vector<Frame>& film) {
     script += viewer_space_js;
   }
   const std::string title = escaped(scene.title.empty() ? scene.file : scene.title);
-  const std::string facts =
-      fmt::format("{} bodies, {} joints, step {:.4g} s", scene.bodies.size(), scene.joints.size(), scene.step);
+  const Settings& method = scene.settings;
+  const std::string steps = method.local_error > 0 ? fmt::format("local error {:.1e}", method.local_error)
+                                                   : fmt::format("step {:.4g} s", scene.step);
+  const std::string facts = fmt::format("{} bodies, {} joints, {}, {}", scene.bodies.size(), scene.joints.size(),
+                                        name_of(integrators, method.integrator), steps);
   return filled(viewer_html, {{"title", title},
                               {"style", std::string(viewer_marks_css) + std::string(viewer_css)},
                               {"facts", facts},
+                              {"report", escaped(report)},
                               {"stage", stage},
                               {"run", in_a_script(run)},
                               {"script", script + std::string(viewer_js)}});

@@ -12,8 +12,8 @@ namespace cdot {
 // The times of the frames: dense enough to look smooth, few enough for a page.
 std::vector<double> film_times(const Scene& scene);
 
-// One self-contained page: no other file, no network.
-std::string html_page(const Scene& scene, const std::vector<Frame>& film);
+// One self-contained page: no other file, no network. `report` is the summary of the run.
+std::string html_page(const Scene& scene, const std::vector<Frame>& film, const std::string& report = {});
 
 // The mechanism at several times, older ones fainter, with the traces.
 std::string svg_still(const Scene& scene, const std::vector<Frame>& film);

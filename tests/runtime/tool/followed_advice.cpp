@@ -32,6 +32,12 @@ FollowedAdvice follow_advice(const std::string& file, const std::string& options
   if (!(std::abs(energy) <= (1.001 * promised + 1e-15) * scale))
     return {false, pasted,
             fmt::format("{} keeps the energy to {:.3g}, {:.3g} promised", pasted, energy / scale, promised)};
+  const auto& own = second.summary.value("own_steps", nlohmann::json{{"evaluations", 0}});
+  if (advice["steps"] != second.summary["steps"] || advice["evaluations"] != own["evaluations"])
+    return {
+        false, pasted,
+        fmt::format("{} takes {} steps and {} evaluations, {} and {} promised", pasted, second.summary["steps"].dump(),
+                    own["evaluations"].dump(), advice["steps"].dump(), advice["evaluations"].dump())};
   return {false, pasted, ""};
 }
 

@@ -209,6 +209,42 @@ TEST(SearchedAccuracy, CountsStepsThatAreLeftToEuler) {
   EXPECT_NE(text.find(fmt::format("first by t = {:.6g} s", broken.first_rescue)), std::string::npos) << text;
 }
 
+// At rest, and dear for explicit methods: the search does not cost more than a few times the run.
+TEST(SearchedAccuracy, OfAStiffChainAtRestIsCheap) {
+  Scene scene = read_scene((source_dir() / "tests/hard_cases/hanging_chain/planar.toml").string());
+  scene.step = 0;
+  std::string warnings;
+  const RunResult result = simulate(scene, {}, warnings);
+  EXPECT_TRUE(result.choice->reached);
+  EXPECT_EQ(result.choice->integrator, Integrator::implicit);
+  EXPECT_LE(result.choice->evaluations_before, 2 * result.choice->evaluations);
+}
+
+// Only the first run may be dear: a finer one is not begun anew.
+TEST(SearchedAccuracy, RefinesWithoutRunningAnythingTwice) {
+  const Scene scene = scene_named("spatial/four_bar");
+  std::string warnings;
+  const RunResult result = simulate(scene, {}, warnings);
+  EXPECT_TRUE(result.choice->reached);
+  EXPECT_EQ(result.choice->runs_before, 2);
+}
+
+// 160 planks that swing for two minutes: 1e-4 costs half a minute of CPU time.
+TEST(SearchedAccuracy, EndsAtItsBudgetAndSaysSo) {
+  Scene scene = read_scene((source_dir() / "tests/hard_cases/bridge_with_slack/planar.toml").string());
+  scene.step = 0;
+  std::string warnings;
+  RunOptions options;
+  options.search_cpu = 3;
+  const RunResult result = simulate(scene, options, warnings);
+  const Choice& choice = result.choice.value();
+  EXPECT_FALSE(choice.reached);
+  EXPECT_LT(choice.cpu_before + result.cpu, 4.5);  // one interval of the last run may pass the budget
+  EXPECT_NEAR(result.time, scene.duration, 1e-9);  // a run that has ended is delivered
+  const std::string text = summary_text(scene, result);
+  EXPECT_NE(text.find("the search ended at its budget, after "), std::string::npos) << text;
+}
+
 TEST(SearchedAccuracy, BelowRoundOffEndsTheSearchSoon) {
   Scene scene = scene_named("double_pendulum");
   scene.accuracy = 1e-16;

@@ -49,6 +49,20 @@ TEST_F(Page, ScriptRunsAndShowsTheTimeAskedFor) {
   }
 }
 
+// The method that was chosen, its price and the error that it delivers, as in the terminal.
+TEST_F(Page, TellsWhatTheSearchChose) {
+  const TemporaryFolder folder;
+  const auto page = folder / "page.html";
+  const CommandResult ran = cdot_run(
+      fmt::format("simulate '{}' --html '{}'", (scenes_dir() / "double_pendulum.toml").string(), page.string()));
+  ASSERT_EQ(ran.status, 0);
+  const std::string text = read_text(page);
+  const std::string report = ran.out.substr(ran.out.find("  accuracy  "));
+  EXPECT_NE(text.find(report.substr(0, report.find("  worst |C|"))), std::string::npos) << report;
+  EXPECT_NE(report.find("  search          1 run before, at "), std::string::npos);
+  EXPECT_NE(text.find("2 bodies, 2 joints, dop853, local error "), std::string::npos);
+}
+
 TEST_F(Page, PlaysScrubsAndAnswersKeys) {
   const Scene scene = short_scene("four_bar", 1);
   const auto seen = seen_by(html_page(scene, film_of(scene)), R"(
