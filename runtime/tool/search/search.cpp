@@ -28,10 +28,12 @@ constexpr double strictest_local_error = 1e-14;  // below it there is only round
 constexpr double round_off = 1e-15;              // and of what is compared
 constexpr double aim = 0.5;                      // share of the accuracy that a further run aims at
 
-constexpr int shorter_for_euler = 4, most_parts_for_euler = 256;
+// Intervals bound the steps: those of Euler's method, and those that no estimate bounds.
+constexpr int shorter_for_euler = 4, shorter_for_others = 2, most_parts = 256;
+constexpr double long_step = 1.0 / 3;  // of the duration
 
 // --- Fixed steps: as many equal ones in each of the intervals.
-constexpr int most_parts = 1 << 14;
+constexpr int most_fixed_parts = 1 << 14;
 constexpr double converges = 1.5;  // the distances of runs must fall by this, or
 constexpr double surely = 1e-3;    // the first must be below this share of the accuracy
 constexpr int most_idle = 3;       // refinements in a row without that
@@ -80,31 +82,35 @@ std::string name_of(const Try& knob) {
 }
 
 // The factor by which the error should be smaller than that of a coarser knob.
-double gain(const Try& coarse, const Try& fine) {
+double gain(const Try& coarse, const Try& fine, bool left_to_euler) {
   const double shorter = static_cast<double>(fine.parts) / coarse.parts;
   if (!fine.adaptive()) return std::pow(shorter, fine.row().order);
   const double smaller = (coarse.local_error + strictest_local_error) / (fine.local_error + strictest_local_error);
-  return shorter > 1 ? std::min(smaller, shorter) : smaller;  // Euler's method has order 1
+  return left_to_euler ? std::min(smaller, shorter) : smaller;  // Euler's method has order 1
 }
 
-// The next knob, with an error of at most this share; nothing if it is too fine. Euler's method takes over at events
-// without end, whatever the local error: only shorter intervals make its steps shorter.
-std::optional<Try> finer(Try knob, double share, bool left_to_euler) {
+// The next knob, with an error of at most this share and shorter intervals; nothing if it is too fine.
+std::optional<Try> finer(Try knob, double share, int shorter) {
   if (knob.adaptive()) {
-    if (knob.strictest() && !left_to_euler) return {};
+    if (knob.strictest() && shorter == 1) return {};
     // The strictest run is compared with one of ten times its local error: there the gain is small, but sure.
     const bool last = knob.local_error < 11 * strictest_local_error;
     knob.local_error = std::max((last ? 1 : 10) * strictest_local_error, std::min(share, 0.1) * knob.local_error);
-    if (left_to_euler) knob.parts *= shorter_for_euler;
-    if (knob.parts > most_parts_for_euler) return {};
+    knob.parts *= shorter;
+    if (knob.parts > most_parts) return {};
     return knob;
   }
   const double factor = std::pow(1 / share, 1.0 / knob.row().order);
   int times = 2;
   while (times < factor && times < 8) times *= 2;
   knob.parts *= times;
-  if (knob.parts > most_parts) return {};
+  if (knob.parts > most_fixed_parts) return {};
   return knob;
+}
+
+// Two runs by the same steps agree, whatever their error.
+bool same_steps(const StepCounts& a, const StepCounts& b) {
+  return a.taken == b.taken && a.shortest == b.shortest && a.longest == b.longest;
 }
 
 class Search {
@@ -205,8 +211,10 @@ void Search::judge(const Attempt& coarse, Attempt& fine) const {
     // Where runs part for good, no gain is sure.
     if (apart <= yardstick_.asked()) fine.holds_until = fine.frames[k].time;
   }
-  fine.achieved = std::max(round_off, apart / std::sqrt(gain(coarse.knob, fine.knob)));
-  const bool known = fine.result.counts.rescued == 0 || fine.knob.parts > coarse.knob.parts;
+  const bool left_to_euler = coarse.result.counts.rescued > 0 || fine.result.counts.rescued > 0;
+  fine.achieved = std::max(round_off, apart / std::sqrt(gain(coarse.knob, fine.knob, left_to_euler)));
+  const bool known = fine.knob.parts > coarse.knob.parts ||
+                     (fine.result.counts.rescued == 0 && !same_steps(coarse.result.counts, fine.result.counts));
   const bool seems_to_converge = fine.knob.adaptive() || fine.achieved < surely * yardstick_.asked() ||
                                  fine.achieved * converges < coarse.achieved;
   fine.reached = known && seems_to_converge && balanced(fine) && fine.achieved <= yardstick_.asked();
@@ -264,7 +272,13 @@ void Search::try_candidate(Integrator integrator, double most) {
       if (last.whole) judge(last, now);
     }
     const std::optional<double> share = next_share(last, now, idle);
-    knob = share && in_reach(now, most - spent) ? finer(*knob, *share, now.result.counts.rescued > 0) : std::nullopt;
+    // Euler's method takes over at events without end, and what seems to be a line or a parabola gets steps of any
+    // length, whatever the local error: only shorter intervals make these steps shorter.
+    const StepCounts& counts = now.result.counts;
+    const int shorter = counts.rescued > 0                             ? shorter_for_euler
+                        : counts.longest > long_step * scene_.duration ? shorter_for_others
+                                                                       : 1;
+    knob = share && in_reach(now, most - spent) ? finer(*knob, *share, shorter) : std::nullopt;
     keep(Attempt(now));
     last = std::move(now);
   }
