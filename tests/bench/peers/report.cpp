@@ -94,6 +94,43 @@ std::string summary(const std::vector<Measured>& all) {
   return table;
 }
 
+// How far a knob is from the default: steps from 1/60 s, accuracies of adaptive methods from 1e-3.
+double off_default(const Point& point) {
+  return std::abs(std::log(point.knob / (point.series.knob == "h" ? 1.0 / 60 : 1e-3)));
+}
+
+// The point of an engine with no changed default, or with its first series if none is without; nullptr if it has none.
+const Point* by_default(const std::vector<Point>& points, const std::string& engine) {
+  const auto is_plain = [](const Point& point) { return point.series.changed.empty(); };
+  const Point* found = nullptr;
+  for (const Point& point : points) {
+    if (point.engine->name != engine) continue;
+    const bool same = found != nullptr && found->series.name == point.series.name;
+    const bool plainer = found == nullptr || (is_plain(point) && !is_plain(*found));
+    if (plainer || (same && off_default(point) < off_default(*found))) found = &point;
+  }
+  return found;
+}
+
+// The error of each engine with its defaults, and its price.
+std::string defaults_table(const std::vector<Measured>& all) {
+  std::vector<std::string> head{"engine"};
+  for (const Measured& m : all) head.push_back(m.problem.title);
+  std::string table = header_of(head);
+  for (const Engine& engine : engines()) {
+    std::vector<std::string> cells{engine.name};
+    for (const Measured& m : all) {
+      const Point* point = by_default(m.points, engine.name);
+      cells.push_back("–");
+      if (point == nullptr) continue;
+      const std::string error = std::isfinite(point->error) ? fmt::format("{:.1e}", point->error) : "not finite";
+      cells.back() = fmt::format("{}, {} µs ({})", error, short_number(price(m.problem, *point)), knob_text(*point));
+    }
+    table += row_of(cells);
+  }
+  return table;
+}
+
 // The smallest error of each engine, which shows that it solves the same problem.
 std::string answers_table(const Measured& m) {
   std::string table = header_of({"engine", "smallest error", "by", "µs per simulated second"});
@@ -158,7 +195,9 @@ std::string page(const std::string& command, const Options& options, const std::
       "setting reaches it within {} s of CPU time for a run.\n\n{}\n",
       command, options.rounds, options.longest, noise_text(all));
   text += "## The cheapest of the others, against Cdot\n\nAbove 1×: Cdot is cheaper.\n\n" + summary(all) +
-          "\n## The engines\n\n" + engines_table(all);
+          "\n## With defaults\n\nThe error and the price of each engine with its defaults, at the step nearest "
+          "1/60 s or at the accuracy 1e-3. Cdot chooses its method for the scene and the step.\n\n" +
+          defaults_table(all) + "\n## The engines\n\n" + engines_table(all);
   for (const Measured& m : all) {
     text += fmt::format("\n## {}\n\n`specs/scenes/{}.toml`, {} s.\n\n![{}]({}.svg)\n\n{}\n{}", m.problem.title,
                         m.problem.scene, m.problem.duration, m.problem.title, m.problem.name, levels_table(m),

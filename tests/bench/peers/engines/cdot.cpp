@@ -7,6 +7,7 @@
 #include <string>
 
 #include <cdot/effects.hpp>
+#include <cdot/recommended.hpp>
 #include <cdot/spatial.hpp>
 #include <cdot/world.hpp>
 
@@ -200,6 +201,8 @@ class WorldRun : public Base {
       : Base(arguments...), problem_(problem), world_(build<S>(problem, settings)) {
     for (const Joint& joint : problem.joints) index_.emplace(joint.number, int(index_.size()));
   }
+  // The method that the runtime chooses by itself for steps of h.
+  void choose_method(double h) { world_.use(recommended(world_, h).settings); }
   void step(double by) override { peers::check(world_.step(by), problem_); }
   State state(int body) const override { return state_of(world_.place(body), world_.velocity(body)); }
 
@@ -255,47 +258,56 @@ Settings with(Settings settings, double local_error) {
   return settings;
 }
 
-// One row per way to use the runtime, with the changes from a scene's defaults.
+// One row per way to use the runtime, with the changes from the defaults of a scene with fixed steps.
 struct Way {
   const char* name;
   const char* changed;
   enum Steps { coarse, fine, adaptive } steps;
   Settings settings;
+  bool chosen = false;  // by the runtime, for the scene and the step
 };
 
 const std::vector<Way>& ways() {
   using enum Integrator;
   static const std::vector<Way> all = {
+      {"chosen by the runtime", "", Way::coarse, {}, true},
       {"dop853, adaptive", "integrator = dop853, local_error", Way::adaptive, {.integrator = dop853}},
       {"dop853", "integrator = dop853", Way::fine, {.integrator = dop853}},
       {"rk4, adaptive", "integrator = rk4, local_error", Way::adaptive, {.integrator = rk4}},
       {"rk4", "integrator = rk4", Way::fine, {.integrator = rk4}},
       {"rattle", "integrator = rattle", Way::fine, {.integrator = rattle}},
-      {"Euler", "", Way::coarse, {}},
-      {"Euler, Baumgarte", "drift = baumgarte", Way::coarse, {.drift = Drift::baumgarte}},
+      {"Euler", "integrator = euler", Way::coarse, {}},
+      {"Euler, Baumgarte", "integrator = euler, drift = baumgarte", Way::coarse, {.drift = Drift::baumgarte}},
       {"implicit", "integrator = implicit", Way::coarse, {.integrator = implicit}},
       {"Euler, iterative, Baumgarte",
-       "solver = iterative, drift = baumgarte",
+       "integrator = euler, solver = iterative, drift = baumgarte",
        Way::coarse,
        {.solver = Solver::iterative, .drift = Drift::baumgarte}},
       {"Euler, iterative, 3 iterations, Baumgarte",
-       "solver = iterative, iterations = 3, drift = baumgarte",
+       "integrator = euler, solver = iterative, iterations = 3, drift = baumgarte",
        Way::coarse,
        {.solver = Solver::iterative, .drift = Drift::baumgarte, .iterations = 3}},
       {"Euler, iterative, 1 iteration, Baumgarte",
-       "solver = iterative, iterations = 1, drift = baumgarte",
+       "integrator = euler, solver = iterative, iterations = 1, drift = baumgarte",
        Way::coarse,
        {.solver = Solver::iterative, .drift = Drift::baumgarte, .iterations = 1}},
       {"Euler, Baumgarte 0.8",
-       "drift = baumgarte, baumgarte = 0.8",
+       "integrator = euler, drift = baumgarte, baumgarte = 0.8",
        Way::coarse,
        {.drift = Drift::baumgarte, .baumgarte = 0.8}},
       {"Euler, iterative, 2 iterations, all the error per step",
-       "solver = iterative, iterations = 2, drift = baumgarte, baumgarte = 1",
+       "integrator = euler, solver = iterative, iterations = 2, drift = baumgarte, baumgarte = 1",
        Way::coarse,
        {.solver = Solver::iterative, .drift = Drift::baumgarte, .iterations = 2, .baumgarte = 1}},
   };
   return all;
+}
+
+template <class S>
+std::unique_ptr<Run> started(const Problem& problem, const Way& way, double h) {
+  auto run = std::make_unique<CdotRun<S>>(problem, way.settings, h);
+  if (way.chosen) run->choose_method(h);
+  return run;
 }
 
 std::vector<double> local_errors() {
@@ -309,7 +321,7 @@ std::vector<Series> series_in(const Problem& problem) {
   std::vector<Series> all;
   for (const Way& way : ways()) {
     Series series{way.name, way.changed, "h", way.steps == Way::fine ? fine_steps(problem) : steps(problem),
-                  [&](double h) { return std::make_unique<CdotRun<S>>(problem, way.settings, h); }};
+                  [&](double h) { return started<S>(problem, way, h); }};
     if (way.steps == Way::adaptive) {
       series.knob = "local error";
       series.knobs = local_errors();
