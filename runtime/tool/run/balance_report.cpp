@@ -25,9 +25,17 @@ struct Wrong {
   }
 };
 
-std::string energy_words(const BalanceWatch::Worst& worst, const char* verb) {
-  return fmt::format("the method {} {:.3g} J, {} of the motion's {:.3g} J, by t = {:.6g} s", verb,
-                     std::abs(worst.amount), percent(worst.share()), worst.scale, worst.time);
+// "; fastest at t = 1.2 s, where the largest force was the 530 N of "joint3""
+std::string fastest(const Scene& scene, const WorstStep& step) {
+  if (step.joint < 0) return {};
+  return fmt::format("; fastest at t = {:.6g} s, where the largest force was the {:.3g} N of {}", step.time, step.force,
+                     joint_name(scene, step.joint));
+}
+
+std::string energy_words(const Scene& scene, const RunResult& result, const BalanceWatch::Worst& worst) {
+  return fmt::format("the method {} {:.3g} J, {} of the motion's {:.3g} J, by t = {:.6g} s{}",
+                     worst.amount < 0 ? "lost" : "made up", std::abs(worst.amount), percent(worst.share()), worst.scale,
+                     worst.time, fastest(scene, result.worst_step));
 }
 
 std::string momentum_words(const Scene& scene, const BalanceWatch::Worst& worst, const char* what, const char* unit) {
@@ -35,9 +43,10 @@ std::string momentum_words(const Scene& scene, const BalanceWatch::Worst& worst,
                      what, body_name(scene, worst.body), worst.amount, unit, percent(worst.share()), worst.time);
 }
 
-Wrong wrong_with(const Scene& scene, const BalanceWatch& seen, double limit) {
+Wrong wrong_with(const Scene& scene, const RunResult& result, double limit) {
+  const BalanceWatch& seen = result.balance;
   Wrong wrong;
-  wrong.take(seen.energy.share(), limit, energy_words(seen.energy, seen.energy.amount < 0 ? "lost" : "made up"));
+  wrong.take(seen.energy.share(), limit, energy_words(scene, result, seen.energy));
   wrong.take(seen.linear.share(), limit, momentum_words(scene, seen.linear, "momentum", "kg m/s"));
   wrong.take(seen.angular.share(), limit, momentum_words(scene, seen.angular, "angular momentum", "kg m^2/s"));
   return wrong;
@@ -59,15 +68,15 @@ double worst_share(const BalanceWatch& seen) {
 }
 
 std::string balance_failure(const Scene& scene, const RunResult& result) {
-  Wrong wrong = wrong_with(scene, result.balance, scene.energy_tolerance);
+  Wrong wrong = wrong_with(scene, result, scene.energy_tolerance);
   const BalanceWatch::Worst& risen = result.balance.risen;
-  wrong.take(risen.share(), small_share * scene.energy_tolerance, energy_words(risen, "made up"));
+  wrong.take(risen.share(), small_share * scene.energy_tolerance, energy_words(scene, result, risen));
   return wrong.what;
 }
 
 std::string balance_warning(const Scene& scene, const RunResult& result) {
   if (!balance_failure(scene, result).empty()) return {};
-  return wrong_with(scene, result.balance, small_share * scene.energy_tolerance).what;
+  return wrong_with(scene, result, small_share * scene.energy_tolerance).what;
 }
 
 std::string balance_text(const BalanceWatch& seen) {

@@ -132,12 +132,14 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   result.energy_start = before.energy;
   auto next_diagnosis = options.diagnose_times.begin();
   RankWatch rank;
+  WorstStepWatch<S> worst_step;
   ErrorEstimate<S> error(scene, steps.count());
   for (long long k = 0;; ++k) {
     judge(scene, after, result);
     if (k > 0) rank.look(after.time, world.weakest_row());
     if (!result.finite) break;
     result.balance.look(world.balance());
+    if (k > 0) worst_step.look(world, result.balance.last);
     if (result.first_rescue < 0 && world.step_counts().rescued > 0) result.first_rescue = after.time;
     if (every_step) options.row(after);
     requested.after_step(before, after);
@@ -171,6 +173,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   }
   rank.end();
   result.rank_losses = rank.found();
+  result.worst_step = worst_step.found();
   result.error = error.error();
   finish(scene, world, result);
   return result;

@@ -14,6 +14,7 @@
 #include "runtime/tool/scene/scene.hpp"
 #include "runtime/tool/watch/rank_watch.hpp"
 #include "runtime/tool/watch/worst.hpp"
+#include "runtime/tool/watch/worst_step.hpp"
 
 namespace cdot {
 
@@ -58,6 +59,7 @@ struct RunResult {
   double energy_start = 0, energy_end = 0,
          energy_drift = 0;  // [J]; drift: the largest |E - E_start|
   BalanceWatch balance;     // after every step
+  WorstStep worst_step;
   TrajectoryError error;    // of fixed steps
   std::optional<TriedFix> advice;
   int redundant_rows = 0;

@@ -90,6 +90,33 @@ TEST(Balance, AnEnergyWithoutASourceFailsTheRunAndKeepsItsOutput) {
   EXPECT_TRUE(follow(file, "--integrator rk4 --until 0.5"));
 }
 
+// Two pendulums: one hardly moves, the other turns by half a radian in a step of Euler's method.
+TEST(Balance, NamesTheJointOfTheWorstStep) {
+  const TemporaryFolder folder;
+  std::string text = "duration = 1\nstep = \"1/60\"\n";
+  for (const auto& [name, x, speed] : {std::tuple{"calm", 0.0, 0.1}, std::tuple{"wild", 9.0, 30.0}})
+    text += fmt::format(R"(
+[[body]]
+name = "{0}_bob"
+mass = 1
+shape = {{ disc = 0.1 }}
+position = [{1}, -1]
+velocity = [{2}, 0]
+spin = {2}
+[[joint]]
+name = "{0}"
+type = "revolute"
+bodies = ["world", "{0}_bob"]
+pa = [{1}, 0]
+pb = [0, 1]
+)",
+                        name, x, speed);
+  const Ran ran = simulated(written(folder, text), "--integrator euler --energy-tolerance 0.01");
+  EXPECT_EQ(ran.status, 1);
+  const std::string failure = ran.summary["failure"];
+  EXPECT_NE(failure.find("N of \"wild\""), std::string::npos) << failure;
+}
+
 // Coarse steps of Euler let the energy of an orbit swing: the share decides between silence, a warning and a failure.
 TEST(Balance, ASharePassesWarnsOrFailsByTheToleranceOfTheScene) {
   const TemporaryFolder folder;

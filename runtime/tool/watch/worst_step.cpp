@@ -1,0 +1,36 @@
+#include "runtime/tool/watch/worst_step.hpp"
+
+#include <cmath>
+
+#include <cdot/spaces.hpp>
+
+namespace cdot {
+namespace {
+
+constexpr double larger = 1.1;
+
+double size_of(const planar::Wrench& wrench) { return std::hypot(wrench.force_x, wrench.force_y); }
+double size_of(const spatial::Wrench& wrench) { return std::hypot(wrench.force_x, wrench.force_y, wrench.force_z); }
+
+}  // namespace
+
+template <class S>
+void WorstStepWatch<S>::look(const BasicWorld<S>& world, const Balance& now) {
+  const double change = now.method() - method_;
+  method_ = now.method();
+  if (!(std::abs(change) > larger * std::abs(worst_.change))) return;
+  worst_ = {change, now.time, -1, 0};
+  for (int joint = 0; joint < world.joint_count(); ++joint) {
+    if (world.broken(joint)) continue;
+    for (const int body : world.joint_bodies(joint)) {
+      const double force = size_of(world.reaction(joint, body));
+      if (force > worst_.force) worst_.joint = joint, worst_.force = force;
+    }
+  }
+}
+
+#define CDOT_INSTANTIATE(S) template class WorstStepWatch<S>;
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

@@ -1,0 +1,29 @@
+// The step of a run in which the method's own share of the energy changed most, and its largest force of a joint.
+#pragma once
+
+#include <cdot/balance.hpp>
+#include <cdot/world.hpp>
+
+namespace cdot {
+
+struct WorstStep {
+  double change = 0;  // of Balance::method() [J]
+  double time = 0;    // [s] at its end
+  int joint = -1;     // with the largest force; -1: no joint carried one
+  double force = 0;   // [N]
+};
+
+template <class S>
+class WorstStepWatch {
+ public:
+  // After every step. Queries the joints where the change exceeds the largest so far by a tenth, so that they are
+  // queried at some hundred steps of a run at most.
+  void look(const BasicWorld<S>& world, const Balance& now);
+  const WorstStep& found() const { return worst_; }
+
+ private:
+  double method_ = 0;
+  WorstStep worst_;
+};
+
+}  // namespace cdot
