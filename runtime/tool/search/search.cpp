@@ -23,9 +23,13 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // --- Local errors. The first run is loose: its price is small, and its distance from the second tells how strict the
 // third has to be, if one is needed. Measured over all scenes: no other pair of numbers was cheaper by a tenth.
 constexpr double first_local_error = 10;         // in units of the accuracy
-constexpr double stricter = 1e-3;                // the next local error, as a share; at most a tenth
+constexpr double stricter = 1e-3;                // the next local error, as a share; at most a tenth. Of order 8:
+double stricter_for(const IntegratorRow& row) {  // others make it at the same ratio of prices
+  return std::pow(stricter, row.order / 8.0);
+}
 constexpr double strictest_local_error = 1e-14;  // below it there is only round-off, of steps
 constexpr double round_off = 1e-15;              // and of what is compared
+constexpr double least_sure = 1e-12;             // below it, smaller steps gain nothing for sure
 constexpr double aim = 0.5;                      // share of the accuracy that a further run aims at
 
 // Intervals bound the steps: those of Euler's method, and those that no estimate bounds.
@@ -47,9 +51,10 @@ constexpr double most_millisecond_runs = 20;
 // that is more than so many times the price of the first run that has ended with steps of its own: 1e-12 of its local
 // error costs 32 times as much.
 constexpr double most_first_runs = 40;
-// A run that has taken `suspicious` evaluations and is on the way to `dear` may be stiff. If the fastest oscillation of
-// tensions and springs explains a share of that price, methods for stiff scenes get the same share to be cheaper.
-constexpr double suspicious = 400, dear = 4000, share_of_stiff = 0.25;
+// A scene is surely stiff if an oscillation of tensions and springs at the start makes explicit steps `dear`. It may be
+// if a run has taken `suspicious` evaluations, is on the way to `dear`, and the fastest oscillation explains a share of
+// that price. Then methods for stiff scenes get such a share to be cheaper.
+constexpr double suspicious = 400, dear = 4000, share_of_stiff = 0.25, share_of_surely_stiff = 0.5;
 constexpr double evaluations_per_step = 12;  // of the highest order
 
 struct Try {
@@ -80,6 +85,10 @@ std::string name_of(const Try& knob) {
   return knob.adaptive() ? fmt::format("{}, local error {:.0e}", name, knob.local_error)
                          : fmt::format("{}, {} steps", name, knob.parts * intervals_of_own_steps);
 }
+
+// The factor by which the error is surely smaller, measured over all scenes: the square root of what it should be. A
+// tenth of a local error now and then gains less than that.
+double sure_gain(double gain, bool adaptive) { return std::pow(gain, adaptive && gain < 11 ? 0.25 : 0.5); }
 
 // The factor by which the error should be smaller than that of a coarser knob.
 double gain(const Try& coarse, const Try& fine, bool left_to_euler) {
@@ -131,6 +140,8 @@ class Search {
   void try_candidate(Integrator integrator, double most);
   void try_stiff(double most);
   Attempt attempt(const Try& knob, double most);
+  double stiff_price(const std::vector<WorstOfIsland>& islands) const;
+  std::vector<WorstOfIsland> diagnosis_at_start() const;
   void judge(const Attempt& coarse, Attempt& fine) const;
   void keep(Attempt&& attempt);
   bool balanced(const Attempt& attempt) const {
@@ -151,7 +162,7 @@ class Search {
   double left_;        // of the budget
   double least_left_;  // for all other candidates, when the first has a price
   Attempt best_;
-  double first_price_ = 0;  // to which the first run was on the way when it became dear
+  double first_price_ = 0;  // foreseen, of explicit steps that became dear; while stiff candidates run
   double stiff_price_ = 0;  // the part of it that stiffness explains
   bool may_be_dear_ = true, stopped_ = false;
   bool sensitive_ = false;  // refined in vain: the motion itself forbids more
@@ -191,16 +202,35 @@ Attempt Search::attempt(const Try& knob, double most) {
   attempt.result = run_once(solved, options, runs_ == 0 ? warnings_ : ignored);
   const RunResult& result = attempt.result;
   attempt.price = knob.adaptive() ? static_cast<double>(result.counts.evaluations) : price_of(knob);
-  stiff_price_ = 0;
-  for (const WorstOfIsland& island : result.diagnosis)
-    stiff_price_ += evaluations_per_step * solved.duration * std::sqrt(std::max(0.0, island.island.stiffest.square)) /
-                    knob.row().stable_radians;
+  stiff_price_ = stiff_price(result.diagnosis);
   attempt.whole = result.finite && !result.failed_step && !result.stopped && !result.interrupted;
   stopped_ = result.interrupted;
   ++runs_;
   may_be_dear_ = false;
   price_ += attempt.price, left_ -= attempt.price, cpu_ += result.cpu;
   return attempt;
+}
+
+// Of the steps of the highest order that stay stable, over the whole run.
+double Search::stiff_price(const std::vector<WorstOfIsland>& islands) const {
+  double price = 0;
+  for (const WorstOfIsland& island : islands)
+    price += evaluations_per_step * scene_.duration * std::sqrt(std::max(0.0, island.island.stiffest.square)) /
+             row_of(Integrator::dop853).stable_radians;
+  return price;
+}
+
+std::vector<WorstOfIsland> Search::diagnosis_at_start() const {
+  Scene scene = scene_;
+  scene.settings.integrator = Integrator::dop853;  // for which springs are forces
+  const auto look = [&]<class S>(S) {
+    std::string ignored;
+    BasicWorld<S> world = world_at_start<S>(scene, ignored);
+    std::vector<WorstOfIsland> worst;
+    add_diagnosis(diagnose(world, scene_.duration / intervals_of_own_steps), 0, worst);
+    return worst;
+  };
+  return in_space_of<double>(scene_, look);
 }
 
 // Measures a run by a coarser one.
@@ -212,7 +242,8 @@ void Search::judge(const Attempt& coarse, Attempt& fine) const {
     if (apart <= yardstick_.asked()) fine.holds_until = fine.frames[k].time;
   }
   const bool left_to_euler = coarse.result.counts.rescued > 0 || fine.result.counts.rescued > 0;
-  fine.achieved = std::max(round_off, apart / std::sqrt(gain(coarse.knob, fine.knob, left_to_euler)));
+  const double gained = gain(coarse.knob, fine.knob, left_to_euler);
+  fine.achieved = std::max(std::min(apart, least_sure), apart / sure_gain(gained, fine.knob.adaptive()));
   const bool known = fine.knob.parts > coarse.knob.parts ||
                      (fine.result.counts.rescued == 0 && !same_steps(coarse.result.counts, fine.result.counts));
   const bool seems_to_converge = fine.knob.adaptive() || fine.achieved < surely * yardstick_.asked() ||
@@ -236,15 +267,16 @@ std::optional<double> Search::next_share(const Attempt& last, const Attempt& now
   const bool failed_before = !last.frames.empty() && !last.whole;
   // Smaller local errors get no further.
   if (now.knob.adaptive() && !now.whole && failed_before && now.result.time <= last.result.time) return {};
-  if (!now.whole) return stricter;
-  if (!last.whole) return now.knob.adaptive() ? stricter : 0.5;
+  const double least = stricter_for(now.knob.row());
+  if (!now.whole) return least;
+  if (!last.whole) return now.knob.adaptive() ? least : 0.5;
   // Two runs agree on a motion whose energy balance fails: finer ones would agree with them.
   if (now.knob.adaptive() && now.achieved <= yardstick_.asked() && !balanced(now) && !balanced(last)) sensitive_ = true;
   sensitive_ |= now.knob.strictest() && now.result.counts.rescued == 0;
   idle = now.achieved * converges < last.achieved ? 0 : idle + 1;
   if (!now.knob.adaptive() && idle > most_idle) return {};
   // Where the motion magnifies every difference, runs agree no more at all: then the time counts.
-  return std::max(stricter, aim * yardstick_.asked() / now.achieved);
+  return std::max(least, aim * yardstick_.asked() / now.achieved);
 }
 
 // False for a stiff candidate if fixed steps so fine that they should reach the accuracy cost more than `most`.
@@ -298,11 +330,18 @@ RunResult Search::run() {
   std::ranges::stable_sort(candidates, std::greater<>(), [](const IntegratorRow& row) {
     return std::tuple(row.level == Level::acceleration, row.order, row.stiffens);
   });
+  first_price_ = stiff_price(diagnosis_at_start());
+  if (first_price_ > dear * yardstick_.mechanisms()) {
+    may_be_dear_ = false;
+    try_stiff(share_of_surely_stiff * first_price_);
+  }
+  first_price_ = 0;
+  bool first = true;
   auto to_come = static_cast<double>(candidates.size());
   for (const IntegratorRow& row : candidates) {
     if (done() || sensitive_) break;
-    try_candidate(row.integrator, runs_ == 0 ? left_ : left_ / to_come);
-    --to_come;
+    try_candidate(row.integrator, first ? left_ : left_ / to_come);
+    --to_come, first = false;
     if (first_price_ > 0) {
       if (stiff_price_ > share_of_stiff * first_price_) try_stiff(share_of_stiff * first_price_);
       first_price_ = 0;
