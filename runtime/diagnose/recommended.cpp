@@ -20,6 +20,8 @@ namespace {
 constexpr double swing = 3;
 // [rad] per substep. Methods that take forces at the ends of a step are inaccurate above.
 constexpr double stiff = 0.5, sharp_turn = 0.5;
+// [rad] that a method of eighth order takes in one substep, and the substeps that replace a longer one.
+constexpr double far_turn = 2, most_turns = 1024;
 // A body that rotates about a pivot beside its centre oscillates about that rotation no faster than this, in units of
 // its rate: its stiffness is that of the spin, not of a load.
 constexpr double of_own_spin = 1.5;
@@ -179,7 +181,12 @@ Recommendation recommended(BasicWorld<S>& world, double step, const std::functio
   world.use(given);
   const auto& rule = rules[worst.rule];
   chosen.integrator = rule.integrator;
-  return {chosen, worst.traits.island, worst.traits.radians, rule.why({worst.traits, name_of_body})};
+  std::string reason = rule.why({worst.traits, name_of_body});
+  if (chosen.integrator == Integrator::dop853 && worst.traits.turn > far_turn) {
+    chosen.substeps *= static_cast<int>(std::min(std::ceil(worst.traits.turn / sharp_turn), most_turns));
+    reason += fmt::format("; {} substeps", chosen.substeps);
+  }
+  return {chosen, worst.traits.island, worst.traits.radians, reason};
 }
 
 namespace {

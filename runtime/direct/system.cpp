@@ -98,14 +98,37 @@ bool System<S>::revise_active_set(bool one_by_one) {
   return settled;
 }
 
+namespace {
+
 // The largest error of a row within its bounds, as a share of the largest b.
 template <class Real>
 constexpr double missed = by_precision<Real>(1e-9);
 // Share of the diagonal that makes a redundant row independent.
 constexpr double slight_softness = 1e-8;
 
-// A motor and the limit that it runs into are the same row twice: elimination drops the later one. If that leaves a
-// bounded row unsatisfied, all bounded rows become slightly soft, so the weaker of the two reaches its bound. True if
+// The softness of a motor that others hold, as a share of its diagonal: it pushes with what would bring the bodies to
+// its speed.
+constexpr double softness_of_motor = 1;
+
+// Joints and limits hold the motors that contradict them: these become soft. Call after share_contradictions(), which
+// leaves an error above `slight` in the rows of a contradiction. True if rows changed.
+template <class S, class Real>
+bool hold_motors(System<S>& system, Real slight) {
+  bool held = false;
+  system.each_row([&](int r, const Batch<S>& batch, int) {
+    const bool motor = batch.law && !batch.law->error && !batch.law->spring;
+    if (!motor || system.fixed[r] || system.broken[r] || system.softness[r] != 0) return;
+    if (!(std::abs(system.unmet(r)) > slight)) return;
+    system.softness[r] = softness_of_motor * system.diagonal(r);
+    held = true;
+  });
+  return held;
+}
+
+}  // namespace
+
+// A motor and the limit that it runs into are the same row twice: elimination drops the later one. If holding motors
+// leaves a bounded row unsatisfied, all bounded rows become slightly soft, so the weaker one reaches its bound. True if
 // rows changed.
 template <class S>
 bool System<S>::part_contradicting_rows() {
@@ -115,6 +138,8 @@ bool System<S>::part_contradicting_rows() {
   for (int r = 0; r < rows_; ++r)
     any |= bounded(r) && !fixed[r] && !broken[r] &&
            std::abs(product_[r] + softness[r] * lambda[r] - b[r]) > missed<Real> * scale;
+  share_contradictions();
+  if (hold_motors(*this, slight(scale))) return true;
   for (int r = 0; any && r < rows_; ++r)
     if (bounded(r)) softness[r] += slight_softness * ldlt_.diagonal(r);
   return any;
@@ -123,12 +148,16 @@ bool System<S>::part_contradicting_rows() {
 template <class S>
 int System<S>::find_active_set() {
   // Changing all violating rows at once is fast but may cycle. Changing one at a time, always the last, does not cycle
-  // (Murty's rule).
+  // (Murty's rule), unless a motor contradicts a limit.
   const int fast = 10, slow = std::min(2 * rows_, 200);
   int dependent = 0;
   for (int round = 0; round < fast + slow; ++round) {
     dependent = factor();
     solve_rows();
+    if (round >= fast && dependent > 0) {
+      share_contradictions();
+      if (hold_motors(*this, slight(largest_b()))) continue;
+    }
     if (revise_active_set(round >= fast)) break;
   }
   return dependent;
@@ -143,7 +172,7 @@ int System<S>::solve_bounded() {
     if (!std::isfinite(lambda[r])) fixed[r] = free;
   }
   int dependent = find_active_set();
-  if (dependent > 0 && part_contradicting_rows()) dependent = find_active_set();
+  for (int round = 0; round < 2 && dependent > 0 && part_contradicting_rows(); ++round) dependent = find_active_set();
   share_contradictions();
   share_redundant_loads(Bounds::known);
   std::copy(fixed.begin(), fixed.end(), active_set_.begin());

@@ -40,6 +40,7 @@ struct FlowWorkspace {
   std::vector<typename S::Pose> pose;
   std::vector<typename S::Velocity> velocity;
   Broyden<ExactNumber<T>> search;  // RATTLE: search for the impulses of its first half
+  std::vector<T> kept;             // midpoint rule: impulses at the start of a part
   // Runge-Kutta:
   std::vector<T> now;            // numbers of a stage, laid out like FlowState::start
   std::vector<T> low, high;      // margins at the start of a step, then on both sides of an event
@@ -56,7 +57,7 @@ template <class S>
 struct IslandWorkspace {
   std::vector<Segment<S>> segments;
   System<S> system;  // of the direct solver and of projections
-  // The same with rows of tension, for steps in which a Runge-Kutta method falls back to linearly implicit Euler. Built
+  // The same with rows of tension, for steps in which a Runge-Kutta method falls back to an implicit one. Built
   // only if such rows exist.
   System<S> rescue;
   const RowSolver<S>* solver = nullptr;     // that of the settings, except in a retry

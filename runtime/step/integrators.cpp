@@ -13,8 +13,6 @@ namespace cdot {
 template <class S>
 void prepare_euler(Island<S>& island);
 template <class S>
-void step_midpoint(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
-template <class S>
 void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 template <class S>
 void prepare_rattle(Island<S>& island);
@@ -33,11 +31,6 @@ void implicit(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   if (takes_midpoint(world.settings)) step_midpoint(world, island, h);
   else step_euler(world, island, h, world.last_step);
 }
-template <class S>
-void prepare_implicit(Island<S>& island) {
-  prepare_rattle(island);
-  island.flow.now.assign(2 * static_cast<size_t>(island.system.rows()), typename S::Scalar(0));
-}
 
 template <class S, const auto& method>
 void runge_kutta(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
@@ -46,13 +39,14 @@ void runge_kutta(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
 template <class S, const auto& method>
 void prepare(Island<S>& island) {
   prepare_runge_kutta<S>(island, method);
+  prepare_midpoint(island);
 }
 
 // In the order of integrator_rows.
 template <class S, class Real = ExactNumber<typename S::Scalar>>
 constexpr std::array<Stepper<S>, integrator_rows.size()> steppers{{
     {Integrator::euler, euler<S>, prepare_euler<S>, false},
-    {Integrator::implicit, implicit<S>, prepare_implicit<S>, true},
+    {Integrator::implicit, implicit<S>, prepare_midpoint<S>, true},
     {Integrator::rattle, step_rattle<S>, prepare_rattle<S>, true},
     {Integrator::rk4, runge_kutta<S, rk4<Real>>, prepare<S, rk4<Real>>, false},
     {Integrator::dop853, runge_kutta<S, dop853<Real>>, prepare<S, dop853<Real>>, false},

@@ -24,6 +24,16 @@ const Stepper<S>& stepper_of(Integrator integrator);
 template <class S>
 void step_euler(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step);
 
+// The implicit midpoint rule's step of h, in parts where h is too long. The present impulses are those of a step of
+// WorldData::last_step.
+template <class S>
+void step_midpoint(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
+// The same from `time` on, in parts that turn no body far; the impulses of both halves become one, `lambda`.
+template <class S>
+void step_midpoint_from(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h);
+template <class S>
+void prepare_midpoint(Island<S>& island);
+
 // With Drift::soft.
 template <class S>
 void step_soft(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step);

@@ -15,6 +15,7 @@
 #include "runtime/balance/balance.hpp"
 #include "runtime/motion/momentum.hpp"
 #include "runtime/motion/motion.hpp"
+#include "runtime/motion/vectors.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
@@ -27,6 +28,8 @@ namespace cdot {
 
 template <class S>
 void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h);  // rattle.cpp
+template <class S>
+void prepare_rattle(Island<S>& island);
 
 namespace {
 
@@ -34,7 +37,8 @@ namespace {
 template <class T>
 constexpr double slight_work = by_precision<T>(1e-2, 1e-4);
 template <class T>
-constexpr T shortest_part = T(by_precision<T>(1.0 / 8, 1.0 / 64));  // of a step
+constexpr int most_parts = static_cast<int>(by_precision<T>(8, 64));  // of a step
+constexpr double small_turn = 0.25, most_turning_parts = 64;          // of step_midpoint_from() [rad]
 
 // `correction` becomes the first guess of lambda, from the last step scaled by `share`; `lambda` the impulses of
 // dampers at the start.
@@ -149,8 +153,8 @@ template <class S>
 void keep(WorldData<S>& world, Island<S>& island) {
   size_t k = 0;
   each_row(island, [&](const Batch<S>& batch, int i) {
-    island.flow.now[k++] = batch.lambda[i];
-    island.flow.now[k++] = batch.correction[i];
+    island.flow.kept[k++] = batch.lambda[i];
+    island.flow.kept[k++] = batch.correction[i];
   });
   for (int i : island.bodies) world.bodies.displacement[i] = world.bodies.velocity[i];
 }
@@ -158,8 +162,8 @@ template <class S>
 void go_back_to_kept(WorldData<S>& world, Island<S>& island) {
   size_t k = 0;
   each_row(island, [&](Batch<S>& batch, int i) {
-    batch.lambda[i] = island.flow.now[k++];
-    batch.correction[i] = island.flow.now[k++];
+    batch.lambda[i] = island.flow.kept[k++];
+    batch.correction[i] = island.flow.kept[k++];
   });
   for (size_t n = 0; n < island.bodies.size(); ++n) {
     const int i = island.bodies[n];
@@ -254,6 +258,17 @@ void stretch_impulses(const Island<S>& island, typename S::Scalar from, typename
   });
 }
 
+// The largest angle [rad] by which a body turns in h.
+template <class S>
+double turn_of(const WorldData<S>& world, const Island<S>& island, typename S::Scalar h) {
+  double spin = 0;
+  for (int i : island.bodies) {
+    const auto w = twist<double>(world.bodies.velocity[i]).angular;
+    spin = std::max(spin, std::hypot(w.x, w.y, w.z));
+  }
+  return double(h) * spin;
+}
+
 }  // namespace
 
 // A step that is too long is taken in parts. Joints that contradict each other have no middle: Euler's step solves them
@@ -265,27 +280,62 @@ void step_midpoint(WorldData<S>& world, Island<S>& island, typename S::Scalar h)
   const T apart = std::max(foreign<T> * std::max<T>(island.size, island.scale), round_off_of(world, island));
   if (std::isfinite(island.residual) && island.residual > apart) return step_rattle(world, island, h);
   const double start = world.time, before = world.last_step;
-  T part = h, done = 0;
-  while (done < h) {
-    const bool last = part / 2 < shortest_part<T> * h;
+  // Whole numbers: a sum of parts may miss h by round-off, and one part too many would follow.
+  int done = 0, parts = 1;
+  while (done < parts) {
+    const T part = h / T(parts);
+    const bool last = 2 * parts > most_parts<T>;
     const bool taken = take_part(world, island, part, last);
     if (!taken && !last) {
-      part /= 2;
+      done *= 2, parts *= 2;
       continue;
     }
     if (!taken) {
       ++world.counts->rescued;
       fall_back(world, island, part);
     }
-    done += part;
+    ++done;
     world.last_step = double(part);
-    world.time = start + double(done);
+    world.time = start + double(h) * done / parts;
   }
   world.time = start, world.last_step = before;
-  if (part != h) stretch_impulses(island, part, h);
+  if (parts > 1) stretch_impulses(island, h / T(parts), h);
 }
 
-#define CDOT_INSTANTIATE(S) template void step_midpoint(WorldData<S>&, Island<S>&, S::Scalar);
+template <class S>
+void step_midpoint_from(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  const double start = world.time, last_step = world.last_step;
+  const auto rescued = world.counts->rescued;
+  for (T done = 0; done < h && island.trouble == StepProblem::none;) {
+    const T left = h - done;
+    const double parts =
+        std::min(std::ceil(turn_of(world, island, left) / small_turn), most_turning_parts * double(left / h));
+    T part = left / T(std::max(parts, 1.0));
+    if (part > T(0.99) * left) part = left;  // no sliver is left
+    world.time = double(time + done);
+    step_midpoint(world, island, part);
+    world.last_step = double(part);
+    done = part == left ? h : done + part;
+  }
+  world.counts->rescued = rescued;  // the step counts once
+  world.time = start, world.last_step = last_step;
+  each_row(island, [](Batch<S>& batch, int i) {
+    batch.lambda[i] += batch.correction[i];
+    batch.correction[i] = 0;
+  });
+}
+
+template <class S>
+void prepare_midpoint(Island<S>& island) {
+  prepare_rattle(island);
+  island.flow.kept.assign(2 * static_cast<size_t>(island.system.rows()), typename S::Scalar(0));
+}
+
+#define CDOT_INSTANTIATE(S)                                                          \
+  template void step_midpoint(WorldData<S>&, Island<S>&, S::Scalar);                 \
+  template void step_midpoint_from(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar); \
+  template void prepare_midpoint(Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -199,7 +199,7 @@ template <class S>
 void prepare_rattle(Island<S>& island) {
   island.flow.pose.resize(island.bodies.size());
   island.flow.velocity.resize(island.bodies.size());
-  island.flow.search.reserve(static_cast<size_t>(island.system.rows()));
+  island.flow.search.reserve(static_cast<size_t>(std::max(island.system.rows(), island.rescue.rows())));
 }
 
 #define CDOT_INSTANTIATE(S)                                        \

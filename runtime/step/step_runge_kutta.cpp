@@ -8,6 +8,7 @@
 
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
+#include "runtime/solve/solver.hpp"
 #include "runtime/step/between.hpp"
 #include "runtime/step/collocation.hpp"
 #include "runtime/step/events.hpp"
@@ -18,7 +19,7 @@
 namespace cdot {
 namespace {
 
-// Limits on events in one step(h) and on consecutive slivers. More of them mean chatter or jamming; Euler's method then
+// Limits on events in one step(h) and on consecutive slivers. More of them mean chatter or jamming; fall_back() then
 // finishes the step.
 constexpr int most_events = 32, most_slivers = 1000;
 constexpr double sliver = 1e-4;      // share of the longest step so far
@@ -32,10 +33,11 @@ constexpr int most_astray = 5;
 constexpr double absurd = 0.3;
 // The same near a loss of rank, where motions are quick, as long as parts of the step can reach it.
 constexpr double careful = 1e-6;
-// The shortest part of a fixed step. If its error is too large, Euler's method finishes the step.
+// The shortest part of a fixed step. If its error is too large, fall_back() finishes the step.
 constexpr double smallest_part = 1.0 / 16;
 template <class S>
 constexpr auto slight_displacement = typename S::Scalar(1e-6);  // in units of Island::size, and [rad]
+constexpr double astray_error = 1e301;                          // the error of a step that went astray
 constexpr int most_searches = 60;                               // for one event
 constexpr int furthest_reach = 64;                              // of an adaptive step, in units of h
 
@@ -76,7 +78,7 @@ bool go_to(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
 }
 
 // Goes to the first event of a step of h that passed one. Returns the time from the step's start to the event; 0 if
-// go_to() fails: Euler's method then finishes the step.
+// go_to() fails: fall_back() then finishes the step.
 template <class S>
 typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                typename S::Scalar time, typename S::Scalar h) {
@@ -137,8 +139,8 @@ double try_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
   if (!(error <= 1)) return error;
   project_end(world, island, method, time + h);
   if (method.error_at_end) error = error_now();
-  const bool lost = left_the_joints(world, island, island.flow.start_residual) || went_astray(world, island, h);
-  return lost ? std::numeric_limits<double>::infinity() : error;
+  if (left_the_joints(world, island, island.flow.start_residual)) return std::numeric_limits<double>::infinity();
+  return went_astray(world, island, h) ? astray_error : error;
 }
 
 // True if the attempt at a step of h came near a loss of rank of K: goes back for one with projected stages, of a
@@ -151,7 +153,7 @@ bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<
   const Passage<T> passage = passage_of(world, island, method, h, longest);
   if (!passage.near) return false;
   if (method.implicit) {
-    // Newton's old df/dy misleads it there. No shorter step would help: Euler's method finishes this one.
+    // Newton's old df/dy misleads it there. No shorter step would help: fall_back() finishes this one.
     h = T(0);
     go_back(world, island);
     return true;
@@ -165,7 +167,8 @@ bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<
 }
 
 // Takes `left` of a fixed step of `whole`, or its largest half, quarter, ... with an allowed error. The parts share the
-// allowed error `absurd` in proportion to their lengths. Returns the length, 0 if no part is short enough.
+// allowed error `absurd` in proportion to their lengths. Returns the length; 0 if no part is short enough, -1 if the
+// shortest one goes astray.
 // Flow::margins are those of the end.
 template <class S>
 typename S::Scalar take_fixed_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
@@ -174,12 +177,11 @@ typename S::Scalar take_fixed_step(WorldData<S>& world, Island<S>& island, const
   using T = typename S::Scalar;
   // Only a method with an interpolant may pass the end.
   const T longest = method.further_stages > 0 ? reach : left;
-  double share = absurd;
+  double share = absurd, noise = 0;
   for (T h = left;;) {
     const double allowed = share * double(h / whole);
     const double error =
         try_step(world, island, method, time, h, [&] { return share_of_size(island, method, h) / allowed; });
-    double noise = 0;
     if (tries_with_care(world, island, method, longest, h, noise)) {
       if (!(h > T(0))) return h;
       share = careful;
@@ -190,7 +192,7 @@ typename S::Scalar take_fixed_step(WorldData<S>& world, Island<S>& island, const
     go_back(world, island);
     if (h >= T(2 * smallest_part) * whole) h /= 2;
     else if (share == careful) share = absurd;
-    else return T(0);
+    else return error == astray_error ? T(-1) : T(0);
   }
 }
 
@@ -202,6 +204,7 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
   Flow<S>& flow = island.flow;
   const T proposed = flow.next_step;
   T h = length_of_step(proposed, left, reach);
+  T way_out = T(0);
   int astray = 0;
   double noise = 0;
   for (int attempt = 0; attempt <= most_rejections && astray < most_astray; ++attempt) {
@@ -225,12 +228,13 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
       return h;
     }
     ++world.counts->rejected;
-    astray = std::isinf(error) ? astray + 1 : 0;
+    astray = error >= astray_error ? astray + 1 : 0;
+    way_out = error == astray_error ? T(-1) : T(0);
     h = length_of_step<T>(flow.next_step, left, reach);
     go_back(world, island);
   }
   flow.next_step = proposed;
-  return T(0);
+  return way_out;
 }
 
 // Projects the start state and computes modes and accelerations, unless they are known.
@@ -255,23 +259,29 @@ void scale_forces(const Island<S>& island, typename S::Scalar by) {
   }
 }
 
-// Finishes the step from `time` on by the most robust method, linearly implicit Euler. Computes the impulses that this
-// method needs from the accelerations.
+// Finishes the step from `time` on by the midpoint rule, or by linearly implicit Euler: for sweeps, and where a joint's
+// direction reverses (`astray`), as that of a jammed rope, which no method should throw back. Computes the impulses
+// that these methods need from the accelerations.
 template <class S>
-void fall_back_to_euler(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
+void fall_back(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h, bool astray) {
+  using T = typename S::Scalar;
   ++world.counts->rescued;
-  fill_lambda(island, typename S::Scalar(0));
+  fill_lambda(island, T(0));
   evaluate_anew(world, island, time);
   island.factored = false;
   accelerate(world, island, time);
   scale_forces(island, h);
   drop_modes(island);
   island.acceleration_level = island.evaluated = island.factored = false;
+  // Rows that were off or held may miss their ends by the resolution of events, which may be far in a short step.
+  island.residual = std::numeric_limits<T>::infinity();
   island.flow.forget();
   island.flow.slivers = 0;
   if (island.rescue.built()) island.rescue.follow(island.system);
   island.stiffened = true;
-  step_euler(world, island, h, double(h));
+  if (!astray && island.solver->exact && world.settings.drift == Drift::projection)
+    step_midpoint_from(world, island, time, h);
+  else step_euler(world, island, h, double(h));
   island.stiffened = false;
   for (int i : island.bodies) world.bodies.effective_mass[i] = world.bodies.inverse_mass[i];
   scale_forces(island, 1 / h);
@@ -295,7 +305,7 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
   for (int events = 0; done < h;) {
     const T time = T(world.time) + done, left = h - done;
     if (events > most_events || flow.slivers > most_slivers) {
-      fall_back_to_euler(world, island, time, left);
+      fall_back(world, island, time, left, false);
       return h;
     }
     const bool goes_on = flow.known;
@@ -308,7 +318,7 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
     flow.length = world.settings.local_error > 0 ? take_adaptive_step(world, island, method, time, left, reach)
                                                  : take_fixed_step(world, island, method, time, left, h, reach);
     if (!(flow.length > T(0))) {
-      fall_back_to_euler(world, island, time, left);
+      fall_back(world, island, time, left, flow.length < T(0));
       return h;
     }
     flow.longest = std::max<T>(flow.longest, flow.length);

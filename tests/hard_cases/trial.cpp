@@ -92,7 +92,8 @@ void Trial::diagnose(double by) {
   std::vector<WorstOfIsland> worst;
   change([&](auto& world) {
     add_diagnosis(cdot::diagnose(world, by / scene.settings.substeps), world.time(), worst);
-    if (world.step_counts().rescued > 0) say(fmt::format("{} steps left to Euler's", world.step_counts().rescued));
+    if (world.step_counts().rescued > 0)
+      say(fmt::format("{} steps left to the midpoint rule", world.step_counts().rescued));
   });
   Scene asked = scene;
   asked.step = by, asked.single = way.single;

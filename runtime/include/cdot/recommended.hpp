@@ -12,7 +12,9 @@
 namespace cdot {
 
 struct Recommendation {
-  Settings settings;   // those of the World with the direct solver, the projection and the chosen integrator
+  // Those of the World with the direct solver, the projection and the chosen integrator; with more substeps where a
+  // body that pivots beside its centre rotates by more than 2 rad per substep.
+  Settings settings;
   int island = -1;     // that decided; -1: there is none
   double radians = 0;  // of its stiffest oscillation per substep
   std::string reason;  // "the tension of the joints can make body 3 oscillate by 9.9 rad per substep"

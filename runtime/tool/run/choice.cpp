@@ -34,7 +34,7 @@ std::string steps_text(const Choice& choice) {
 
 std::string euler_text(const Choice& choice) {
   if (choice.left_to_euler == 0) return {};
-  return fmt::format("; {} step{} left to Euler's method, first by t = {:.6g} s", choice.left_to_euler,
+  return fmt::format("; {} step{} left to the midpoint rule, first by t = {:.6g} s", choice.left_to_euler,
                      choice.left_to_euler == 1 ? " was" : "s were", choice.first_left_to_euler);
 }
 

@@ -16,7 +16,7 @@ Scene with_integrator(Scene scene) {
     return recommended(world, scene.step, [&](int body) { return body_name(scene, body); });
   };
   const Recommendation found = scene.single ? in_space_of<float>(scene, pick) : in_space_of<double>(scene, pick);
-  scene.settings.integrator = found.settings.integrator;
+  scene.settings.integrator = found.settings.integrator, scene.settings.substeps = found.settings.substeps;
   scene.why_integrator = found.reason;
   return scene;
 }

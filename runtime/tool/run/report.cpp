@@ -96,7 +96,8 @@ std::string own_steps_text(const StepCounts& counts) {
 
 namespace {
 
-// Of a step that an adaptive method left to Euler's, whose error nobody knows; or of an accuracy that holds in part.
+// Of a step that an adaptive method left to the midpoint rule, whose error nobody knows; or of an accuracy that holds
+// in part.
 std::string warning_of_accuracy(const Scene& scene, const RunResult& result) {
   if (result.choice) {
     const std::string lack = accuracy_warning(*result.choice);
@@ -104,7 +105,8 @@ std::string warning_of_accuracy(const Scene& scene, const RunResult& result) {
   }
   if (scene.settings.local_error == 0 || result.counts.rescued == 0) return {};
   return fmt::format(
-      "the local error {:.1e} is broken: {} step{} left to Euler's method, first by t = {:.6g} s. Likely fix: a larger "
+      "the local error {:.1e} is broken: {} step{} left to the midpoint rule, first by t = {:.6g} s. Likely fix: a "
+      "larger "
       "local error, or fixed steps of implicit or rattle",
       scene.settings.local_error, result.counts.rescued, result.counts.rescued == 1 ? " was" : "s were",
       result.first_rescue);
@@ -133,7 +135,7 @@ std::string summary_text(const Scene& asked, const RunResult& result) {
   if (own_steps) text += own_steps_text(result.counts);
   if (result.counts.rescued > 0)
     text += fmt::format(
-        "  Euler fallback  {} steps, first by t = {:.6g} s, for endless events or a useless error estimate\n",
+        "  midpoint rule   took {} steps, first by t = {:.6g} s, for endless events or a useless error estimate\n",
         result.counts.rescued, result.first_rescue);
   if (result.choice) text += choice_text(*result.choice);
   text += fmt::format("  CPU             {:.4g} s, {:.3g} us per step\n", result.cpu,

@@ -65,7 +65,7 @@ struct RunResult {
   int redundant_rows = 0;
   std::vector<RankLoss> rank_losses;
   std::vector<std::string> broken_joints, notes;
-  double first_rescue = -1;  // [s] end of the step in which Euler's method first had to finish; below 0: none
+  double first_rescue = -1;  // [s] end of the step that the midpoint rule first had to finish; below 0: none
   bool finite = true, interrupted = false;
   bool stopped = false;                   // by RunOptions::look
   std::optional<StepResult> failed_step;  // the run ended before it

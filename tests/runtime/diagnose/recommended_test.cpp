@@ -60,6 +60,8 @@ TEST(Recommended, AFastRodTakesEighthOrder) {
   const int body = rod.add_body({.x = 0.5, .vy = 50, .w = 100, .mass = 1, .inertia = 1.0 / 12});
   revolute(rod, rod.ground(), body, 0, 0, -0.5, 0);
   EXPECT_EQ(chosen(rod, h, "rotates by 1.7 rad"), Integrator::dop853);
+  EXPECT_EQ(recommended(rod, h).settings.substeps, 1);
+  EXPECT_EQ(recommended(rod, 10 * h).settings.substeps, 34);  // 16.7 rad, each substep at most half a radian
   const int disc = wheel.add_body({.w = 100, .mass = 1, .inertia = 1});
   revolute(wheel, wheel.ground(), disc, 0, 0, 0, 0);
   EXPECT_EQ(chosen(wheel, h, "nothing is stiff"), Integrator::rattle);

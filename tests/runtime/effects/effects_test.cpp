@@ -1,4 +1,8 @@
 // Compares effects on coordinates with results by hand.
+#include <algorithm>
+#include <cmath>
+#include <fmt/core.h>
+
 #include <cdot/methods.hpp>
 
 #include "tests/runtime/support.hpp"
@@ -37,6 +41,31 @@ TEST(Motor, AcceleratesWithItsLargestForceUntilItHasItsSpeed) {
     EXPECT_NEAR(world.velocity(wheel).w, 0.5 * 4 / 2, 1e-9);
     run(world, 20, 0.01);
     EXPECT_NEAR(world.velocity(wheel).w, 3, 1e-9);
+  }
+}
+
+// The limit wins against any force: the rod stands, and reports no speed.
+TEST(Motor, StandsStillAtTheLimitThatItRunsInto) {
+  for (const auto& [name, integrator] : integrators) {
+    for (const double gravity : {0.0, -9.81}) {
+      Settings s = settings(Solver::direct, Drift::projection, gravity);
+      s.integrator = integrator;
+      World<double> world(s);
+      const int bar = world.add_body(rod(0.5, 0, 0));
+      const int joint = revolute(world, world.ground(), bar, 0, 0, -0.5, 0);
+      add_motor(world, joint, "angle", {.speed = 3});
+      add_limit(world, joint, "angle", {.lower = -1, .upper = 0.4});
+      run(world, 1, 1.0 / 60);
+      double fastest = 0, off = 0;
+      for (int k = 0; k < 60; ++k) {
+        ASSERT_TRUE(world.step(1.0 / 60));
+        fastest = std::max(fastest, std::abs(world.velocity(bar).w));
+        off = std::max(off, std::abs(world.coordinate(joint, "angle") - 0.4));
+      }
+      fmt::print("  {}: at most {:.1e} rad/s, {:.1e} rad off\n", name, fastest, off);
+      EXPECT_LT(fastest, 0.01) << name;
+      EXPECT_LT(off, 1e-3) << name;
+    }
   }
 }
 

@@ -1,4 +1,4 @@
-// The linearly implicit step replaces Runge-Kutta steps with meaningless errors, and a count reports it: no run
+// The midpoint rule replaces Runge-Kutta steps with meaningless errors, and a count reports it: no run
 // explodes or hangs.
 #include <cmath>
 #include <fmt/format.h>
@@ -30,8 +30,8 @@ TEST_P(RescueOfALoad, DoesNotExplode) {
     gap = std::max(gap, world.worst_position_error().value);
   }
   const StepCounts& counts = world.step_counts();
-  fmt::print("  gained {:.1e} of the kick's energy, gap {:.1e} m, {} steps left to Euler\n", gained / kick, gap,
-             counts.rescued);
+  fmt::print("  gained {:.1e} of the kick's energy, gap {:.1e} m, {} steps left to the midpoint rule\n", gained / kick,
+             gap, counts.rescued);
   EXPECT_LT(gained, 0.01 * kick);
   EXPECT_LT(gap, 1e-3);
   EXPECT_EQ(counts.rescued > 0, local_error == 0);
@@ -51,14 +51,14 @@ TEST_P(Rescue, ARopeJamsInItsPulley) {
     gained = std::max(gained, world.energy() - start);
   }
   const StepCounts& counts = world.step_counts();
-  fmt::print("  gained {:.1e} J, {} steps left to Euler, {} taken\n", gained, counts.rescued, counts.taken);
+  fmt::print("  gained {:.1e} J, {} steps left to the midpoint rule, {} taken\n", gained, counts.rescued, counts.taken);
   EXPECT_LT(gained, 1e-3 * 2 * 9.81);
   EXPECT_GT(counts.rescued, 0);
   EXPECT_LT(counts.taken, 100'000);
 }
 
 // A motor of unlimited force turns a rod that a bar to the ground blocks: no step is short enough for both. Each step
-// falls back to Euler's method after a few attempts, not after thousands of tiny steps.
+// falls back to the midpoint rule after a few attempts, not after thousands of tiny steps.
 TEST_P(Rescue, AMotorTurnsAgainstABar) {
   const auto& [integrator, local_error] = GetParam();
   World<double> world({.integrator = integrator, .local_error = local_error, .gravity_y = -9.81});
@@ -70,8 +70,8 @@ TEST_P(Rescue, AMotorTurnsAgainstABar) {
   for (int k = 0; k < steps; ++k) world.step(1.0 / 60);
   const StepCounts& counts = world.step_counts();
   const double gap = world.worst_position_error().value;
-  fmt::print("  gap {:.1e} m, {} evaluations, {} of {} steps left to Euler\n", gap, counts.evaluations, counts.rescued,
-             steps);
+  fmt::print("  gap {:.1e} m, {} evaluations, {} of {} steps left to the midpoint rule\n", gap, counts.evaluations,
+             counts.rescued, steps);
   EXPECT_EQ(counts.rescued, steps);
   EXPECT_LT(counts.evaluations, 100 * steps);
   EXPECT_LT(gap, 1e-10);
@@ -92,7 +92,7 @@ TEST(RescueOfFloats, NoErrorIsBelowTheLastBit) {
     for (int k = 0; k < 20; ++k) world.step(0.1);
     const StepCounts& counts = world.step_counts();
     const double off = std::abs(world.energy() - start);
-    fmt::print("  {} taken, {} left to Euler, energy off by {:.1e} J\n", counts.taken, counts.rescued, off);
+    fmt::print("  {} taken, {} left to the midpoint rule, energy off by {:.1e} J\n", counts.taken, counts.rescued, off);
     EXPECT_LT(counts.taken, 20'000);
     EXPECT_EQ(counts.rescued, 0);
     EXPECT_LT(off, 1e-3);
@@ -114,7 +114,7 @@ TEST_P(Rescue, ALightBeadIsDrawnTaut) {
       world.step(h);
       if (world.step_counts().rescued == 0) unsaid = std::max(unsaid, world.worst_position_error().value);
     }
-    fmt::print("  off by {:.1e} m with nothing said, {:.1e} m at the end, {} steps left to Euler\n", unsaid,
+    fmt::print("  off by {:.1e} m with nothing said, {:.1e} m at the end, {} steps left to the midpoint rule\n", unsaid,
                world.worst_position_error().value, world.step_counts().rescued);
     EXPECT_LT(unsaid, 1e-10);
   }
@@ -134,7 +134,8 @@ TEST(RescueOfASpatialChain, TakesPartsOfTheStepFirst) {
   StepCounts coarse, fine;
   const Frame end = end_of(Integrator::rk4, 48, coarse), truth = end_of(Integrator::rattle, 2000, fine);
   const double off = apart(end, truth, scene.dimension).position;
-  fmt::print("  off by {:.2e} m, {} attempts in parts, {} steps left to Euler\n", off, coarse.rejected, coarse.rescued);
+  fmt::print("  off by {:.2e} m, {} attempts in parts, {} steps left to the midpoint rule\n", off, coarse.rejected,
+             coarse.rescued);
   EXPECT_LT(off, 0.05);
   EXPECT_GT(coarse.rejected, 0);
   EXPECT_EQ(coarse.rescued, 0);
