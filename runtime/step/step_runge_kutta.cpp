@@ -38,8 +38,11 @@ constexpr double smallest_part = 1.0 / 16;
 template <class S>
 constexpr auto slight_displacement = typename S::Scalar(1e-6);  // in units of Island::size, and [rad]
 constexpr double astray_error = 1e301;                          // the error of a step that went astray
-constexpr int most_searches = 60;                               // for one event
-constexpr int furthest_reach = 64;                              // of an adaptive step, in units of h
+// Steps of an implicit method cost the cube of the bodies. Larger islands that lose rank again and again, as a slack
+// bridge does, are damped there by Euler's method, so that a run of them ends.
+constexpr int most_to_carry_on = 20;
+constexpr int most_searches = 60;   // for one event
+constexpr int furthest_reach = 64;  // of an adaptive step, in units of h
 
 // Thresholds for an event that was passed and just passed. In units of the resolution, relative to the margin at the
 // choice of the mode: a row that creeps may have chosen its mode many steps ago.
@@ -318,7 +321,8 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
     flow.length = world.settings.local_error > 0 ? take_adaptive_step(world, island, method, time, left, reach)
                                                  : take_fixed_step(world, island, method, time, left, h, reach);
     if (!(flow.length > T(0))) {
-      fall_back(world, island, time, left, flow.length < T(0));
+      const bool costly = method.implicit && std::ssize(island.bodies) > most_to_carry_on;
+      fall_back(world, island, time, left, flow.length < T(0) || costly);
       return h;
     }
     flow.longest = std::max<T>(flow.longest, flow.length);
