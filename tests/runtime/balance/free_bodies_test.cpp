@@ -1,0 +1,63 @@
+// Energy is checked without any joint: bodies that only springs, dampers, forces and torques move.
+#include <fmt/core.h>
+
+#include <cdot/balance.hpp>
+#include <cdot/methods.hpp>
+
+#include "tests/runtime/spatial_support.hpp"
+
+namespace cdot::test::free_bodies_test {
+namespace {
+
+struct Method {
+  Settings settings;
+  std::string name;
+  bool coarse;  // of first order
+};
+
+std::vector<Method> methods() {
+  std::vector<Method> all;
+  for (const IntegratorRow& row : integrator_rows)
+    for (const Solver solver : {Solver::direct, Solver::iterative})
+      for (const double local_error : {0.0, 1e-8}) {
+        Settings s;
+        s.integrator = row.integrator, s.solver = solver, s.local_error = local_error, s.gravity_y = -9.81;
+        if (mistake_in_methods(s) || (!row.any_solver && sweeps(solver))) continue;
+        const bool coarse = row.order == 1 || (row.stiffens && sweeps(solver));
+        all.push_back({s, fmt::format("{} {} {}", row.name, name_of(solvers, solver), local_error), coarse});
+      }
+  return all;
+}
+
+// Three bodies on springs beside their centres, one of them tied to the ground; a force and a torque on another.
+template <class W>
+void hang(W& world) {
+  const int first = world.add_body({.x = 1, .y = 0.2, .vx = 0.5, .w = 2, .mass = 1, .inertia = 0.3});
+  const int second =
+      world.add_body({.x = 2.2, .y = -0.4, .mass = 3, .inertia = 0.5, .force_x = 4, .force_y = 1, .torque = 0.7});
+  const int third = world.add_body({.x = 3, .y = 1, .w = -3, .mass = 0.5, .inertia = 0.1});
+  world.add_spring({.body_a = world.ground(), .body_b = first, .bx = -0.3, .by = 0.1, .stiffness = 60, .damping = 1.5});
+  world.add_spring(
+      {.body_a = first, .body_b = second, .ax = 0.4, .bx = -0.2, .by = 0.3, .stiffness = 25, .rest_length = 1});
+  world.add_spring(
+      {.body_a = second, .body_b = third, .ax = 0.2, .bx = 0.1, .stiffness = 40, .rest_length = 0.8, .damping = 3});
+}
+
+TEST(FreeBodies, EnergyIsAccountedFor) {
+  for (const Method& method : methods()) {
+    World<double> world(method.settings);
+    hang(world);
+    BalanceWatch watch;
+    watch.look(world.balance());
+    for (int k = 0; k < 2000; ++k) {
+      ASSERT_TRUE(world.step(1e-3));
+      watch.look(world.balance());
+    }
+    fmt::print("  {}: {:.1e} of the energies, {:.3g} J taken\n", method.name, watch.energy.share(), watch.last.taken);
+    EXPECT_LT(watch.energy.share(), method.coarse ? 2.5e-2 : 1e-4) << method.name;
+    EXPECT_GT(watch.last.taken, 1) << method.name;
+  }
+}
+
+}  // namespace
+}  // namespace cdot::test::free_bodies_test
