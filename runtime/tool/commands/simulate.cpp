@@ -105,7 +105,8 @@ int run(const Options& options) {
   if (csv) csv->commit();
   if (!result.state.empty()) write_file(options.save_state, result.state.text());
   if (!options.html.empty())
-    write_file(options.html, html_page(as_run(scene, result), result.film, summary_text(scene, result)));
+    write_file(options.html, html_page(as_run(scene, result), result.film,
+                                       result.choice ? choice_text(*result.choice, false) : std::string()));
   if (!options.svg.empty()) write_file(options.svg, svg_still(scene, result.film));
   fmt::print(summary, "{}", options.json ? summary_json(scene, result) : summary_text(scene, result));
   return failure(scene, result).empty() ? well : answer_is_no;

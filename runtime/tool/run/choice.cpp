@@ -60,16 +60,16 @@ bool fails(const Choice& choice) {
 std::string accuracy_failure(const Choice& choice) { return fails(choice) ? lack(choice) : std::string(); }
 std::string accuracy_warning(const Choice& choice) { return fails(choice) ? std::string() : lack(choice); }
 
-std::string choice_text(const Choice& choice) {
+std::string choice_text(const Choice& choice, bool with_cpu) {
   std::string text = fmt::format("  accuracy        {:.1e} {}{}: {}, {}; ", choice.asked, unit_of(choice),
                                  choice.of_size ? " by default" : " asked for", name_of(integrators, choice.integrator),
                                  steps_text(choice));
   text += choice.reached ? fmt::format("{:.1e} delivered", choice.achieved) : std::string("NOT reached");
-  return text + fmt::format("\n  search          {} run{} before, at {:.2g} times the run's price, {:.4g} s CPU\n",
+  return text + fmt::format("\n  search          {} run{} before, at {:.2g} times the run's price{}\n",
                             choice.runs_before, choice.runs_before == 1 ? "" : "s",
                             static_cast<double>(choice.evaluations_before) /
                                 static_cast<double>(std::max(1LL, choice.evaluations)),
-                            choice.cpu_before);
+                            with_cpu ? fmt::format(", {:.4g} s CPU", choice.cpu_before) : std::string());
 }
 
 text::Json choice_json(const Choice& choice) {

@@ -12,7 +12,7 @@ namespace cdot {
 // The times of the frames: dense enough to look smooth, few enough for a page.
 std::vector<double> film_times(const Scene& scene);
 
-// One self-contained page: no other file, no network. `report` is the summary of the run.
+// One self-contained page: no other file, no network. `report` tells how the method was chosen.
 std::string html_page(const Scene& scene, const std::vector<Frame>& film, const std::string& report = {});
 
 // The mechanism at several times, older ones fainter, with the traces.
