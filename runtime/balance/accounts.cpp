@@ -53,6 +53,7 @@ void begin_accounts(WorldData<S>& world) {
     if (accounts.open) accounts.put_in += energy - accounts.before_change;
     else accounts.start = energy;
     accounts.open = true, accounts.changed = false;
+    for (Island<S>& island : world.islands) island.levelled = false;
   }
   for (int index : world.awake) {
     Island<S>& island = world.islands[index];

@@ -5,6 +5,7 @@
 #include <cdot/effects.hpp>
 
 #include "runtime/balance/balance.hpp"
+#include "runtime/solve/solver.hpp"
 #include "runtime/state/add_rows.hpp"
 #include "runtime/state/state_list.hpp"
 #include "runtime/world/islands.hpp"
@@ -61,22 +62,40 @@ double force_of(const WorldData<S>& world, const JointRecord& record, double h) 
   return std::sqrt(square) / h;
 }
 
-// Where several joints of an island carry too much, only the most overloaded one breaks: without it the others may
-// carry less, as two pins that work against each other. The next substep shows whether they still carry too much.
 template <class S>
-void break_overloaded(WorldData<S>& world, typename S::Scalar h) {
+void find_overloads(WorldData<S>& world, double h) {
   auto& overloads = world.overloads;
   overloads.clear();
   for (const auto& [joint, load] : world.breaking_loads) {
     const JointRecord& record = world.joints[joint];
     const int island = world.island_of[movable_body(world, record)];
     if (record.broken || world.islands[island].asleep) continue;
-    const double share = force_of(world, record, double(h)) / load;
+    const double share = force_of(world, record, h) / load;
     if (share > 1) overloads.push_back({island, -share, joint});
   }
   std::sort(overloads.begin(), overloads.end());
+}
+
+template <class S, class F>
+void each_first(const WorldData<S>& world, F f) {
+  const auto& overloads = world.overloads;
   for (std::size_t k = 0; k < overloads.size(); ++k)
-    if (k == 0 || overloads[k].island != overloads[k - 1].island) break_joint(world, overloads[k].joint);
+    if (k == 0 || overloads[k].island != overloads[k - 1].island) f(overloads[k]);
+}
+
+// Where several joints of an island carry too much, only the most overloaded one breaks: without it the others may
+// carry less, as two pins that work against each other. The next substep shows whether they still carry too much.
+template <class S>
+void break_overloaded(WorldData<S>& world, typename S::Scalar h) {
+  find_overloads(world, double(h));
+  if (world.overloads.empty()) return;
+  each_first(world, [&](const Overload& overload) {
+    Island<S>& island = world.islands[overload.island];
+    if (!island.solver->exact) island.flow.forget();
+    island.solver->share(world, island);
+  });
+  find_overloads(world, double(h));
+  each_first(world, [&](const Overload& overload) { break_joint(world, overload.joint); });
 }
 
 }  // namespace

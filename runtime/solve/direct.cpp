@@ -66,6 +66,10 @@ void solve_velocities(WorldData<S>& world, Island<S>& island, typename S::Veloci
   exert_solution(world, island, system, v);
 }
 
+// System::share_loads() is set where joints may break.
+template <class S>
+void shared_already(WorldData<S>&, Island<S>&) {}
+
 // Only a retry gets here: the rows are rigid.
 template <class S>
 void solve_soft(WorldData<S>& world, Island<S>& island, SoftSweep<typename S::Scalar> soft, typename S::Scalar share) {
@@ -219,7 +223,8 @@ const RowSolver<S>& direct_solver() {
                                        .relax = project_relaxed<S>,
                                        .accelerations = solve_accelerations<S>,
                                        .positions = solve_positions<S>,
-                                       .projection = project<S>};
+                                       .projection = project<S>,
+                                       .share = shared_already<S>};
   return solver;
 }
 

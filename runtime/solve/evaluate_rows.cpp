@@ -22,25 +22,30 @@ void stiffen_masses(WorldData<S>& world, Island<S>& island, typename S::Scalar s
   island.factored = false;
 }
 
+// (M + h G) v' = M v + h f + J^T lambda with G = -d(J^T lambda)/dq: implicit Euler for the change of the joints'
+// forces.
+template <class S>
+void hold_back(WorldData<S>& world, const Island<S>& island) {
+  Bodies<S>& all = world.bodies;
+  for (int i : island.bodies)
+    all.velocity[i] = S::weighted(all.effective_mass[i], S::force(all.inverse_mass[i], all.velocity[i]));
+}
+
 template <class S>
 void stiffen_bodies(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
   using T = typename S::Scalar;
-  Bodies<S>& all = world.bodies;
   stiffen_masses(world, island, last_step > 0 ? h * (h / T(last_step)) : h);
-  // (M + h G) v' = M v + h f + J^T lambda with G = -d(J^T lambda)/dq: implicit Euler for the change of the joints'
-  // forces. v starts as (M + h G)^-1 M v.
-  for (int i : island.bodies)
-    all.velocity[i] = S::weighted(all.effective_mass[i], S::force(all.inverse_mass[i], all.velocity[i]));
+  hold_back(world, island);
 }
 
 template <class S>
 void factorize_rows(WorldData<S>& world, Island<S>& island) {
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
-    // The direct solver builds its own K, but a law needs K's diagonal with every solver.
+    // The direct solver builds its own K, but a law needs K's diagonal with every solver. Soft rows add to it.
     if (!batch.law && island.solver->exact) continue;
-    const auto fill = batch.law ? batch.ops->effective_mass : batch.ops->factorize;
-    fill(batch, segment.begin, segment.end, world.bodies);
+    const bool whole = batch.law || world.settings.drift == Drift::soft;
+    (whole ? batch.ops->effective_mass : batch.ops->factorize)(batch, segment.begin, segment.end, world.bodies);
   }
 }
 
@@ -69,6 +74,7 @@ void evaluate_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h)
 
 #define CDOT_INSTANTIATE(S)                                                   \
   template void stiffen_masses(WorldData<S>&, Island<S>&, S::Scalar);         \
+  template void hold_back(WorldData<S>&, const Island<S>&);                   \
   template void stiffen_bodies(WorldData<S>&, Island<S>&, S::Scalar, double); \
   template void factorize_rows(WorldData<S>&, Island<S>&);                    \
   template void evaluate_rows(WorldData<S>&, Island<S>&, S::Scalar);

@@ -75,39 +75,39 @@ void warm_start(WorldData<S>& world, Island<S>& island, typename S::Velocity* v,
   }
 }
 
-template <class S, class Bounded>
-void sweep(WorldData<S>& world, Island<S>& island, typename S::Velocity* v, SoftSweep<typename S::Scalar> soft,
-           Bounded takes_part) {
+// Impulses that grow with the step would let the errors of sweeps grow with them.
+template <class S>
+void sweep_velocities(WorldData<S>& world, Island<S>& island, typename S::Velocity* v, typename S::Scalar share) {
+  warm_start(world, island, v, std::min(typename S::Scalar(1), share));
   for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
-    for (const Segment<S>& segment : island.segments) {
-      Batch<S>& batch = *segment.batch;
-      if (!batch.law) batch.ops->iterate(batch, segment.begin, segment.end, world.bodies, v, batch.lambda.data(), soft);
-      else if (takes_part(*batch.law)) iterate_bounded(batch, segment.begin, segment.end, world.bodies, v);
+    for (const auto& [batch, begin, end, whole] : island.segments) {
+      if (batch->law) iterate_bounded(*batch, begin, end, world.bodies, v);
+      else batch->ops->iterate(*batch, begin, end, world.bodies, v, batch->lambda.data());
     }
   }
 }
 
 template <class S>
-bool any_law(const Law<S>&) {
-  return true;
-}
-
-template <class S>
-void sweep_velocities(WorldData<S>& world, Island<S>& island, typename S::Velocity* v, typename S::Scalar share) {
-  warm_start(world, island, v, share);
-  sweep(world, island, v, {}, any_law<S>);
+void sweep_softly(WorldData<S>& world, Island<S>& island, SoftSweep<typename S::Scalar> soft, bool springs) {
+  auto* const v = world.bodies.velocity.data();
+  for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
+    for (const auto& [batch, begin, end, whole] : island.segments) {
+      if (!batch->law) batch->ops->soften(*batch, begin, end, world.bodies, v, batch->lambda.data(), soft);
+      else if (springs || !batch->law->force) iterate_bounded(*batch, begin, end, world.bodies, v);
+    }
+  }
 }
 
 template <class S>
 void sweep_soft(WorldData<S>& world, Island<S>& island, SoftSweep<typename S::Scalar> soft, typename S::Scalar share) {
   warm_start(world, island, world.bodies.velocity.data(), share);
-  sweep(world, island, world.bodies.velocity.data(), soft, any_law<S>);
+  sweep_softly(world, island, soft, true);
 }
 
 // Springs have acted over the whole step.
 template <class S>
 void sweep_relaxed(WorldData<S>& world, Island<S>& island) {
-  sweep(world, island, world.bodies.velocity.data(), {}, [](const Law<S>& law) { return !law.force; });
+  sweep_softly(world, island, {}, false);
 }
 
 template <class S>
@@ -193,11 +193,66 @@ void sweep_projection(WorldData<S>& world, Island<S>& island) {
   for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
     for (const Segment<S>& segment : island.segments) {
       Batch<S>& batch = *segment.batch;
-      if (!batch.law)
-        batch.ops->iterate(batch, segment.begin, segment.end, world.bodies, v, batch.correction.data(), {});
+      if (!batch.law) batch.ops->iterate(batch, segment.begin, segment.end, world.bodies, v, batch.correction.data());
       else if (island.acceleration_level) iterate_bounded(batch, segment.begin, segment.end, world.bodies, v);
     }
   }
+}
+
+template <class S, class F>
+void each_exact_row(const Island<S>& island, F f) {
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    for (int i = begin * batch->ops->rows; !batch->law && i < end * batch->ops->rows; ++i) f(*batch, i);
+}
+
+// Batch::rate = K direction, over the exact rows; `direction` is an array of Batch.
+template <class S, class Array>
+void multiply(WorldData<S>& world, const Island<S>& island, Array direction) {
+  auto& pushed = world.bodies.increment;
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    if (!batch->law) batch->ops->apply(*batch, begin, end, world.bodies, (batch->*direction).data(), pushed.data());
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    if (!batch->law) batch->ops->velocity(*batch, begin, end, pushed.data(), batch->rate.data());
+  for (int i : island.bodies) pushed[i] = {};
+}
+
+// Sweeps load the first of redundant rows. Conjugate gradients for K shared = K lambda that start from 0 end at the
+// least `shared`. Batch::bias holds their direction, Batch::error what is left.
+template <class S>
+void share_loads(WorldData<S>& world, Island<S>& island, StateArray<typename S::Scalar> BatchState<S>::*impulses) {
+  using T = typename S::Scalar;
+  constexpr int rounds = 200;
+  constexpr double left_out = 1e-6;  // of K lambda, squared
+  const auto square = [](T number) { return double(number) * double(number); };
+  multiply(world, island, impulses);
+  double left = 0;
+  each_exact_row(island, [&](Batch<S>& batch, int i) {
+    batch.bias[i] = batch.error[i] = batch.rate[i], batch.impulse[i] = 0;
+    left += square(batch.rate[i]);
+  });
+  const double enough = left_out * left;
+  for (int round = 0; round < rounds && left > enough; ++round) {
+    multiply(world, island, &BatchWorkspace<S>::bias);
+    double curvature = 0, remains = 0;
+    each_exact_row(island, [&](Batch<S>& batch, int i) { curvature += double(batch.bias[i]) * double(batch.rate[i]); });
+    const T step = T(left / curvature);
+    each_exact_row(island, [&](Batch<S>& batch, int i) {
+      batch.impulse[i] += step * batch.bias[i], batch.error[i] -= step * batch.rate[i];
+      remains += square(batch.error[i]);
+    });
+    each_exact_row(island, [kept = T(remains / left)](Batch<S>& batch, int i) {
+      batch.bias[i] = batch.error[i] + kept * batch.bias[i];
+    });
+    left = remains;
+  }
+  if (left <= enough) each_exact_row(island, [&](Batch<S>& batch, int i) { (batch.*impulses)[i] = batch.impulse[i]; });
+}
+
+template <class S>
+void share_all_loads(WorldData<S>& world, Island<S>& island) {
+  share_loads(world, island, &BatchState<S>::lambda);
+  share_loads(world, island, &BatchState<S>::correction);
+  island.evaluated = island.factored = false;
 }
 
 }  // namespace
@@ -212,7 +267,8 @@ const RowSolver<S>& iterative_solver() {
                                        .relax = sweep_relaxed<S>,
                                        .accelerations = sweep_accelerations<S>,
                                        .positions = sweep_positions<S>,
-                                       .projection = sweep_projection<S>};
+                                       .projection = sweep_projection<S>,
+                                       .share = share_all_loads<S>};
   return solver;
 }
 

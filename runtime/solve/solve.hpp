@@ -9,7 +9,7 @@ namespace cdot {
 template <class S>
 void evaluate_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 
-// Computes K or, for the iterative solver, its factorisation.
+// Computes K or, for the sweeps of rigid rows, its factorisation.
 template <class S>
 void factorize_rows(WorldData<S>& world, Island<S>& island);
 
@@ -31,8 +31,11 @@ void accelerate(WorldData<S>& world, Island<S>& island, typename S::Scalar time)
 template <class S>
 void stiffen_masses(WorldData<S>& world, Island<S>& island, typename S::Scalar share);
 
-// The same for a linearly implicit step of h, whose velocities then are (M + h G)^-1 M v. The present impulses are
-// those of a step of `last_step` [s]; 0: of h.
+// The velocities with which a linearly implicit step starts: (M + h G)^-1 M v, with these effective masses.
+template <class S>
+void hold_back(WorldData<S>& world, const Island<S>& island);
+
+// Both for a linearly implicit step of h. The present impulses are those of a step of `last_step` [s]; 0: of h.
 template <class S>
 void stiffen_bodies(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step);
 

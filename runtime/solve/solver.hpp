@@ -37,6 +37,8 @@ struct RowSolver {
   // Projects the velocities onto J v = -bias after an evaluation of C and J, for exact and held rows. Sets
   // Island::factored if the factor of these rows is available.
   void (*projection)(WorldData<S>&, Island<S>&);
+  // Makes lambda of exact rows the least impulses that push the bodies alike, so that redundant rows share their load.
+  void (*share)(WorldData<S>&, Island<S>&);
 };
 
 template <class S>

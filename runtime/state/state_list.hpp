@@ -60,12 +60,13 @@ struct StateList {
   template <class S, class Visitor>
   static void each_of_island(Island<S>& island, int index, bool has_system, Visitor& visit) {
     auto& [size, scale, residual, evaluated_at, evaluated, factored, acceleration_level, asleep, rested, redundant_rows,
-           gained, momentum] = static_cast<IslandState<S>&>(island);
+           gained, level, levelled, slack, momentum] = static_cast<IslandState<S>&>(island);
     visit.item("island.numbers", index, true), visit(size), visit(scale), visit(residual), visit(evaluated_at);
     visit.item("island.flags", index, true), visit(evaluated), visit(factored), visit(acceleration_level),
-        visit(asleep);
+        visit(asleep), visit(levelled);
     visit.item("island.rested", index, true), visit(rested);
-    visit.item("island.gained", index, true), visit(gained);
+    visit.item("island.gained", index, true), visit(gained), visit(level);
+    visit.item("island.slack", index, true), visit(slack);
     visit.item("island.redundant_rows", index, true), visit(redundant_rows);
     visit.item("island.momentum", index, true), visit(momentum);
     each_of_flow(island.flow, index, visit);

@@ -6,7 +6,7 @@
 namespace cdot {
 
 // Prepares the start of a step of h. A state that is not the end of a step is projected, and its exact rows are
-// factored. Returns the factor that scales the present impulses to this step: h / last step.
+// factored. Returns the factor that scales the present impulses to this step: h / last step, for sweeps at most 1.
 template <class S>
 typename S::Scalar begin_kick_drift(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 

@@ -113,10 +113,10 @@ void start_half(WorldData<S>& world, Island<S>& island, typename S::Scalar h, ty
 
 // For sweeps, and if the drift did not reach C = 0: projects the poses and renews J on the way. Unless the displacement
 // is large, displacement / h is added to the velocities and its impulses are kept. Sweeps always add them, because the
-// next step corrects the remaining error.
+// next step corrects the remaining error. In a shorter step, that of the last one, of order h^2, counts by its share.
 template <class S>
 void drift_with_renewed_directions(WorldData<S>& world, Island<S>& island, typename S::Scalar h,
-                                   typename S::Scalar at_start) {
+                                   typename S::Scalar at_start, typename S::Scalar share) {
   using T = typename S::Scalar;
   drift(world, island, h);
   scale_corrections(island, h);
@@ -124,8 +124,8 @@ void drift_with_renewed_directions(WorldData<S>& world, Island<S>& island, typen
   island.solver->positions(world, island, time, false);
   fail_if_open(world, island, at_start);
   if (island.solver->exact) fail_if_moved_far(world, island, double(std::max(error, at_start)), double(h));
-  const bool keep = !island.solver->exact || correction_is_small(world, island, double(h));
-  add_corrections(world, island, keep ? T(1) / h : T(0));
+  const T kept = !island.solver->exact ? share * share : T(correction_is_small(world, island, double(h)));
+  add_corrections(world, island, kept / h);
 }
 
 // Books the first half: at the poses of its start, to which J belongs.
@@ -175,7 +175,7 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   const bool by_sweeps = !island.solver->exact;
   if (by_sweeps || !drift_onto_joints(world, island, h)) {
     if (!by_sweeps) start_half(world, island, h, share);
-    drift_with_renewed_directions(world, island, h, at_start);
+    drift_with_renewed_directions(world, island, h, at_start, share);
   }
   book_start(world, island, h / 2);
   evaluate_anew(world, island, T(world.time) + h);

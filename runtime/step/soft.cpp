@@ -25,12 +25,53 @@ constexpr double turn = 2, damping_ratio = 1;
 // Steps that vary keep the stiffness; it follows them within some hundred steps.
 constexpr double fading = 0.995;
 
-// An implicit Euler step of a spring of frequency w and damping ratio zeta on one row, a = w h (2 zeta + w h):
-//   rate = w / (2 zeta + w h),   kept = a / (1 + a)
+// An implicit Euler step of a spring of frequency w and damping ratio zeta on one row:
+//   rate = w / (2 zeta + w h),   share = 1 / (w h (2 zeta + w h))
 template <class T>
 SoftSweep<T> soft_sweep(T h, double longest) {
-  const double wh = turn * double(h) / longest, divisor = 2 * damping_ratio + wh, a = wh * divisor;
-  return {T(wh / divisor) / h, T(a / (1 + a))};
+  const double wh = turn * double(h) / longest, divisor = 2 * damping_ratio + wh;
+  return {T(wh / divisor) / h, T(1 / (wh * divisor))};
+}
+
+// Tension makes the rotation of a body stiff: u = h^2 k / I. Euler's steps are unstable from u = 4 on, and sweeps
+// suffer before. Islands below are looked at again after some steps.
+constexpr double stiff = 0.5;
+constexpr int slack_steps = 8;
+
+// The largest u, from the masses with their stiffness.
+template <class S>
+double largest_stiffening(const WorldData<S>& world, const Island<S>& island) {
+  const Bodies<S>& all = world.bodies;
+  double most = 0;
+  for (int c = S::lengths; c < S::freedom; ++c) {
+    typename S::Scalar numbers[S::freedom] = {};
+    numbers[c] = 1;
+    const auto torque = S::read_velocity(numbers);
+    for (int i : island.bodies) {
+      const double stiffened = S::dot(S::weighted(all.effective_mass[i], torque), torque);
+      if (stiffened > 0)
+        most = std::max(most, S::dot(S::weighted(all.inverse_mass[i], torque), torque) / stiffened - 1);
+    }
+  }
+  return most;
+}
+
+template <class S>
+void restore_masses(WorldData<S>& world, Island<S>& island) {
+  for (int i : island.bodies) world.bodies.effective_mass[i] = world.bodies.inverse_mass[i];
+  island.stiffened = island.factored = false;
+}
+
+// Makes the step linearly implicit where tension makes rotations stiff. J must be that of the present poses.
+template <class S>
+void stiffen(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
+  if (last_step == 0 || island.solver->exact || island.slack-- > 0) return;
+  stiffen_masses(world, island, h * (h / typename S::Scalar(last_step)));
+  island.stiffened = largest_stiffening(world, island) > stiff;
+  if (island.stiffened) return hold_back(world, island);
+  island.slack = slack_steps;
+  restore_masses(world, island);
+  island.factored = true;  // K has not changed
 }
 
 // Limits, ropes and locks, where they are beyond their ends: spring_row() of the same spring. Motors stay rigid.
@@ -50,7 +91,7 @@ void fill_laws(WorldData<S>& world, Island<S>& island, typename S::Scalar h, Sof
         const int i = slot * rows + r;
         const bool one_sided = batch.lower[i] == T(0) || batch.upper[i] == T(0), rigid = one_sided && error[r] == T(0);
         const T K = batch.factor[slot * batch.triangle() + r * (r + 1) / 2 + r];
-        batch.softness[i] = rigid ? T(0) : K * (T(1) - soft.kept) / soft.kept;
+        batch.softness[i] = rigid ? T(0) : K * soft.share;
         batch.bias[i] += soft.rate * error[r];
       }
     }
@@ -71,28 +112,36 @@ void restore_rates(WorldData<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void evaluate(WorldData<S>& world, Island<S>& island, typename S::Scalar h, SoftSweep<typename S::Scalar> soft) {
+void evaluate(WorldData<S>& world, Island<S>& island) {
   if (!island.evaluated) island.evaluated_at = typename S::Scalar(world.time);
   restore_rates(world, island);
+  island.evaluated = true;
   if (!island.factored) factorize_rows(world, island);
-  fill_laws(world, island, h, soft);
+  island.factored = !island.solver->exact;
 }
 
-// Kinetic energy, and the power of constant forces.
-struct Moving {
-  double energy = 0, power = 0;
+// Of the bodies: the kinetic energy, and the energy that symplectic Euler keeps of a constant force F at the pose x,
+// H + h/2 F v. In space the work of torques is booked.
+struct Level {
+  double kinetic = 0, kept = 0;
 };
 template <class S>
-Moving moving(const WorldData<S>& world, const Island<S>& island) {
-  const Bodies<S>& all = world.bodies;
-  Moving sum;
+Level level_of(WorldData<S>& world, Island<S>& island, double h) {
+  using T = typename S::Scalar;
+  Bodies<S>& all = world.bodies;
+  if constexpr (S::has_gyroscopes)
+    for_each_gyroscope(world, island, [&](const auto& gyroscope, int i) { S::set_mass(gyroscope, all.mass[i]); });
+  Level level;
+  T x[S::pose_numbers];
   for (int i : island.bodies) {
-    const auto momentum = S::force(all.inverse_mass[i], all.velocity[i]);
-    sum.energy += 0.5 * S::dot(momentum, all.velocity[i]);
-    // In space the work of torques is booked.
-    sum.power += S::dot(momentum, S::has_gyroscopes ? S::damped(all.acceleration[i], 1, 0) : all.acceleration[i]);
+    const auto& v = all.velocity[i];
+    const auto acceleration = S::has_gyroscopes ? S::damped(all.acceleration[i], 1, 0) : all.acceleration[i];
+    S::write(all.pose[i], x);
+    level.kinetic += 0.5 * S::dot(S::weighted(all.mass[i], v), v);
+    level.kept += S::dot(S::weighted(all.mass[i], acceleration), S::sum(S::read_velocity(x), v, T(-0.5 * h)));
   }
-  return sum;
+  level.kept = level.kinetic - level.kept;
+  return level;
 }
 
 // The energy of springs, less what was put in and plus what was taken.
@@ -130,20 +179,19 @@ void relax(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   part_impulses(island, 0);
 }
 
-// Books the energy that the joints gave to the island, or took, and takes out a gain since the start of the run. For a
-// constant force F, symplectic Euler keeps H + h/2 F v, not H. A gain that lies in the poses alone stays.
+// Books the energy that the joints gave to the island, or took, and takes out a gain since the start of the run. A gain
+// that lies in the poses alone stays.
 template <class S>
-void take_gain(WorldData<S>& world, Island<S>& island, const Moving& start, const Moving& middle, double h,
-               double last_step, double stored) {
-  const auto kept = [](const Moving& at, double step) { return at.energy + 0.5 * step * at.power; };
-  const Moving end = moving(world, island);
-  const double before = kept(start, last_step > 0 ? last_step : h);
-  island.gained += kept(end, h) - before - h * middle.power + stored;
+void take_gain(WorldData<S>& world, Island<S>& island, double h, double stored) {
+  const Level end = level_of(world, island, h);
+  island.gained += end.kept - island.level + stored;
+  island.level = end.kept;
   if (!(island.gained > 0)) return;
   calm(world, island, island.gained);
-  const Moving calmed = moving(world, island);
-  const bool at_rest = end.energy - calmed.energy < 0.999 * island.gained;
-  island.gained = at_rest ? 0.0 : double(island.gained) + kept(calmed, h) - kept(end, h);
+  const Level calmed = level_of(world, island, h);
+  const bool at_rest = end.kinetic - calmed.kinetic < 0.999 * island.gained;
+  island.gained = at_rest ? 0.0 : double(island.gained) + calmed.kept - end.kept;
+  island.level = calmed.kept;
 }
 
 }  // namespace
@@ -153,20 +201,24 @@ void step_soft(WorldData<S>& world, Island<S>& island, typename S::Scalar h, dou
   using T = typename S::Scalar;
   island.flow.longest = std::max(h, T(fading) * island.flow.longest);
   const SoftSweep<T> rows = soft_sweep(h, double(island.flow.longest));
-  evaluate(world, island, h, rows);
+  evaluate(world, island);
   begin_kick(world, island);
-  const Moving start = moving(world, island);
+  if (!island.levelled) island.level = level_of(world, island, double(last_step > 0 ? T(last_step) : h)).kept;
+  island.levelled = true;
   const double stored_at_start = stored(world, island);
+  stiffen(world, island, h, last_step);
+  if (!island.factored) factorize_rows(world, island);
+  fill_laws(world, island, h, rows);
   apply_forces(world, island, h);
   island.solver->soften(world, island, rows, last_step > 0 ? h / T(last_step) : T(0));
   book_kick(world, island, Impulses::soft, h);
-  const Moving middle = moving(world, island);
+  if (island.stiffened) restore_masses(world, island);
   integrate(world, island, h);
   evaluate_anew(world, island, T(world.time) + h);
   factorize_rows(world, island);
   relax(world, island, h);
   book_stiffness(world, island);
-  take_gain(world, island, start, middle, double(h), last_step, stored(world, island) - stored_at_start);
+  take_gain(world, island, double(h), stored(world, island) - stored_at_start);
   island.evaluated = true;
   island.factored = !island.solver->exact;
 }

@@ -96,6 +96,8 @@ template <class S>
 void adopt_state(WorldData<S>& world, const std::vector<std::byte>& bytes) {
   std::memcpy(world.block.bytes.data(), bytes.data(), bytes.size());
   world.awake.clear();
+  Bodies<S>& all = world.bodies;
+  for (int i = 0; i < all.count(); ++i) all.mass[i] = S::inverted(all.inverse_mass[i]);
   for (std::size_t k = 0; k < world.islands.size(); ++k) {
     Island<S>& island = world.islands[k];
     if (!island.asleep) world.awake.push_back(static_cast<int>(k));

@@ -1,6 +1,7 @@
 // Removes islands at rest from the list of awake islands, and puts them back when a change wakes them.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <cdot/spaces.hpp>
 
@@ -46,6 +47,7 @@ bool slower(const WorldData<S>& world, const Island<S>& island, double speed) {
 template <class S>
 void stop(WorldData<S>& world, Island<S>& island) {
   for (int i : island.bodies) world.bodies.velocity[i] = {};
+  island.levelled = false;
   if constexpr (S::has_gyroscopes) set_inertias(world, island);  // L = I w
 }
 
@@ -106,6 +108,7 @@ void wake_pushed(WorldData<S>& world, int body) {
 template <class S>
 void wake(WorldData<S>& world, int body) {
   for_each_island_of(world, body, [](Island<S>& island) {
+    island.gained = 0;  // what it lost in another state is no credit
     island.evaluated = island.factored = false;
     island.flow.forget();
     island.residual = std::numeric_limits<typename S::Scalar>::infinity();

@@ -155,6 +155,7 @@ int BasicWorld<S>::add_body(const BodyDefinition& d) {
   all.velocity.push_back(S::velocity_of(d));
   all.inverse_mass.push_back(m);
   all.effective_mass.push_back(m);
+  all.mass.push_back(S::inverted(m));
   all.force.push_back(S::components(S::wrench_of(d)));
   all.acceleration.push_back({}), all.velocity_rate.push_back({});
   all.displacement.push_back({}), all.increment.push_back({}), all.stiffness.push_back({});

@@ -82,10 +82,10 @@ struct Planar {
   // M^-1 f
   static Velocity weighted(const InverseMass& m, const Velocity& f) { return {m.m * f.x, m.m * f.y, m.I * f.w}; }
 
+  // M from M^-1
+  static InverseMass inverted(const InverseMass& m) { return {inverse(m.m), inverse(m.I)}; }
   // M a: the force for an acceleration a
-  static Velocity force(const InverseMass& m, const Velocity& a) {
-    return {inverse(m.m) * a.x, inverse(m.m) * a.y, inverse(m.I) * a.w};
-  }
+  static Velocity force(const InverseMass& m, const Velocity& a) { return weighted(inverted(m), a); }
 
   static Velocity damped(const Velocity& v, T linear, T angular) { return {v.x * linear, v.y * linear, v.w * angular}; }
 

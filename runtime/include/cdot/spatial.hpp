@@ -97,6 +97,7 @@ struct Spatial {
     g.spin = angular(v);
     g.momentum = g.world * g.spin;
   }
+  static void set_mass(const Gyroscope& g, InverseMass& mass) { mass = inverse_mass(mass.m, g.world); }
   // The tensors at a pose that the body moved to; keeps L = I w.
   static void turn(Gyroscope& g, const Pose& q, InverseMass& m, Velocity& v) {
     g.momentum = g.momentum + g.world * (angular(v) - g.spin);
@@ -188,12 +189,12 @@ struct Spatial {
     return {m.m * f.x, m.m * f.y, m.m * f.z, w.x, w.y, w.z};
   }
 
-  // M a: the force for an acceleration a
-  static Velocity force(const InverseMass& m, const Velocity& a) {
-    const T mass = inverse(m.m);
-    const Vector torque = spatial::inverse(inverse_inertia(m)) * angular(a);
-    return {mass * a.x, mass * a.y, mass * a.z, torque.x, torque.y, torque.z};
+  // M from M^-1
+  static InverseMass inverted(const InverseMass& m) {
+    return inverse_mass(inverse(m.m), spatial::inverse(inverse_inertia(m)));
   }
+  // M a: the force for an acceleration a
+  static Velocity force(const InverseMass& m, const Velocity& a) { return weighted(inverted(m), a); }
 
   static Velocity damped(const Velocity& v, T linear, T angular) {
     return {v.x * linear, v.y * linear, v.z * linear, v.wx * angular, v.wy * angular, v.wz * angular};

@@ -273,7 +273,9 @@ TEST(BreakingLoad, TheSpringsOfABrokenJointHaveNoEnergy) {
 
 // A weight on two pins at one place. Each carries half of it. Without one of them the other carries all.
 struct WeightOnTwoPins {
-  WeightOnTwoPins(Integrator integrator, double load_1, double load_2) : world(method(integrator)) {
+  WeightOnTwoPins(Integrator integrator, double load_1, double load_2)
+      : WeightOnTwoPins(method(integrator), load_1, load_2) {}
+  WeightOnTwoPins(const Settings& settings, double load_1, double load_2) : world(settings) {
     body = world.add_body({.mass = 1, .inertia = 1});
     for (double load : {load_1, load_2})
       set_breaking_load(world, revolute(world, world.ground(), body, 0, 0, 0, 0), load);
@@ -311,13 +313,40 @@ TEST(BreakingLoad, OneJointBreaksWhereTheOtherCarriesAll) {
   }
 }
 
-// By sweeps, two pins that misfit pull at each other ever harder. When one is gone, the other carries little.
-TEST(BreakingLoad, OfJointsThatWorkAgainstEachOtherOneBreaks) {
+// Sweeps load the first of two pins alone.
+TEST(BreakingLoad, BySweepsRedundantJointsShareTheLoadToo) {
+  for (Drift drift : {Drift::soft, Drift::baumgarte, Drift::projection, Drift::none})
+    for (const IntegratorRow& row : integrator_rows) {
+      Settings s = settings(Solver::iterative, drift, -10);
+      s.integrator = row.integrator;
+      if (mistake_in_methods(s)) continue;
+      for (double load : {9.0, 11.0}) {  // what both can carry
+        WeightOnTwoPins pins(s, load / 2, load / 2);
+        EXPECT_EQ(pins.world.broken(0) && pins.world.broken(1), load < 10) << row.name;
+        EXPECT_EQ(pins.world.broken(0), pins.world.broken(1)) << row.name;
+      }
+    }
+}
+
+// By sweeps, two pins that misfit pull at each other ever harder. They carry nothing, so they share nothing.
+TEST(BreakingLoad, JointsThatWorkAgainstEachOtherDoNotBreak) {
   World<double> world(settings(Solver::iterative, Drift::baumgarte));
   const int body = world.add_body({.mass = 1, .inertia = 1});
   for (double x : {-1e-5, 1e-5}) set_breaking_load(world, revolute(world, world.ground(), body, x, 0, 0, 0), 0.1);
   run(world, 1, 0.01);
-  EXPECT_NE(world.broken(0), world.broken(1));
+  EXPECT_FALSE(world.broken(0) || world.broken(1));
+}
+
+// Both pins of two hanging rods carry too much. Without the upper one, the rods fall and the lower one carries nothing.
+TEST(BreakingLoad, OfJointsInARowOneBreaks) {
+  for (Solver solver : both) {
+    World<double> world(settings(solver, Drift::projection, -10));
+    add_chain(world, 2, -pi / 2);
+    for (int joint : {0, 1}) set_breaking_load(world, joint, 5);
+    run(world, 0.2, 0.01);
+    EXPECT_TRUE(world.broken(0));
+    EXPECT_FALSE(world.broken(1));
+  }
 }
 
 TEST(Effects, MistakesAreRefused) {

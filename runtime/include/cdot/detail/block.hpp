@@ -14,10 +14,10 @@ namespace cdot {
 template <class S>
 struct Batch;
 
-// How a sweep solves exact rows: for J v = -(bias + rate C), and it keeps this share of the impulses.
+// How a soft sweep solves exact rows: for J v = -(bias + rate C), with the softness share K_rr of each row.
 template <class T>
 struct SoftSweep {
-  T rate = 0, kept = 1;
+  T rate = 0, share = 0;
 };
 
 // The loops of one row block over the slots [begin, end) of a batch, made by
@@ -50,7 +50,9 @@ struct BlockOps {
   // velocity += M^-1 J^T lambda, lambda laid out like the batch's.
   void (*apply)(const Batch<S>&, int begin, int end, const Bodies<S>&, const T* lambda, Velocity*);
   // One sweep of sequential impulses over exact rows, added to `lambda` and to the velocities.
-  void (*iterate)(const Batch<S>&, int begin, int end, const Bodies<S>&, Velocity*, T* lambda, SoftSweep<T>);
+  void (*iterate)(const Batch<S>&, int begin, int end, const Bodies<S>&, Velocity*, T* lambda);
+  // The same for soft rows, with K in place of its factors.
+  void (*soften)(const Batch<S>&, int begin, int end, const Bodies<S>&, Velocity*, T* lambda, SoftSweep<T>);
   // One sweep of Newton on C with the step's J and K: K lambda = -C, then displace().
   void (*correct)(Slots, int begin, int end, Bodies<S>&, T time);
   // Moves the poses of one slot by M^-1 J^T lambda; adds the moves to displacement and lambda to correction.

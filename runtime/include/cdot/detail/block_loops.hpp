@@ -179,27 +179,60 @@ struct BlockLoops {
     for (int k = 0; k < bodies; ++k) to[body[k]] = v[k];
   }
 
-  // lambda = kept (lambda + K^-1 b), b = -(J v + bias + rate C)
-  static void iterate(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, Velocity* of, T* impulses,
-                      SoftSweep<T> soft) {
+  // One sweep: change(slot, J, m, Jv, lambda) finds the change of a slot's lambda. Calls would cost a tenth of it.
+  template <class Change>
+  [[gnu::always_inline]] static inline void sweep(const Batch<S>& batch, int begin, int end, const Bodies<S>& all,
+                                                  Velocity* of, T* impulses, Change change) {
     for (int slot = begin; slot < end; ++slot) {
       const int* body = bodies_of(batch, slot);
       const Jacobian& J = as<Jacobian>(batch.jacobian.data(), slot);
-      const T *const bias = batch.bias.data() + slot * rows, *const C = batch.C.data() + slot * rows;
-      T* const total = impulses + slot * rows;
       Velocity v[bodies];
       InverseMass m[bodies];
       gather(all.effective_mass, body, m);
       for (int k = 0; k < bodies; ++k) v[k] = of[body[k]];
-      T Jv[rows], b[rows], change[rows];
+      T Jv[rows], lambda[rows];
       Block::velocity(J, v, Jv);
-      for (int r = 0; r < rows; ++r) b[r] = -(Jv[r] + bias[r] + soft.rate * C[r]);
-      solve(batch, slot, b, change);
-      for (int r = 0; r < rows; ++r) change[r] = soft.kept * change[r] - (T(1) - soft.kept) * total[r];
-      Block::apply(J, m, change, v);
+      change(slot, J, m, Jv, lambda);
+      Block::apply(J, m, lambda, v);
       for (int k = 0; k < bodies; ++k) of[body[k]] = v[k];
-      for (int r = 0; r < rows; ++r) total[r] += change[r];
+      for (int r = 0; r < rows; ++r) impulses[slot * rows + r] += lambda[r];
     }
+  }
+
+  // K lambda = -(J v + bias)
+  static void iterate(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, Velocity* of, T* impulses) {
+    const auto rigid = [&](int slot, const Jacobian&, const InverseMass(&)[bodies], const T(&Jv)[rows],
+                           T(&lambda)[rows]) {
+      T b[rows];
+      for (int r = 0; r < rows; ++r) b[r] = -(Jv[r] + batch.bias[slot * rows + r]);
+      solve(batch, slot, b, lambda);
+    };
+    sweep(batch, begin, end, all, of, impulses, rigid);
+  }
+
+  // (K + share diag K) change = -(J v + bias + rate C + share diag(K) lambda). The softness of a row follows its own
+  // K_rr: a share of all of K would leave the weakest directions of a block stiff, as the bending of a weld.
+  static void soften(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, Velocity* of, T* impulses,
+                     SoftSweep<T> soft) {
+    const auto change = [&](int slot, const Jacobian& J, const InverseMass(&m)[bodies], const T(&Jv)[rows],
+                            T(&lambda)[rows]) {
+      T K[triangle], F[triangle], b[rows];
+      for (int k = 0; k < triangle; ++k) K[k] = batch.factor[slot * triangle + k];
+      for (int r = 0, i = slot * rows; r < rows; ++r, ++i) {
+        const T softness = soft.share * K[r * (r + 3) / 2];
+        b[r] = -(Jv[r] + batch.bias[i] + soft.rate * batch.C[i] + softness * impulses[i]);
+        K[r * (r + 3) / 2] += softness;
+      }
+      // A sweep waits for the last slot's velocities: of two rows, K^-1 is ready before them.
+      if constexpr (rows == 2 && kernels != Kernels::robust) {
+        invert(K, F), multiply(F, b, lambda);
+      } else {
+        if (kernels == Kernels::robust && soft.share == T(0)) factor_by_rows<Block, width>(J, m, F);
+        else Block::factor(K, F);
+        Block::solve(F, b, lambda);
+      }
+    };
+    sweep(batch, begin, end, all, of, impulses, change);
   }
 
   // K lambda = -C, displacement = M^-1 J^T lambda
@@ -290,6 +323,7 @@ struct BlockLoops {
             velocity,
             apply,
             iterate,
+            soften,
             correct,
             displace,
             dense,

@@ -23,6 +23,7 @@ constexpr BlockOps<S> ops_without_rows() {
   ops.velocity = do_nothing;
   ops.apply = do_nothing;
   ops.iterate = do_nothing;
+  ops.soften = do_nothing;
   ops.correct = do_nothing;
   ops.displace = do_nothing;
   ops.dense = do_nothing;
@@ -37,6 +38,7 @@ constexpr BlockOps<S> make_other_ops() {
   using Other = BlockLoops<S, Joint, Block, kernels>;
   BlockOps<S> ops = BlockLoops<S, Joint, Block>::ops();
   ops.factorize = Other::factorize;
+  if constexpr (kernels == Kernels::robust) ops.soften = Other::soften;
   if constexpr (kernels == Kernels::fast) {
     ops.iterate = Other::iterate;
     ops.correct = Other::correct;

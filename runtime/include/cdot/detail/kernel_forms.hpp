@@ -42,7 +42,7 @@ void factor_by_rows(const Jacobian& J, const InverseMass (&m)[Block::bodies], T 
 // K^-1 of two rows in place of the factors: the solution needs two independent products instead of two dependent
 // substitutions. If K is singular, the row with the larger diagonal entry gets the whole impulse.
 template <class T>
-void invert(const T (&K)[3], T (&G)[3]) {
+inline void invert(const T (&K)[3], T (&G)[3]) {
   const T inv_det = pivot(K[0] * K[2] - K[1] * K[1], K[0] * K[2]);
   const bool first = K[0] >= K[2];
   const T alone = inverse(select(first, K[0], K[2])), none(0);
@@ -52,7 +52,7 @@ void invert(const T (&K)[3], T (&G)[3]) {
   G[2] = select(regular, K[0] * inv_det, select(first, none, alone));
 }
 template <class T>
-void multiply(const T (&G)[3], const T (&rhs)[2], T (&lambda)[2]) {
+inline void multiply(const T (&G)[3], const T (&rhs)[2], T (&lambda)[2]) {
   lambda[0] = G[0] * rhs[0] + G[1] * rhs[1];
   lambda[1] = G[1] * rhs[0] + G[2] * rhs[1];
 }
