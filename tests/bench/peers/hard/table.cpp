@@ -35,8 +35,9 @@ stay together; the first two only count as *accepted*.
 
 **Fairness.** The bounds are those of Cdot's tests. Many are far below the goals of game engines: a player does not see a
 gap of a millimetre. Engines in minimal coordinates (Bullet's multibodies, MuJoCo, Simbody) cannot open the joints of
-their trees at all. Cdot's default method, like others of first order, has an error proportional to the step; its other
-methods may take many internal steps in one, as Simbody's do. Box2D computes in float and has the bounds for floats.
+their trees at all. Cdot's default is the method that the runtime chooses for the mechanism and the step
+([recommended.hpp](../../../runtime/include/cdot/recommended.hpp)); it may take many internal steps in one, as Simbody
+does. Box2D computes in float and has the bounds for floats.
 
     cdot-peers-hard -o tests/bench/peers   # this page, and hard_cases.json with all settings; half an hour of CPU time
     cdot-peers-hard --only ball_and_chain --engine ODE
