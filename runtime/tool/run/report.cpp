@@ -218,7 +218,7 @@ std::string summary_json(const Scene& asked, const RunResult& result) {
       {"notes", result.notes},
       {"concerns", concerns_json(concerns_about(scene, result.diagnosis, true))},
   };
-  if (result.counts.taken > 0)
+  if (result.counts.evaluations > 0)
     json["own_steps"] = {{"evaluations", result.counts.evaluations}, {"taken", result.counts.taken},
                          {"rejected", result.counts.rejected},       {"events", result.counts.events},
                          {"rescued", result.counts.rescued},         {"steered", result.counts.steered}};
