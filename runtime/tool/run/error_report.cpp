@@ -10,7 +10,7 @@ namespace {
 // impacts and bodies of 1e-6 of their neighbours' mass. It may be far above the error: without a tolerance of the scene
 // it fails no run.
 constexpr double usual_share = 0.1;
-constexpr double small_share = 0.1;  // of the tolerance: a warning
+constexpr double warned_share = 0.1;  // of the tolerance: a warning
 
 // The estimate in words if it exceeds a share.
 std::string above(double share, const Scene& scene, const RunResult& result) {
@@ -29,7 +29,7 @@ std::string trajectory_failure(const Scene& scene, const RunResult& result) {
 
 std::string trajectory_warning(const Scene& scene, const RunResult& result) {
   if (!trajectory_failure(scene, result).empty()) return {};
-  return above(scene.trajectory_tolerance > 0 ? small_share * scene.trajectory_tolerance : usual_share, scene, result);
+  return above(scene.trajectory_tolerance > 0 ? warned_share * scene.trajectory_tolerance : usual_share, scene, result);
 }
 
 std::string error_text(const Scene& scene, const TrajectoryError& error) {
