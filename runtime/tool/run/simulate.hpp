@@ -60,7 +60,7 @@ struct RunResult {
          energy_drift = 0;  // [J]; drift: the largest |E - E_start|
   BalanceWatch balance;     // after every step
   WorstStep worst_step;
-  TrajectoryError error;    // of fixed steps
+  TrajectoryError error;  // of fixed steps
   std::optional<TriedFix> advice;
   int redundant_rows = 0;
   std::vector<RankLoss> rank_losses;

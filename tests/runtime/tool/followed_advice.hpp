@@ -26,8 +26,8 @@ struct FollowedAdvice {
 };
 
 // Runs FILE with OPTIONS. A run that fails or warns has to give advice or to say that it has none; advice has to make
-// the same run silent, to keep energies and momenta to the share that it promised, and to cost the steps and evaluations
-// that it promised.
+// the same run silent, to keep energies and momenta to the share that it promised, and to cost the steps and
+// evaluations that it promised.
 FollowedAdvice follow_advice(const std::string& file, const std::string& options);
 
 }  // namespace cdot::test

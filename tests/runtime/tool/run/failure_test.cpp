@@ -104,7 +104,7 @@ TEST(FailedStep, IsTakenByTheDirectSolverWhereSweepsFail) {
     return run_hard_case("stretched_chain/planar.toml", "solver = \"iterative\"\ndrift = \"projection\"\n" + keys,
                          options);
   };
-  const char* until = "--integrator euler --until 1 --tolerance 4 --energy-tolerance 10";
+  const char* until = "--integrator euler --until 1 --tolerance 4 --energy-tolerance 10 --trajectory-tolerance 1000";
   const CommandResult stopped = run("", until), retried = run("on_failure = \"retry\"\n", until);
   EXPECT_EQ(stopped.status, 1) << stopped.out << stopped.err;
   EXPECT_NE(stopped.out.find("Tried: `--on-failure retry`"), std::string::npos) << stopped.out;
