@@ -86,6 +86,9 @@ void Growth::choose_method() {
   if (random_.chance(0.2) && works_on_accelerations(s.integrator))
     s.local_error = random_.log_between(1e-8, 1e-4) * scales_.length;
   if (random_.chance(0.2)) scene.on_failure = OnFailure::retry;
+  // Soft drift only by wish, as radau5.
+  s.drift = wish_.drift.value_or(s.drift);
+  if (s.drift == Drift::soft) s.solver = Solver::iterative, s.integrator = Integrator::euler, s.local_error = 0;
   if (mistake_in_methods(s)) s.drift = Drift::projection;
   if (mistake_in_methods(s)) s.solver = Solver::direct;
   scene.step = random_.log_between(0.002, 0.1) / scales_.rate;

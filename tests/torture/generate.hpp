@@ -16,6 +16,7 @@ struct Wish {
   std::optional<Dimension> dimension = {};
   std::optional<Solver> solver = {};
   std::optional<Integrator> integrator = {};
+  std::optional<Drift> drift = {};
   std::optional<bool> single = {};
   int steps = 200;
 };

@@ -43,7 +43,8 @@ void read_method(const std::string& method, Wish& wish) {
     if (has(solvers)) wish.solver = method_called(solvers, word);
     else if (has(integrators)) wish.integrator = method_called(integrators, word);
     else if (has(precisions)) wish.single = method_called(precisions, word);
-    else throw Error(fmt::format("--method: no solver, integrator or precision is called {}", word));
+    else if (has(drifts)) wish.drift = method_called(drifts, word);
+    else throw Error(fmt::format("--method: no solver, integrator, drift correction or precision is called {}", word));
   }
 }
 
@@ -122,7 +123,8 @@ int main(int count, char** arguments) {
   app.add_option("--steps", options.wish.steps, "of each");
   app.add_option("--joint", options.wish.joint, "is part of each; of the space where it is known");
   app.add_option("--dimension", options.dimension, "of the space, 2 or 3");
-  app.add_option("--method", options.method, "solver, integrator, precision: any of them, as in \"direct float\"");
+  app.add_option("--method", options.method,
+                 "solver, integrator, drift correction, precision: any of them, as in \"direct float\"");
   app.add_option("--keep", options.keep, "a folder for the scenes in which something breaks");
   app.add_option("--scene", options.scene, "judge this scene and no other");
   app.add_flag("--varying", options.varying, "the lengths of the steps vary");

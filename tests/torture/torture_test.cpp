@@ -36,6 +36,7 @@ TEST(Torture, Bounded) {
       for (int k = 0; k < 4; ++k)
         run(++next, {.joint = std::string(type.name), .dimension = dimension, .steps = steps}, tally);
   for (std::uint64_t seed = 1; seed <= 300; ++seed) run(seed, {.steps = steps}, tally);
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) run(seed, {.drift = Drift::soft, .steps = steps}, tally);
   for (const Dimension dimension : {Dimension::planar, Dimension::spatial})
     for (const JointType& type : joint_types(dimension))
       EXPECT_GT(tally.drawn(dimension, std::string(type.name)), 0) << type.name;
