@@ -143,6 +143,25 @@ TEST(Balance, AJointInTimePutsInWeightTimesHeight) {
   }
 }
 
+// Each substep has its own time: the crank stands where the joint wants it at the end of the step.
+TEST(Balance, AJointInTimeFollowsEverySubstep) {
+  const double rate = 1, h = 0.1;
+  for (const Method& method : methods()) {
+    Settings settings = method.settings();
+    settings.substeps = 4;
+    World<double> world(settings);
+    BodyDefinition start = rod(0, 0, 0);
+    start.w = rate, start.vy = 0.5 * rate;
+    const int body = world.add_body(start);
+    world.add_joint(
+        {"driven_crank", {world.ground(), body}, {{"pa", {0, 0}}, {"pb", {-0.5, 0}}, {"rate", {rate}}}, {}});
+    for (int k = 1; k <= 10; ++k) {
+      ASSERT_TRUE(world.step(h)) << method.name();
+      EXPECT_NEAR(world.place(body).angle, rate * h * k, 0.01) << method.name() << ", step " << k;
+    }
+  }
+}
+
 // A wheel of inertia 2 at 1 rad/s under a friction of 0.5 N m stops after 4 s: 1 J.
 TEST(Balance, FrictionTakesTheEnergyOfAWheel) {
   for (const Method& method : methods()) {
