@@ -69,7 +69,7 @@ template <class S>
 typename S::Scalar begin_kick_drift(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   const T share = world.last_step > 0 ? h / T(world.last_step) : T(0);
-  // What sweeps left in the impulses would grow with them, until it throws the bodies off.
+  // Errors that sweeps left in the impulses would grow with them, until they throw the bodies off.
   if (island.evaluated) return island.solver->exact ? share : std::min(T(1), share);
   project_start(world, island);
   evaluate_anew(world, island, typename S::Scalar(world.time));

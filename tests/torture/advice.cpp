@@ -15,7 +15,7 @@ Verdict judge_advice(const Scene& scene) {
   std::ofstream(file) << text_of(scene);
   const test::FollowedAdvice followed = test::follow_advice(file, "");
   if (!followed.fault.empty()) {
-    const bool refused = followed.fault.starts_with(test::no_summary);
+    const bool refused = followed.fault == test::refused;
     return verdict(refused ? Outcome::refused : Outcome::broken, refused ? followed.fault : "advice", followed.fault);
   }
   if (followed.silent) return verdict(Outcome::held, "silent", "");

@@ -5,7 +5,7 @@
 
 namespace cdot::torture {
 
-// held: the run was silent, or its advice was followed and cured it ("advice followed" in `detail`); limited: nothing
+// held: the run was silent, or its advice was followed and cured it (`what` is "advice"); limited: nothing
 // that was tried is a cure; refused: the scene is; broken: the advice fails when followed, or a run that warns or fails
 // has none.
 Verdict judge_advice(const Scene& scene);

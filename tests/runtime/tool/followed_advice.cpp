@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "runtime/tool/commands/command.hpp"
 #include "tests/runtime/tool/support.hpp"
 
 namespace cdot::test {
@@ -16,7 +17,8 @@ Ran simulated(const std::string& file, const std::string& options) {
 
 FollowedAdvice follow_advice(const std::string& file, const std::string& options) {
   const Ran first = simulated(file, options);
-  if (first.summary.is_null()) return {false, "", fmt::format("{}, exit {}", no_summary, first.status)};
+  if (first.summary.is_null())
+    return {false, "", first.status == bad_input ? refused : fmt::format("no summary, exit {}", first.status)};
   const bool advised = first.summary.contains("advice");
   if (first.silent()) return {true, "", advised ? "advice without a need" : ""};
   if (!advised) return {false, "", "neither silent nor with advice\n" + first.summary.dump(2)};

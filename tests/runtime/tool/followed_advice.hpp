@@ -16,8 +16,8 @@ struct Ran {
 // `cdot-run simulate FILE OPTIONS --json`.
 Ran simulated(const std::string& file, const std::string& options);
 
-// Begins the fault of a run that was refused.
-constexpr const char* no_summary = "no summary";
+// The fault of a scene that was refused.
+constexpr const char* refused = "refused";
 
 struct FollowedAdvice {
   bool silent = false;  // the first run needed none
