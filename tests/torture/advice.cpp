@@ -4,7 +4,7 @@
 
 #include "tests/runtime/tool/followed_advice.hpp"
 #include "tests/runtime/tool/support.hpp"
-#include "tests/torture/scene_text.hpp"
+#include "tests/torture/draw/scene_text.hpp"
 #include "tests/torture/trial.hpp"
 
 namespace cdot::torture {

@@ -7,8 +7,8 @@
 
 #include "runtime/direct/ldlt.hpp"
 #include "runtime/tool/run/frame.hpp"
+#include "tests/torture/draw/scene_text.hpp"
 #include "tests/torture/observer.hpp"
-#include "tests/torture/scene_text.hpp"
 #include "tests/torture/trial.hpp"
 
 namespace cdot::torture {

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "tests/torture/generate.hpp"
+#include "tests/torture/draw/generate.hpp"
 #include "tests/torture/invariants.hpp"
 
 namespace cdot::torture {

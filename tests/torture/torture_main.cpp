@@ -9,7 +9,7 @@
 #include <cdot/methods.hpp>
 
 #include "tests/torture/advice.hpp"
-#include "tests/torture/scene_text.hpp"
+#include "tests/torture/draw/scene_text.hpp"
 #include "tests/torture/shrink.hpp"
 #include "tests/torture/tally.hpp"
 

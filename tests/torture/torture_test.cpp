@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/torture/advice.hpp"
-#include "tests/torture/scene_text.hpp"
+#include "tests/torture/draw/scene_text.hpp"
 #include "tests/torture/shrink.hpp"
 #include "tests/torture/tally.hpp"
 

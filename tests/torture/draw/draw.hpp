@@ -3,7 +3,7 @@
 #pragma once
 
 #include "runtime/tool/scene/scene.hpp"
-#include "tests/torture/random.hpp"
+#include "tests/torture/draw/random.hpp"
 
 namespace cdot::torture {
 

@@ -1,4 +1,4 @@
-#include "tests/torture/scene_text.hpp"
+#include "tests/torture/draw/scene_text.hpp"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,12 @@
-#include "tests/torture/generate.hpp"
+#include "tests/torture/draw/generate.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
 
 #include <cdot/methods.hpp>
 
-#include "tests/torture/draw.hpp"
-#include "tests/torture/scene_text.hpp"
+#include "tests/torture/draw/draw.hpp"
+#include "tests/torture/draw/scene_text.hpp"
 
 namespace cdot::torture {
 namespace {

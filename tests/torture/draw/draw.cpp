@@ -1,4 +1,4 @@
-#include "tests/torture/draw.hpp"
+#include "tests/torture/draw/draw.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,143 @@
+// Joints that break above a load: at which load, which of several, and the state afterwards.
+#include <cdot/methods.hpp>
+
+#include "tests/runtime/support.hpp"
+
+namespace cdot::test::breaking_test {
+namespace {
+
+constexpr Solver both[] = {Solver::direct, Solver::iterative};
+
+TEST(BreakingLoad, BreaksJustAboveIt) {
+  for (Solver solver : both) {
+    for (double load : {99.0, 101.0}) {
+      Settings s = settings(solver, Drift::projection, -10);
+      s.iterations = 200;
+      World<double> world(s);
+      const auto rods = add_chain(world, 5, -pi / 2, 2);
+      set_breaking_load(world, 0, load);
+      run(world, 1, 0.01);
+      EXPECT_EQ(world.broken(0), load < 100);
+      EXPECT_NEAR(world.pose(rods[4]).y, load < 100 ? -4.5 - 5 : -4.5, 0.11);
+      EXPECT_FALSE(world.broken(1));
+      EXPECT_LT(world.worst_position_error().value, 1e-6);
+    }
+  }
+}
+
+TEST(BreakingLoad, OfOneJointAmongMany) {
+  for (Solver solver : both) {
+    Settings s = settings(solver, Drift::projection, -10);
+    s.iterations = 100;
+    World<double> world(s);
+    const auto rods = add_chain(world, 5, 0.0, 2);
+    add_spring(world, 2, "angle", {.softness = {.by_frequency = false, .damping = 0.1}});
+    set_breaking_load(world, 2, 5);
+    run(world, 0.5, 0.005);
+    EXPECT_TRUE(world.broken(2));
+    const auto impulse = world.impulse(2);
+    EXPECT_EQ(impulse[0], 0);
+    EXPECT_LT(world.worst_position_error().value, 1e-3);
+    world.add_body({.mass = 1});  // analyses the islands again, without the broken joint
+    run(world, 0.5, 0.005);
+    EXPECT_EQ(world.island_count(), 3);
+    EXPECT_LT(world.pose(rods[4]).y, -2);
+  }
+}
+
+// The springs of a joint that is gone store nothing.
+TEST(BreakingLoad, TheSpringsOfABrokenJointHaveNoEnergy) {
+  for (const bool breaks : {false, true}) {
+    World<double> world(settings(Solver::direct, Drift::projection, -10));
+    const int rod_of_it = add_chain(world, 1, 0.0).front();
+    add_spring(world, 0, "angle", {.softness = {.by_frequency = false, .stiffness = 100}, .rest = 0.3});
+    const double stretched = 0.5 * 100 * 0.3 * 0.3;
+    EXPECT_NEAR(world.energy(), stretched, 1e-12);
+    if (breaks) set_breaking_load(world, 0, 1e-3);
+    else world.remove_joint(0);
+    world.step(1e-9);
+    ASSERT_TRUE(world.broken(0));
+    EXPECT_NEAR(world.energy(), 0, 1e-6) << rod_of_it;
+  }
+}
+
+// A weight on two pins at one place. Each carries half of it. Without one of them the other carries all.
+struct WeightOnTwoPins {
+  WeightOnTwoPins(Integrator integrator, double load_1, double load_2)
+      : WeightOnTwoPins(method(integrator), load_1, load_2) {}
+  WeightOnTwoPins(const Settings& settings, double load_1, double load_2) : world(settings) {
+    body = world.add_body({.mass = 1, .inertia = 1});
+    for (double load : {load_1, load_2})
+      set_breaking_load(world, revolute(world, world.ground(), body, 0, 0, 0, 0), load);
+    run(world, 0.2, 0.01);
+  }
+  static Settings method(Integrator integrator) {
+    Settings s = settings(Solver::direct, Drift::projection, -10);
+    s.integrator = integrator;
+    return s;
+  }
+  World<double> world;
+  int body;
+};
+
+TEST(BreakingLoad, RedundantJointsShareTheLoad) {
+  for (const IntegratorRow& row : integrator_rows) {
+    WeightOnTwoPins both_hold(row.integrator, 6, 6);
+    EXPECT_FALSE(both_hold.world.broken(0)) << row.name;
+    EXPECT_FALSE(both_hold.world.broken(1)) << row.name;
+    for (int joint : {0, 1}) EXPECT_NEAR(both_hold.world.reaction(joint, both_hold.body).force_y, 5, 1e-9) << row.name;
+    EXPECT_NEAR(both_hold.world.pose(both_hold.body).y, 0, 1e-9);
+  }
+}
+
+TEST(BreakingLoad, OneJointBreaksWhereTheOtherCarriesAll) {
+  for (const IntegratorRow& row : integrator_rows) {
+    for (int weak : {0, 1}) {
+      WeightOnTwoPins one_holds(row.integrator, weak == 0 ? 4 : 11, weak == 0 ? 11 : 4);
+      EXPECT_EQ(one_holds.world.broken(0), weak == 0) << row.name;
+      EXPECT_EQ(one_holds.world.broken(1), weak == 1) << row.name;
+      EXPECT_NEAR(one_holds.world.pose(one_holds.body).y, 0, 1e-9);
+      WeightOnTwoPins none_holds(row.integrator, weak == 0 ? 4 : 9, weak == 0 ? 9 : 4);
+      EXPECT_TRUE(none_holds.world.broken(0) && none_holds.world.broken(1)) << row.name;
+    }
+  }
+}
+
+// Sweeps load the first of two pins alone.
+TEST(BreakingLoad, BySweepsRedundantJointsShareTheLoadToo) {
+  for (Drift drift : {Drift::soft, Drift::baumgarte, Drift::projection, Drift::none})
+    for (const IntegratorRow& row : integrator_rows) {
+      Settings s = settings(Solver::iterative, drift, -10);
+      s.integrator = row.integrator;
+      if (mistake_in_methods(s)) continue;
+      for (double load : {9.0, 11.0}) {  // what both can carry
+        WeightOnTwoPins pins(s, load / 2, load / 2);
+        EXPECT_EQ(pins.world.broken(0) && pins.world.broken(1), load < 10) << row.name;
+        EXPECT_EQ(pins.world.broken(0), pins.world.broken(1)) << row.name;
+      }
+    }
+}
+
+// By sweeps, two pins that misfit pull at each other ever harder. They carry nothing, so they share nothing.
+TEST(BreakingLoad, JointsThatWorkAgainstEachOtherDoNotBreak) {
+  World<double> world(settings(Solver::iterative, Drift::baumgarte));
+  const int body = world.add_body({.mass = 1, .inertia = 1});
+  for (double x : {-1e-5, 1e-5}) set_breaking_load(world, revolute(world, world.ground(), body, x, 0, 0, 0), 0.1);
+  run(world, 1, 0.01);
+  EXPECT_FALSE(world.broken(0) || world.broken(1));
+}
+
+// Both pins of two hanging rods carry too much. Without the upper one, the rods fall and the lower one carries nothing.
+TEST(BreakingLoad, OfJointsInARowOneBreaks) {
+  for (Solver solver : both) {
+    World<double> world(settings(solver, Drift::projection, -10));
+    add_chain(world, 2, -pi / 2);
+    for (int joint : {0, 1}) set_breaking_load(world, joint, 5);
+    run(world, 0.2, 0.01);
+    EXPECT_TRUE(world.broken(0));
+    EXPECT_FALSE(world.broken(1));
+  }
+}
+
+}  // namespace
+}  // namespace cdot::test::breaking_test
