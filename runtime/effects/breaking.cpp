@@ -91,7 +91,6 @@ void break_overloaded(WorldData<S>& world, typename S::Scalar h) {
   if (world.overloads.empty()) return;
   each_first(world, [&](const Overload& overload) {
     Island<S>& island = world.islands[overload.island];
-    if (!island.solver->exact) island.flow.forget();
     island.solver->share(world, island);
   });
   find_overloads(world, double(h));

@@ -22,6 +22,11 @@ void stiffen_masses(WorldData<S>& world, Island<S>& island, typename S::Scalar s
   island.factored = false;
 }
 
+template <class S>
+void restore_masses(WorldData<S>& world, const Island<S>& island) {
+  for (int i : island.bodies) world.bodies.effective_mass[i] = world.bodies.inverse_mass[i];
+}
+
 // (M + h G) v' = M v + h f + J^T lambda with G = -d(J^T lambda)/dq: implicit Euler for the change of the joints'
 // forces.
 template <class S>
@@ -74,6 +79,7 @@ void evaluate_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h)
 
 #define CDOT_INSTANTIATE(S)                                                   \
   template void stiffen_masses(WorldData<S>&, Island<S>&, S::Scalar);         \
+  template void restore_masses(WorldData<S>&, const Island<S>&);              \
   template void hold_back(WorldData<S>&, const Island<S>&);                   \
   template void stiffen_bodies(WorldData<S>&, Island<S>&, S::Scalar, double); \
   template void factorize_rows(WorldData<S>&, Island<S>&);                    \

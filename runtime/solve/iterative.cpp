@@ -253,6 +253,7 @@ void share_all_loads(WorldData<S>& world, Island<S>& island) {
   share_loads(world, island, &BatchState<S>::lambda);
   share_loads(world, island, &BatchState<S>::correction);
   island.evaluated = island.factored = false;
+  island.flow.forget();
 }
 
 }  // namespace

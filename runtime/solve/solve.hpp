@@ -30,6 +30,9 @@ void accelerate(WorldData<S>& world, Island<S>& island, typename S::Scalar time)
 // solver.
 template <class S>
 void stiffen_masses(WorldData<S>& world, Island<S>& island, typename S::Scalar share);
+// The effective masses without it.
+template <class S>
+void restore_masses(WorldData<S>& world, const Island<S>& island);
 
 // The velocities with which a linearly implicit step starts: (M + h G)^-1 M v, with these effective masses.
 template <class S>

@@ -46,6 +46,7 @@ struct FlowWorkspace {
   std::vector<T> low, high;      // margins at the start of a step, then on both sides of an event
   int guarded = 0;               // number of guarded rows
   bool projects_stages = false;  // in steps near a loss of rank
+  bool astray = false;           // the last attempt at a step reversed a joint's direction
   // Pivots of K at the stages of a step, as shares of their diagonals, [stage][row]; of one row (step/rank_loss.hpp).
   std::vector<double> pivots, of_row;
   T start_residual = 0;        // largest C at the start of the step

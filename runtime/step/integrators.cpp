@@ -12,10 +12,6 @@ namespace cdot {
 // Defined in the file of the method's name.
 template <class S>
 void prepare_euler(Island<S>& island);
-template <class S>
-void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
-template <class S>
-void prepare_rattle(Island<S>& island);
 
 namespace {
 

@@ -24,6 +24,11 @@ const Stepper<S>& stepper_of(Integrator integrator);
 template <class S>
 void step_euler(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step);
 
+template <class S>
+void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
+template <class S>
+void prepare_rattle(Island<S>& island);
+
 // The implicit midpoint rule's step of h, in parts where h is too long. The present impulses are those of a step of
 // WorldData::last_step.
 template <class S>

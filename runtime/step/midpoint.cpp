@@ -26,11 +26,6 @@
 
 namespace cdot {
 
-template <class S>
-void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h);  // rattle.cpp
-template <class S>
-void prepare_rattle(Island<S>& island);
-
 namespace {
 
 // Of the joints in a part, as a share of the kinetic energy.
@@ -111,8 +106,8 @@ bool hardly_moves(const WorldData<S>& world, const Island<S>& island, typename S
 }
 
 template <class S>
-void restore_masses(WorldData<S>& world, Island<S>& island) {
-  for (int i : island.bodies) world.bodies.effective_mass[i] = world.bodies.inverse_mass[i];
+void leave_middle(WorldData<S>& world, Island<S>& island) {
+  restore_masses(world, island);
   island.at_work().slacken();
   island.factored = false;
 }
@@ -172,7 +167,7 @@ void go_back_to_kept(WorldData<S>& world, Island<S>& island) {
     world.bodies.increment[i] = {};
   }
   if constexpr (S::has_gyroscopes) set_inertias(world, island);
-  for (int i : island.bodies) world.bodies.effective_mass[i] = world.bodies.inverse_mass[i];
+  restore_masses(world, island);
   island.evaluated = island.factored = false;
 }
 
@@ -201,7 +196,6 @@ double solve_end_of_part(WorldData<S>& world, Island<S>& island) {
 template <class S>
 bool take_part(WorldData<S>& world, Island<S>& island, typename S::Scalar h, bool last) {
   using T = typename S::Scalar;
-  Bodies<S>& all = world.bodies;
   const T share = begin_kick_drift(world, island, h);
   const auto momentum = island.floats ? momentum_of(world, island) : MomentumOf<S>{};
   keep(world, island);
@@ -217,7 +211,7 @@ bool take_part(WorldData<S>& world, Island<S>& island, typename S::Scalar h, boo
   drag(world, island, h / 2);
   note_start(world, island);
   bool found = find_middle(world, island, h);
-  restore_masses(world, island);
+  leave_middle(world, island);
   if (found && !hardly_moves(world, island, h)) {
     const double work = work_of_joints(world, island);
     found = (last ? work : std::abs(work)) <= slight_work<T> * moved_energy(world, island);
@@ -227,7 +221,7 @@ bool take_part(WorldData<S>& world, Island<S>& island, typename S::Scalar h, boo
   book_kick(world, island, Impulses::middle, h);
   double_middle(world, island);
   evaluate_anew(world, island, T(world.time) + h);
-  for (int i : island.bodies) all.effective_mass[i] = all.inverse_mass[i];
+  restore_masses(world, island);
   book_stiffness(world, island);
   if (island.floats) restore_momentum(world, island, momentum, h);
   drag(world, island, h / 2);
@@ -245,7 +239,7 @@ bool take_part(WorldData<S>& world, Island<S>& island, typename S::Scalar h, boo
 template <class S>
 void fall_back(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   step_euler(world, island, h, 0);
-  for (int i : island.bodies) world.bodies.effective_mass[i] = world.bodies.inverse_mass[i];
+  restore_masses(world, island);
   island.factored = false;
 }
 

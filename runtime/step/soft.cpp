@@ -57,8 +57,8 @@ double largest_stiffening(const WorldData<S>& world, const Island<S>& island) {
 }
 
 template <class S>
-void restore_masses(WorldData<S>& world, Island<S>& island) {
-  for (int i : island.bodies) world.bodies.effective_mass[i] = world.bodies.inverse_mass[i];
+void relieve(WorldData<S>& world, Island<S>& island) {
+  restore_masses(world, island);
   island.stiffened = island.factored = false;
 }
 
@@ -70,7 +70,7 @@ void stiffen(WorldData<S>& world, Island<S>& island, typename S::Scalar h, doubl
   island.stiffened = largest_stiffening(world, island) > stiff;
   if (island.stiffened) return hold_back(world, island);
   island.slack = slack_steps;
-  restore_masses(world, island);
+  relieve(world, island);
   island.factored = true;  // K has not changed
 }
 
@@ -212,7 +212,7 @@ void step_soft(WorldData<S>& world, Island<S>& island, typename S::Scalar h, dou
   apply_forces(world, island, h);
   island.solver->soften(world, island, rows, last_step > 0 ? h / T(last_step) : T(0));
   book_kick(world, island, Impulses::soft, h);
-  if (island.stiffened) restore_masses(world, island);
+  if (island.stiffened) relieve(world, island);
   integrate(world, island, h);
   evaluate_anew(world, island, T(world.time) + h);
   factorize_rows(world, island);

@@ -37,7 +37,6 @@ constexpr double careful = 1e-6;
 constexpr double smallest_part = 1.0 / 16;
 template <class S>
 constexpr auto slight_displacement = typename S::Scalar(1e-6);  // in units of Island::size, and [rad]
-constexpr double astray_error = 1e301;                          // the error of a step that went astray
 // Steps of an implicit method cost the cube of the bodies. Larger islands that lose rank again and again, as a slack
 // bridge does, are damped there by Euler's method, so that a run of them ends.
 constexpr int most_to_carry_on = 20;
@@ -133,6 +132,7 @@ bool went_astray(const WorldData<S>& world, const Island<S>& island, typename S:
 template <class S, class F>
 double try_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                 typename S::Scalar h, F error_now) {
+  island.flow.astray = false;
   if (!take_stages(world, island, method, time, h)) return std::numeric_limits<double>::quiet_NaN();
   double error = method.error_at_end ? 0 : error_now();
   if (method.implicit && error > 1) {
@@ -142,8 +142,9 @@ double try_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
   if (!(error <= 1)) return error;
   project_end(world, island, method, time + h);
   if (method.error_at_end) error = error_now();
-  if (left_the_joints(world, island, island.flow.start_residual)) return std::numeric_limits<double>::infinity();
-  return went_astray(world, island, h) ? astray_error : error;
+  const bool left = left_the_joints(world, island, island.flow.start_residual);
+  island.flow.astray = !left && went_astray(world, island, h);
+  return left || island.flow.astray ? std::numeric_limits<double>::infinity() : error;
 }
 
 // True if the attempt at a step of h came near a loss of rank of K: goes back for one with projected stages, of a
@@ -158,6 +159,7 @@ bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<
   if (method.implicit) {
     // Newton's old df/dy misleads it there. No shorter step would help: fall_back() finishes this one.
     h = T(0);
+    island.flow.astray = false;
     go_back(world, island);
     return true;
   }
@@ -170,8 +172,7 @@ bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<
 }
 
 // Takes `left` of a fixed step of `whole`, or its largest half, quarter, ... with an allowed error. The parts share the
-// allowed error `absurd` in proportion to their lengths. Returns the length; 0 if no part is short enough, -1 if the
-// shortest one goes astray.
+// allowed error `absurd` in proportion to their lengths. Returns the length, 0 if no part is short enough.
 // Flow::margins are those of the end.
 template <class S>
 typename S::Scalar take_fixed_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
@@ -195,7 +196,7 @@ typename S::Scalar take_fixed_step(WorldData<S>& world, Island<S>& island, const
     go_back(world, island);
     if (h >= T(2 * smallest_part) * whole) h /= 2;
     else if (share == careful) share = absurd;
-    else return error == astray_error ? T(-1) : T(0);
+    else return T(0);
   }
 }
 
@@ -207,7 +208,6 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
   Flow<S>& flow = island.flow;
   const T proposed = flow.next_step;
   T h = length_of_step(proposed, left, reach);
-  T way_out = T(0);
   int astray = 0;
   double noise = 0;
   for (int attempt = 0; attempt <= most_rejections && astray < most_astray; ++attempt) {
@@ -231,13 +231,12 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
       return h;
     }
     ++world.counts->rejected;
-    astray = error >= astray_error ? astray + 1 : 0;
-    way_out = error == astray_error ? T(-1) : T(0);
+    astray = std::isinf(error) ? astray + 1 : 0;
     h = length_of_step<T>(flow.next_step, left, reach);
     go_back(world, island);
   }
   flow.next_step = proposed;
-  return way_out;
+  return T(0);
 }
 
 // Projects the start state and computes modes and accelerations, unless they are known.
@@ -286,7 +285,7 @@ void fall_back(WorldData<S>& world, Island<S>& island, typename S::Scalar time, 
     step_midpoint_from(world, island, time, h);
   else step_euler(world, island, h, double(h));
   island.stiffened = false;
-  for (int i : island.bodies) world.bodies.effective_mass[i] = world.bodies.inverse_mass[i];
+  restore_masses(world, island);
   scale_forces(island, 1 / h);
   island.evaluated = island.factored = false;
   island.acceleration_level = true;
@@ -322,7 +321,7 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
                                                  : take_fixed_step(world, island, method, time, left, h, reach);
     if (!(flow.length > T(0))) {
       const bool costly = method.implicit && std::ssize(island.bodies) > most_to_carry_on;
-      fall_back(world, island, time, left, flow.length < T(0) || costly);
+      fall_back(world, island, time, left, flow.astray || costly);
       return h;
     }
     flow.longest = std::max<T>(flow.longest, flow.length);

@@ -93,7 +93,7 @@ void Trial::diagnose(double by) {
   change([&](auto& world) {
     add_diagnosis(cdot::diagnose(world, by / scene.settings.substeps), world.time(), worst);
     if (world.step_counts().rescued > 0)
-      say(fmt::format("{} steps left to the midpoint rule", world.step_counts().rescued));
+      say(fmt::format("{} steps left to an implicit method", world.step_counts().rescued));
   });
   Scene asked = scene;
   asked.step = by, asked.single = way.single;

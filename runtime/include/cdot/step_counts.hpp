@@ -9,8 +9,9 @@ struct StepCounts {
   long long evaluations = 0;          // of an island's accelerations
   long long taken = 0, rejected = 0;  // the error estimate was too large
   long long events = 0;               // located: a row came into reach, let go, slipped or stuck
-  // Step ends that the midpoint rule took over: too many events, or no step short enough. With fixed steps also: an
-  // error estimate above the motion itself even in the smallest parts. (With sweeps, linearly implicit Euler.)
+  // Step ends that an implicit method took over: too many events, or no step short enough. With fixed steps also: an
+  // error estimate above the motion itself even in the smallest parts. It is the midpoint rule, or linearly implicit
+  // Euler: with sweeps, where a joint's direction reverses, and for radau5 with more than 20 bodies.
   long long rescued = 0;
   long long steered = 0;  // steps near a loss of rank of K, with projected stages
   long long retried = 0;  // failed steps that succeeded in parts

@@ -32,17 +32,17 @@ std::string steps_text(const Choice& choice) {
                                 : fmt::format("steps of {:.6g} s", choice.step);
 }
 
-std::string euler_text(const Choice& choice) {
-  if (choice.left_to_euler == 0) return {};
-  return fmt::format("; {} step{} left to the midpoint rule, first by t = {:.6g} s", choice.left_to_euler,
-                     choice.left_to_euler == 1 ? " was" : "s were", choice.first_left_to_euler);
+std::string rescue_text(const Choice& choice) {
+  if (choice.rescued == 0) return {};
+  return fmt::format("; {} step{} left to an implicit method, first by t = {:.6g} s", choice.rescued,
+                     choice.rescued == 1 ? " was" : "s were", choice.first_rescue);
 }
 
 // The reason why the run fails; empty if it has the accuracy.
 std::string lack(const Choice& choice) {
   if (choice.reached) return {};
   const std::string asked = fmt::format("accuracy {:.1e} {}", choice.asked, unit_of(choice)),
-                    rest = euler_text(choice) + budget_text(choice);
+                    rest = rescue_text(choice) + budget_text(choice);
   if (!std::isfinite(choice.achieved))
     return fmt::format("{} is not known: no two runs of one method ended well within the search's budget{}", asked,
                        rest);
@@ -52,7 +52,7 @@ std::string lack(const Choice& choice) {
 }
 
 bool fails(const Choice& choice) {
-  return !choice.reached && (!choice.of_size || (choice.holds_until == 0 && choice.left_to_euler == 0));
+  return !choice.reached && (!choice.of_size || (choice.holds_until == 0 && choice.rescued == 0));
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ text::Json choice_json(const Choice& choice) {
           {"reached", choice.reached},
           {"ended_by_budget", choice.ended_by_budget},
           {"holds_until", choice.holds_until},
-          {"left_to_euler", choice.left_to_euler},
+          {"rescued", choice.rescued},
           {"evaluations", choice.evaluations},
           {"search",
            {{"runs", choice.runs_before}, {"evaluations", choice.evaluations_before}, {"cpu", choice.cpu_before}}}};

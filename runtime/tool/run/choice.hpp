@@ -19,8 +19,8 @@ struct Choice {
   double achieved = 0;
   bool reached = false;
   double holds_until = 0;            // [s]: the last time up to which the run has the accuracy
-  long long left_to_euler = 0;       // steps, whose error nobody knows
-  double first_left_to_euler = 0;    // [s]
+  long long rescued = 0;             // steps, whose error nobody knows
+  double first_rescue = 0;           // [s]
   long long evaluations = 0;         // of accelerations, in the run; for fixed steps their equivalent
   bool ended_by_budget = false;      // the search did, in vain
   int runs_before = 0;               // the one delivered

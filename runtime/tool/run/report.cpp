@@ -40,7 +40,7 @@ std::string fix_of(const RunResult& result, const std::string& usual) {
 }
 
 std::string fix_of_accuracy(const Choice& choice) {
-  if (choice.left_to_euler > 0) return "Likely fix: a method and a step of your own";
+  if (choice.rescued > 0) return "Likely fix: a method and a step of your own";
   if (!(choice.holds_until > 0)) return "Likely fix: a larger error";
   return fmt::format("Likely fix: --until {:.6g}", choice.holds_until);
 }
@@ -96,7 +96,7 @@ std::string own_steps_text(const StepCounts& counts) {
 
 namespace {
 
-// Of a step that an adaptive method left to the midpoint rule, whose error nobody knows; or of an accuracy that holds
+// Of a step that an adaptive method left to an implicit method, whose error nobody knows; or of an accuracy that holds
 // in part.
 std::string warning_of_accuracy(const Scene& scene, const RunResult& result) {
   if (result.choice) {
@@ -105,9 +105,8 @@ std::string warning_of_accuracy(const Scene& scene, const RunResult& result) {
   }
   if (scene.settings.local_error == 0 || result.counts.rescued == 0) return {};
   return fmt::format(
-      "the local error {:.1e} is broken: {} step{} left to the midpoint rule, first by t = {:.6g} s. Likely fix: a "
-      "larger "
-      "local error, or fixed steps of implicit or rattle",
+      "the local error {:.1e} is broken: {} step{} left to an implicit method, first by t = {:.6g} s. "
+      "Likely fix: a larger local error, or fixed steps of implicit or rattle",
       scene.settings.local_error, result.counts.rescued, result.counts.rescued == 1 ? " was" : "s were",
       result.first_rescue);
 }
@@ -135,7 +134,7 @@ std::string summary_text(const Scene& asked, const RunResult& result) {
   if (own_steps) text += own_steps_text(result.counts);
   if (result.counts.rescued > 0)
     text += fmt::format(
-        "  midpoint rule   took {} steps, first by t = {:.6g} s, for endless events or a useless error estimate\n",
+        "  implicit rescue {} steps, first by t = {:.6g} s, for endless events or a useless error estimate\n",
         result.counts.rescued, result.first_rescue);
   if (result.choice) text += choice_text(*result.choice);
   text += fmt::format("  CPU             {:.4g} s, {:.3g} us per step\n", result.cpu,

@@ -11,6 +11,7 @@
 #include "runtime/tool/run/choice.hpp"
 #include "runtime/tool/run/error_estimate.hpp"
 #include "runtime/tool/run/frame.hpp"
+#include "runtime/tool/run/process.hpp"
 #include "runtime/tool/scene/scene.hpp"
 #include "runtime/tool/watch/rank_watch.hpp"
 #include "runtime/tool/watch/worst.hpp"
@@ -28,8 +29,9 @@ struct RunOptions {
   std::string doing;                   // before the progress: "dop853, local error 1e-06: "
   // Called at the start and after every step with the work so far; false ends the run there.
   std::function<bool(const Frame&, const StepCounts&)> look;
-  double search_cpu = 60;  // [s] after which the search for a method ends with the best run so far
-  Snapshot from;           // to continue from; empty: the scene's start
+  double search_cpu = 60;       // [s] after which the search for a method ends with the best run so far
+  double (*clock)() = cpu_now;  // of the search
+  Snapshot from;                // to continue from; empty: the scene's start
   // When to save RunResult::state: at the first step that ends then or later.
   std::optional<double> save_at;
 };
@@ -65,7 +67,7 @@ struct RunResult {
   int redundant_rows = 0;
   std::vector<RankLoss> rank_losses;
   std::vector<std::string> broken_joints, notes;
-  double first_rescue = -1;  // [s] end of the step that the midpoint rule first had to finish; below 0: none
+  double first_rescue = -1;  // [s] end of the step that an implicit method first had to finish; below 0: none
   bool finite = true, interrupted = false;
   bool stopped = false;                   // by RunOptions::look
   std::optional<StepResult> failed_step;  // the run ended before it

@@ -32,8 +32,8 @@ constexpr double round_off = 1e-15;              // and of what is compared
 constexpr double least_sure = 1e-12;             // below it, smaller steps gain nothing for sure
 constexpr double aim = 0.5;                      // share of the accuracy that a further run aims at
 
-// Intervals bound the steps: those of Euler's method, and those that no estimate bounds.
-constexpr int shorter_for_euler = 4, shorter_for_others = 2, most_parts = 256;
+// Intervals bound the steps: those of a method that took over, and those that no estimate bounds.
+constexpr int shorter_for_rescued = 4, shorter_for_others = 2, most_parts = 256;
 constexpr double long_step = 1.0 / 3;  // of the duration
 
 // --- Fixed steps: as many equal ones in each of the intervals.
@@ -60,7 +60,7 @@ constexpr double evaluations_per_step = 12;  // of the highest order
 struct Try {
   Integrator integrator;
   double local_error = 0;  // 0: fixed steps
-  int parts = 1;           // of an interval: its steps; or at their ends, Euler's method has to stop if it took over
+  int parts = 1;           // of an interval: its steps; or at their ends, a method that took over has to stop
   const IntegratorRow& row() const { return row_of(integrator); }
   bool adaptive() const { return local_error > 0; }
   bool strictest() const { return adaptive() && local_error < 1.01 * strictest_local_error; }
@@ -91,11 +91,11 @@ std::string name_of(const Try& knob) {
 double sure_gain(double gain, bool adaptive) { return std::pow(gain, adaptive && gain < 11 ? 0.25 : 0.5); }
 
 // The factor by which the error should be smaller than that of a coarser knob.
-double gain(const Try& coarse, const Try& fine, bool left_to_euler) {
+double gain(const Try& coarse, const Try& fine, bool rescued) {
   const double shorter = static_cast<double>(fine.parts) / coarse.parts;
   if (!fine.adaptive()) return std::pow(shorter, fine.row().order);
   const double smaller = (coarse.local_error + strictest_local_error) / (fine.local_error + strictest_local_error);
-  return left_to_euler ? std::min(smaller, shorter) : smaller;  // Euler's method has order 1
+  return rescued ? std::min(smaller, shorter) : smaller;  // a method that took over may have order 1
 }
 
 // The next knob, with an error of at most this share and shorter intervals; nothing if it is too fine.
@@ -147,7 +147,7 @@ class Search {
   bool balanced(const Attempt& attempt) const {
     return attempt.result.balance.energy.share() <= scene_.energy_tolerance;
   }
-  bool out_of_budget() const { return cpu_ > options_.search_cpu || left_ <= 0; }
+  bool out_of_budget() const { return spent_ > options_.search_cpu || left_ <= 0; }
   bool done() const { return stopped_ || best_.reached || out_of_budget(); }
   bool in_reach(const Attempt& now, double most) const;
   double price_of(const Try& knob) const {
@@ -168,6 +168,7 @@ class Search {
   bool sensitive_ = false;  // refined in vain: the motion itself forbids more
   int runs_ = 0;
   double price_ = 0, cpu_ = 0;  // of all runs
+  double spent_ = 0;            // by RunOptions::clock [s]
 };
 
 Attempt Search::attempt(const Try& knob, double most) {
@@ -184,11 +185,11 @@ Attempt Search::attempt(const Try& knob, double most) {
   if (may_be_dear_) options.diagnose_times = {2 * solved.duration};  // only if the run is stopped
   options.progress = options_.progress;
   options.doing = name_of(knob) + ": ";
-  const double interval = solved.duration / intervals_of_own_steps, began = cpu_now();
+  const double interval = solved.duration / intervals_of_own_steps, began = options_.clock();
   options.look = [&](const Frame& frame, const StepCounts& counts) {
     if (std::abs(frame.time - static_cast<double>(attempt.frames.size()) * interval) < 1e-6 * interval)
       attempt.frames.push_back(frame);
-    if (cpu_ + cpu_now() - began > options_.search_cpu) return false;
+    if (spent_ + options_.clock() - began > options_.search_cpu) return false;
     if (!knob.adaptive()) return true;
     attempt.price = static_cast<double>(counts.evaluations);
     const double foreseen = frame.time > 0 ? attempt.price * solved.duration / frame.time : 0;
@@ -208,6 +209,7 @@ Attempt Search::attempt(const Try& knob, double most) {
   ++runs_;
   may_be_dear_ = false;
   price_ += attempt.price, left_ -= attempt.price, cpu_ += result.cpu;
+  spent_ += options_.clock() - began;
   return attempt;
 }
 
@@ -241,8 +243,8 @@ void Search::judge(const Attempt& coarse, Attempt& fine) const {
     // Where runs part for good, no gain is sure.
     if (apart <= yardstick_.asked()) fine.holds_until = fine.frames[k].time;
   }
-  const bool left_to_euler = coarse.result.counts.rescued > 0 || fine.result.counts.rescued > 0;
-  const double gained = gain(coarse.knob, fine.knob, left_to_euler);
+  const bool rescued = coarse.result.counts.rescued > 0 || fine.result.counts.rescued > 0;
+  const double gained = gain(coarse.knob, fine.knob, rescued);
   fine.achieved = std::max(std::min(apart, least_sure), apart / sure_gain(gained, fine.knob.adaptive()));
   const bool known = fine.knob.parts > coarse.knob.parts ||
                      (fine.result.counts.rescued == 0 && !same_steps(coarse.result.counts, fine.result.counts));
@@ -304,10 +306,10 @@ void Search::try_candidate(Integrator integrator, double most) {
       if (last.whole) judge(last, now);
     }
     const std::optional<double> share = next_share(last, now, idle);
-    // Euler's method takes over at events without end, and what seems to be a line or a parabola gets steps of any
+    // An implicit method takes over at events without end, and what seems to be a line or a parabola gets steps of any
     // length, whatever the local error: only shorter intervals make these steps shorter.
     const StepCounts& counts = now.result.counts;
-    const int shorter = counts.rescued > 0                             ? shorter_for_euler
+    const int shorter = counts.rescued > 0                             ? shorter_for_rescued
                         : counts.longest > long_step * scene_.duration ? shorter_for_others
                                                                        : 1;
     knob = share && in_reach(now, most - spent) ? finer(*knob, *share, shorter) : std::nullopt;
@@ -371,8 +373,8 @@ Choice Search::choice_of(const Attempt& attempt) const {
   choice.achieved = attempt.achieved;
   choice.reached = attempt.reached;
   choice.holds_until = attempt.holds_until;
-  choice.left_to_euler = attempt.result.counts.rescued;
-  choice.first_left_to_euler = attempt.result.first_rescue;
+  choice.rescued = attempt.result.counts.rescued;
+  choice.first_rescue = attempt.result.first_rescue;
   choice.ended_by_budget = !attempt.reached && out_of_budget();
   choice.evaluations = std::llround(attempt.price);
   choice.runs_before = runs_ - 1;

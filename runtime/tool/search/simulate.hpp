@@ -7,7 +7,7 @@ namespace cdot {
 
 // Runs a scene that names its method as it is. For one that asks for an accuracy (see chooses_method()) it tries
 // methods, the most promising first, each with finer and finer steps. A run counts if it has ended, no step of it was
-// left to Euler's method, and its distance from the run before it, less the gain by the finer steps, is within the
+// left to an implicit method, and its distance from the run before it, less the gain by the finer steps, is within the
 // accuracy. The last run is delivered. `warnings` receives warnings in the lines of the scene.
 RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings);
 

@@ -30,7 +30,7 @@ TEST_P(RescueOfALoad, DoesNotExplode) {
     gap = std::max(gap, world.worst_position_error().value);
   }
   const StepCounts& counts = world.step_counts();
-  fmt::print("  gained {:.1e} of the kick's energy, gap {:.1e} m, {} steps left to the midpoint rule\n", gained / kick,
+  fmt::print("  gained {:.1e} of the kick's energy, gap {:.1e} m, {} steps left to an implicit method\n", gained / kick,
              gap, counts.rescued);
   EXPECT_LT(gained, 0.01 * kick);
   EXPECT_LT(gap, 1e-3);
@@ -51,7 +51,8 @@ TEST_P(Rescue, ARopeJamsInItsPulley) {
     gained = std::max(gained, world.energy() - start);
   }
   const StepCounts& counts = world.step_counts();
-  fmt::print("  gained {:.1e} J, {} steps left to the midpoint rule, {} taken\n", gained, counts.rescued, counts.taken);
+  fmt::print("  gained {:.1e} J, {} steps left to an implicit method, {} taken\n", gained, counts.rescued,
+             counts.taken);
   EXPECT_LT(gained, 1e-3 * 2 * 9.81);
   EXPECT_GT(counts.rescued, 0);
   EXPECT_LT(counts.taken, 100'000);
@@ -70,7 +71,7 @@ TEST_P(Rescue, AMotorTurnsAgainstABar) {
   for (int k = 0; k < steps; ++k) world.step(1.0 / 60);
   const StepCounts& counts = world.step_counts();
   const double gap = world.worst_position_error().value;
-  fmt::print("  gap {:.1e} m, {} evaluations, {} of {} steps left to the midpoint rule\n", gap, counts.evaluations,
+  fmt::print("  gap {:.1e} m, {} evaluations, {} of {} steps left to an implicit method\n", gap, counts.evaluations,
              counts.rescued, steps);
   EXPECT_EQ(counts.rescued, steps);
   EXPECT_LT(counts.evaluations, 100 * steps);
@@ -92,7 +93,8 @@ TEST(RescueOfFloats, NoErrorIsBelowTheLastBit) {
     for (int k = 0; k < 20; ++k) world.step(0.1);
     const StepCounts& counts = world.step_counts();
     const double off = std::abs(world.energy() - start);
-    fmt::print("  {} taken, {} left to the midpoint rule, energy off by {:.1e} J\n", counts.taken, counts.rescued, off);
+    fmt::print("  {} taken, {} left to an implicit method, energy off by {:.1e} J\n", counts.taken, counts.rescued,
+               off);
     EXPECT_LT(counts.taken, 20'000);
     EXPECT_EQ(counts.rescued, 0);
     EXPECT_LT(off, 1e-3);
@@ -114,8 +116,8 @@ TEST_P(Rescue, ALightBeadIsDrawnTaut) {
       world.step(h);
       if (world.step_counts().rescued == 0) unsaid = std::max(unsaid, world.worst_position_error().value);
     }
-    fmt::print("  off by {:.1e} m with nothing said, {:.1e} m at the end, {} steps left to the midpoint rule\n", unsaid,
-               world.worst_position_error().value, world.step_counts().rescued);
+    fmt::print("  off by {:.1e} m with nothing said, {:.1e} m at the end, {} steps left to an implicit method\n",
+               unsaid, world.worst_position_error().value, world.step_counts().rescued);
     EXPECT_LT(unsaid, 1e-10);
   }
 }
@@ -134,7 +136,7 @@ TEST(RescueOfASpatialChain, TakesPartsOfTheStepFirst) {
   StepCounts coarse, fine;
   const Frame end = end_of(Integrator::rk4, 48, coarse), truth = end_of(Integrator::rattle, 2000, fine);
   const double off = apart(end, truth, scene.dimension).position;
-  fmt::print("  off by {:.2e} m, {} attempts in parts, {} steps left to the midpoint rule\n", off, coarse.rejected,
+  fmt::print("  off by {:.2e} m, {} attempts in parts, {} steps left to an implicit method\n", off, coarse.rejected,
              coarse.rescued);
   EXPECT_LT(off, 0.05);
   EXPECT_GT(coarse.rejected, 0);
