@@ -19,9 +19,10 @@ namespace {
 // The tension at the lowest point of a pendulum that falls from the height of its pivot, in units of its weight.
 constexpr double swing = 3;
 // [rad] per substep. Methods that take forces at the ends of a step are inaccurate above.
-constexpr double stiff = 0.5, sharp_turn = 0.5;
-// [rad] that a method of eighth order takes in one substep, and the substeps that replace a longer one.
-constexpr double far_turn = 2, most_turns = 1024;
+constexpr double stiff = 0.5, quick_turn = 0.4;
+// [rad] that a method of eighth order takes in one substep, the length of the substeps that replace a longer one, and
+// the most of them.
+constexpr double far_turn = 2, short_turn = 0.5, most_turns = 1024;
 // A body that rotates about a pivot beside its centre oscillates about that rotation no faster than this, in units of
 // its rate: its stiffness is that of the spin, not of a load.
 constexpr double of_own_spin = 1.5;
@@ -63,7 +64,7 @@ constexpr struct {
                           w.of.by_tension ? "the tension of the joints" : "a spring", w.body(w.of.oscillating), w.of.radians);
      }},
     {Integrator::dop853,
-     [](const Traits& t) { return t.turn > sharp_turn && t.radians > stiff; },
+     [](const Traits& t) { return t.turn > quick_turn && t.radians > stiff; },
      [](const Words& w) {
        return fmt::format("{} rotates by {:.2g} rad per substep about a pivot beside its centre", w.body(w.of.turning), w.of.turn);
      }},
@@ -183,7 +184,7 @@ Recommendation recommended(BasicWorld<S>& world, double step, const std::functio
   chosen.integrator = rule.integrator;
   std::string reason = rule.why({worst.traits, name_of_body});
   if (chosen.integrator == Integrator::dop853 && worst.traits.turn > far_turn) {
-    chosen.substeps *= static_cast<int>(std::min(std::ceil(worst.traits.turn / sharp_turn), most_turns));
+    chosen.substeps *= static_cast<int>(std::min(std::ceil(worst.traits.turn / short_turn), most_turns));
     reason += fmt::format("; {} substeps", chosen.substeps);
   }
   return {chosen, worst.traits.island, worst.traits.radians, reason};
