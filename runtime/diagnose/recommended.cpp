@@ -64,7 +64,7 @@ constexpr struct {
                           w.of.by_tension ? "the tension of the joints" : "a spring", w.body(w.of.oscillating), w.of.radians);
      }},
     {Integrator::dop853,
-     [](const Traits& t) { return t.turn > quick_turn && t.radians > stiff; },
+     [](const Traits& t) { return t.turn > quick_turn && t.radians > quick_turn; },
      [](const Words& w) {
        return fmt::format("{} rotates by {:.2g} rad per substep about a pivot beside its centre", w.body(w.of.turning), w.of.turn);
      }},

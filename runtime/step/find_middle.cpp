@@ -21,7 +21,7 @@
 namespace cdot {
 namespace {
 
-constexpr int most_rounds = 25;
+constexpr int most_newton_rounds = 25;
 constexpr double slow = 0.2;  // share of the error that a round may leave without a new factor
 // Goals of Newton: C, in units of Island::scale, and the change of a pose in units of Island::size and [rad].
 template <class T>
@@ -208,7 +208,7 @@ bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   const T at_start = island.residual;
   T before = std::numeric_limits<T>::infinity();
   bool renew = true;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < most_newton_rounds; ++round) {
     look_at_middle(world, island, h);
     if (renew) stiffen_masses(world, island, h / 4);
     drift(world, island, h);

@@ -17,7 +17,7 @@ namespace {
 using text::Json;
 
 constexpr std::size_t most_islands = 12, most_rows_listed = 12;
-constexpr int poses_diagnosed = 64;
+constexpr int most_poses = 64;
 
 std::string method_text(const Scene& scene) {
   const Settings& s = scene.settings;
@@ -199,7 +199,7 @@ int run(const Options& options) {
   if (options.matrix) return show_matrix(options, scene);
   RunOptions run;
   run.progress = progress_shown(options.scene);
-  run.diagnose_times = equal_times(scene.duration, poses_diagnosed, 0);
+  run.diagnose_times = equal_times(scene.duration, most_poses, 0);
   if (options.time) {
     check_within(*options.time, scene.duration);
     run.diagnose_times = {*options.time};
