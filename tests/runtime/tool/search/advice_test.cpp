@@ -23,6 +23,8 @@ struct Asked {
   int least;  // pieces of advice that are followed, at least
 };
 
+void PrintTo(const Asked& asked, std::ostream* out) { *out << asked.options; }
+
 class Advice : public testing::TestWithParam<Asked> {};
 
 // The step stays coarse where a scene names none, so that there is something to cure.
