@@ -1,0 +1,34 @@
+// bench_search: how honest the search for a method is, and what it costs.
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "tests/bench/search/runs.hpp"
+
+namespace cdot::search_bench {
+void study_claims(const std::vector<Scene>& scenes);  // claims.cpp
+void study_price(const std::vector<Scene>& scenes);   // price.cpp
+}  // namespace cdot::search_bench
+
+int main(int count, char** arguments) {
+  using namespace cdot;
+  using namespace cdot::search_bench;
+  CLI::App app("Studies of the search for a method, over the scenes below folders.");
+  std::string study, only;
+  std::vector<std::string> folders;
+  app.add_option("study", study, "claims: claimed against true errors; price: against the cheapest named method")
+      ->required()
+      ->check(CLI::IsMember({"claims", "price"}));
+  app.add_option("folders", folders, "with scenes")->required()->check(CLI::ExistingDirectory);
+  app.add_option("--only", only, "scenes whose name contains this");
+  CLI11_PARSE(app, count, arguments);
+  try {
+    std::vector<Scene> scenes;
+    for (const std::string& folder : folders)
+      for (Scene& scene : scenes_below(folder))
+        if (short_name(scene).find(only) != std::string::npos) scenes.push_back(std::move(scene));
+    study == "claims" ? study_claims(scenes) : study_price(scenes);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 2;
+  }
+}

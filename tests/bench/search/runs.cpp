@@ -1,0 +1,60 @@
+#include "tests/bench/search/runs.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "runtime/tool/run/process.hpp"
+
+namespace cdot::search_bench {
+
+namespace fs = std::filesystem;
+
+std::vector<Scene> scenes_below(const std::string& folder) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::vector<Scene> scenes;
+  for (const fs::path& file : files) {
+    Scene& scene = scenes.emplace_back(read_scene(file.string()));
+    const Settings& named = scene.settings;
+    scene.settings = {.gravity_x = named.gravity_x, .gravity_y = named.gravity_y, .gravity_z = named.gravity_z};
+    scene.step = 0, scene.accuracy = 0, scene.single = false;
+  }
+  return scenes;
+}
+
+std::string short_name(const Scene& scene) {
+  const fs::path path = scene.file;
+  return path.parent_path().filename() / path.stem();
+}
+
+Run run_of(const Scene& scene, const std::vector<double>& times, double most) {
+  Run run;
+  RunOptions options;
+  options.row_times = times;
+  options.row = [&](const Frame& frame) { run.rows.push_back(frame); };
+  const double began = cpu_now();
+  if (!chooses_method(scene)) options.look = [&](const Frame&, const StepCounts&) { return cpu_now() - began < most; };
+  std::string warnings;
+  run.result = simulate(scene, options, warnings);
+  run.whole = !run.result.stopped && failure(scene, run.result).empty() && run.rows.size() == times.size();
+  return run;
+}
+
+Run run_of(const Scene& scene, Integrator integrator, double local_error, double step, const std::vector<double>& times,
+           double most) {
+  Choice named;
+  named.integrator = integrator, named.local_error = local_error, named.step = step;
+  Scene solved = solved_by(named, scene);
+  solved.accuracy = 0;
+  return run_of(solved, times, most);
+}
+
+double median(std::vector<double> numbers) {
+  if (numbers.empty()) return 0;
+  std::sort(numbers.begin(), numbers.end());
+  return numbers[numbers.size() / 2];
+}
+
+}  // namespace cdot::search_bench

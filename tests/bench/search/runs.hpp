@@ -1,0 +1,30 @@
+// Scenes without their method, and their runs at given times.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/tool/search/simulate.hpp"
+
+namespace cdot::search_bench {
+
+// All scenes below a folder, in the order of their names, as if they named no method and no step.
+std::vector<Scene> scenes_below(const std::string& folder);
+// "joint/planar" from the path of a scene.
+std::string short_name(const Scene& scene);
+
+struct Run {
+  RunResult result;
+  std::vector<Frame> rows;  // at the times, as far as the run got
+  bool whole = false;       // it ended without a failure
+};
+
+// Ends early after `most` seconds of CPU time.
+Run run_of(const Scene& scene, const std::vector<double>& times, double most);
+// By a named method.
+Run run_of(const Scene& scene, Integrator integrator, double local_error, double step, const std::vector<double>& times,
+           double most);
+
+double median(std::vector<double> numbers);
+
+}  // namespace cdot::search_bench
