@@ -203,6 +203,17 @@ TEST(Diagnose, ReportsTheSizeOfConflicts) {
   }
 }
 
+TEST(Diagnose, TheSizeOfAnIslandIsItsLongestArmOrDistance) {
+  World<double> world(settings(Solver::direct));
+  const int a = world.add_body({.mass = 1, .inertia = 1}), b = world.add_body({.x = 3, .mass = 1, .inertia = 1});
+  distance(world, a, b, 3);  // between the centres: no arm
+  revolute(world, world.ground(), world.add_body({.x = 11, .mass = 1, .inertia = 1}), 9, 0, -2, 0);
+  const Diagnosis found = diagnose(world, h);
+  ASSERT_EQ(found.islands.size(), 2u);
+  EXPECT_EQ(found.islands[0].size, 3);
+  EXPECT_EQ(found.islands[1].size, 2);
+}
+
 // A diagnosis changes no bit of the state or of the run, with any method.
 template <class S, class Build>
 void check_that_looking_is_free(Build build) {

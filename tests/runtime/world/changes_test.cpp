@@ -286,6 +286,8 @@ TEST(Changes, PointsOfTheGroundAreThoseOfTheWorld) {
   world.set_origin(1e6, 2e6);
   BodyDefinition d = rod(1e6, 2e6, 0);
   const int bar = world.add_body(d);
+  EXPECT_EQ(world.pose(bar).x, d.x - 1e6);
+  EXPECT_EQ(world.pose(bar).y, d.y - 2e6);
   const int pin =
       world.add_joint({"revolute", {world.ground(), bar}, {{"pa", {1e6 + 0.1, 2e6}}, {"pb", {-0.4, 0.1}}}, {}});
   const std::vector<double> before = world.joint_parameters(pin);

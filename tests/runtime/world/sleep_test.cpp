@@ -189,6 +189,19 @@ TEST(Sleep, AtSpeedsBelowTheLimitOnly) {
   }
 }
 
+// A touch ends the rest, even one that leaves the body slower than sleep_speed.
+TEST(Sleep, ATouchedIslandRestsAnew) {
+  World<double> world(weightless({Solver::direct, Integrator::euler}));
+  const int body = world.add_body({.mass = 1, .inertia = 1});
+  run(world, 1, 0.01);
+  ASSERT_TRUE(world.asleep(body));
+  world.apply_impulse(body, {5e-4, 0, 0});
+  run(world, 0.15, 0.01);
+  EXPECT_FALSE(world.asleep(body));
+  run(world, 0.1, 0.01);
+  EXPECT_TRUE(world.asleep(body));
+}
+
 // Round-off of single precision is no motion, and a small force is.
 TEST(Sleep, InSinglePrecision) {
   Settings s = sleepy(Solver::direct);

@@ -191,10 +191,28 @@ TEST(Snapshot, AStateOfAnotherWorldIsRefused) {
   other = direct;
   other.gravity_y = -1.6;
   expect_refused(world, chain_of(3, 1, other).snapshot(), "its joints, their parameters, effects, springs or gravity");
+  const auto breakable = [&](double load) {
+    World<double> chain = chain_of(3, 1, direct);
+    set_breaking_load(chain, 1, load);
+    return chain;
+  };
+  World<double> weak = breakable(500);
+  expect_refused(weak, breakable(501).snapshot(), "its joints, their parameters, effects, springs or gravity");
   expect_refused(world, Snapshot{}, "the snapshot is empty");
   World<float> floats(direct);
   add_chain(floats, 3, 0.3);
   expect_refused(world, floats.snapshot(), "planar float");
+}
+
+TEST(Snapshot, TheHashTellsPosesAndVelocitiesApart) {
+  World<double> world(settings(Solver::direct));
+  const int body = world.add_body(rod(0, 0, 0));
+  const std::uint64_t at_rest = world.hash();
+  world.set_velocity(body, {0, 0, 1e-300});
+  const std::uint64_t turning = world.hash();
+  EXPECT_NE(turning, at_rest);
+  world.set_pose(body, {0, 0, 1e-300});
+  EXPECT_NE(world.hash(), turning);
 }
 
 // A joint that broke before a body was added is not in the order of rows prepared afterwards.

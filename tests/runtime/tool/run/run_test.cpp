@@ -28,12 +28,27 @@ TEST(Run, ConsistentStartIsSilent) {
 
 TEST(Run, InconsistentStartIsReportedPerJointAndRow) {
   std::string warnings;
-  simulate(scene_of(with(pendulum, "[0.5, 0]", "[0.5, 0.25]\nvelocity = [3, 0]")), {}, warnings);
+  const RunResult result =
+      simulate(scene_of(with(pendulum, "[0.5, 0]", "[0.5, 0.25]\nvelocity = [3, 0]")), {}, warnings);
   EXPECT_EQ(warnings,
             "test.toml:9:1: warning: the start violates revolute \"pivot\": C2 = -0.25, Cdot1 = -3\n"
             "    9 | [[joint]]\n"
             "      | ^^^^^^^^^\n"
             "  fix: correct the pose or velocity, or set project = true\n");
+  EXPECT_NEAR(result.worst_error, 0.25, 1e-12);  // the steps close the joint
+  EXPECT_EQ(result.worst_error_time, 0);
+  EXPECT_EQ(result.time, 1);
+}
+
+// Floats have no digits left for 0.1 m at 1e7 m: the poses of this scene are relative to a point among its bodies.
+TEST(Run, FarFromTheOriginPosesKeepTheirDigits) {
+  const Scene scene =
+      scene_of(with(with(pendulum, "[0.5, 0]", "[10000000.5, -3e7]"), "pa = [0, 0]", "pa = [1e7, -3e7]"));
+  const World<float> world = build_world<float>(scene);
+  EXPECT_LT(std::abs(world.pose(0).x), 1);
+  EXPECT_LT(std::abs(world.pose(0).y), 1);
+  EXPECT_EQ(world.place(0).x, 10000000.5);
+  EXPECT_EQ(world.place(0).y, -3e7);
 }
 
 // A chain with an inconsistent start gets one short warning, not one per link.
