@@ -8,6 +8,39 @@
 #include "runtime/solve/tension.hpp"
 
 namespace cdot {
+namespace {
+
+// f(counters, size) of every segment that counts whole turns.
+template <class S, class F>
+void each_counters(const Island<S>& island, F f) {
+  for (const Segment<S>& segment : island.segments)
+    if (const int width = segment.batch->ops->counters; width > 0)
+      f(segment.batch->counters.data() + segment.begin * width, (segment.whole_end - segment.begin) * width);
+}
+
+}  // namespace
+
+template <class S>
+void prepare_turns(Island<S>& island) {
+  size_t counters = 0;
+  each_counters(island, [&](const auto*, int size) { counters += static_cast<size_t>(size); });
+  island.flow.start_turns.assign(counters, 0);
+}
+
+template <class S>
+void keep_turns(Island<S>& island) {
+  auto* to = island.flow.start_turns.data();
+  each_counters(island, [&](const auto* counters, int size) { to = std::copy_n(counters, size, to); });
+}
+
+template <class S>
+void restore_turns(const Island<S>& island) {
+  const auto* from = island.flow.start_turns.data();
+  each_counters(island, [&](auto* counters, int size) {
+    std::copy_n(from, size, counters);
+    from += size;
+  });
+}
 
 template <class S>
 void stiffen_masses(WorldData<S>& world, Island<S>& island, typename S::Scalar share) {
@@ -78,6 +111,9 @@ void evaluate_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h)
 }
 
 #define CDOT_INSTANTIATE(S)                                                   \
+  template void prepare_turns(Island<S>&);                                    \
+  template void keep_turns(Island<S>&);                                       \
+  template void restore_turns(const Island<S>&);                              \
   template void stiffen_masses(WorldData<S>&, Island<S>&, S::Scalar);         \
   template void restore_masses(WorldData<S>&, const Island<S>&);              \
   template void hold_back(WorldData<S>&, const Island<S>&);                   \

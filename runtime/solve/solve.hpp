@@ -9,6 +9,15 @@ namespace cdot {
 template <class S>
 void evaluate_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 
+// The whole turns that the rows of an island have counted, into Flow::start_turns and back. A try that is taken back
+// leaves no turn behind.
+template <class S>
+void prepare_turns(Island<S>& island);
+template <class S>
+void keep_turns(Island<S>& island);
+template <class S>
+void restore_turns(const Island<S>& island);
+
 // Computes K or, for the sweeps of rigid rows, its factorisation.
 template <class S>
 void factorize_rows(WorldData<S>& world, Island<S>& island);

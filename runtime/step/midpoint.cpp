@@ -143,7 +143,7 @@ void bound_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   }
 }
 
-// Keeps impulses, poses and velocities of the start of a part, and goes back to them.
+// Keeps impulses, poses, velocities and whole turns of the start of a part, and goes back to them.
 template <class S>
 void keep(WorldData<S>& world, Island<S>& island) {
   size_t k = 0;
@@ -152,6 +152,7 @@ void keep(WorldData<S>& world, Island<S>& island) {
     island.flow.kept[k++] = batch.correction[i];
   });
   for (int i : island.bodies) world.bodies.displacement[i] = world.bodies.velocity[i];
+  keep_turns(island);
 }
 template <class S>
 void go_back_to_kept(WorldData<S>& world, Island<S>& island) {
@@ -166,6 +167,7 @@ void go_back_to_kept(WorldData<S>& world, Island<S>& island) {
     world.bodies.velocity[i] = world.bodies.displacement[i];
     world.bodies.increment[i] = {};
   }
+  restore_turns(island);
   if constexpr (S::has_gyroscopes) set_inertias(world, island);
   restore_masses(world, island);
   island.evaluated = island.factored = false;
@@ -323,6 +325,7 @@ void step_midpoint_from(WorldData<S>& world, Island<S>& island, typename S::Scal
 template <class S>
 void prepare_midpoint(Island<S>& island) {
   prepare_rattle(island);
+  prepare_turns(island);
   island.flow.kept.assign(2 * static_cast<size_t>(island.system.rows()), typename S::Scalar(0));
 }
 

@@ -197,14 +197,6 @@ double share_of_size(const Island<S>& island, const RungeKuttaOf<S>& method, typ
   });
 }
 
-// f(counters, size) of every segment that counts whole turns. Stages that are taken back must leave no turn behind.
-template <class S, class F>
-void each_counters(const Island<S>& island, F f) {
-  for (const Segment<S>& segment : island.segments)
-    if (const int width = segment.batch->ops->counters; width > 0)
-      f(segment.batch->counters.data() + segment.begin * width, (segment.whole_end - segment.begin) * width);
-}
-
 template <class S>
 void prepare_runge_kutta(Island<S>& island, const RungeKuttaOf<S>& method) {
   Flow<S>& flow = island.flow;
@@ -218,9 +210,6 @@ void prepare_runge_kutta(Island<S>& island, const RungeKuttaOf<S>& method) {
   for (const Segment<S>& segment : island.segments)
     rows += static_cast<size_t>((segment.end - segment.begin) * segment.batch->ops->rows);
   flow.end_forces.assign(rows, 0);
-  size_t counters = 0;
-  each_counters(island, [&](const auto*, int size) { counters += static_cast<size_t>(size); });
-  flow.start_turns.assign(counters, 0);
   if (method.implicit) prepare_collocation(island);
   count_guarded_rows(island);
   prepare_rank_loss(island, method);
@@ -241,19 +230,14 @@ void keep_start(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
   }
   if (method.implicit) begin_collocation(island, goes_on);
   flow.start_residual = island.residual;
-  auto* to = flow.start_turns.data();
-  each_counters(island, [&](const auto* counters, int size) { to = std::copy_n(counters, size, to); });
+  keep_turns(island);
 }
 
 template <class S>
 void go_back(WorldData<S>& world, Island<S>& island) {
   set_numbers(world, island, island.flow.start.data());
   island.residual = island.flow.start_residual;
-  const auto* from = island.flow.start_turns.data();
-  each_counters(island, [&](auto* counters, int size) {
-    std::copy_n(from, size, counters);
-    from += size;
-  });
+  restore_turns(island);
 }
 
 #define CDOT_INSTANTIATE(S)                                                                               \
