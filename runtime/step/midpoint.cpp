@@ -325,7 +325,6 @@ void step_midpoint_from(WorldData<S>& world, Island<S>& island, typename S::Scal
 template <class S>
 void prepare_midpoint(Island<S>& island) {
   prepare_rattle(island);
-  prepare_turns(island);
   island.flow.kept.assign(2 * static_cast<size_t>(island.system.rows()), typename S::Scalar(0));
 }
 

@@ -102,10 +102,12 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
   }
 }
 
-// Half a kick at the start, with the first guess of the joints' impulses.
+// Half a kick at the start, with the first guess of the joints' impulses. Angles go on from the start: rounds of the
+// drift count no turns.
 template <class S>
 void start_half(WorldData<S>& world, Island<S>& island, typename S::Scalar h, typename S::Scalar share) {
   for (size_t k = 0; k < island.bodies.size(); ++k) world.bodies.velocity[island.bodies[k]] = island.flow.velocity[k];
+  restore_turns(island);
   clear_correction(world, island);
   kick(world, island, h / 2);
   guess_impulses(world, island, share);
@@ -170,6 +172,7 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   push_dampers(world, island, h);
   book_kick(world, island, Impulses::dampers, h);
   note_start(world, island);
+  keep_turns(island);
   begin_kick(world, island);
   start_half(world, island, h, share);
   const bool by_sweeps = !island.solver->exact;
@@ -178,6 +181,7 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     drift_with_renewed_directions(world, island, h, at_start, share);
   }
   book_start(world, island, h / 2);
+  restore_turns(island);
   evaluate_anew(world, island, T(world.time) + h);
   // Forces of the second kick are those at the end's velocity, to second order: 2 v_half - v_start.
   for (size_t k = 0; k < island.bodies.size(); ++k) {
@@ -199,6 +203,7 @@ template <class S>
 void prepare_rattle(Island<S>& island) {
   island.flow.pose.resize(island.bodies.size());
   island.flow.velocity.resize(island.bodies.size());
+  prepare_turns(island);
   island.flow.search.reserve(static_cast<size_t>(std::max(island.system.rows(), island.rescue.rows())));
 }
 
