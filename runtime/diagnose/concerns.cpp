@@ -10,7 +10,6 @@
 namespace cdot {
 namespace {
 
-constexpr double sharp_turn = 0.5;                        // [rad] per step: a chord is 1 % shorter than its arc
 constexpr double slow_turn = 0.02, needs_no_help = 0.5;   // [rad] per step
 constexpr double sweeps_per_condition = 4;                // after which little error is left
 constexpr double float_round_off = 6e-8, inexact = 0.01;  // relative
@@ -95,13 +94,13 @@ void on_stiffness(const Diagnosis::Island& island, const Settings& settings, dou
 
 void on_spin(const Diagnosis::Island& island, const Settings& settings, double h, const Names& names,
              std::vector<Concern>& concerns) {
-  const double radians = h * island.fastest_spin;
-  if (settings.local_error > 0 || !(radians > sharp_turn)) return;
+  const double radians = h * island.fastest_spin, followed = followed_turn(row_of(settings.integrator));
+  if (settings.local_error > 0 || !(radians > followed)) return;
   concerns.push_back(
       {true,
        fmt::format("{} rotates by {:.2g} rad per substep: {} is accurate below about {} rad",
-                   names.body(island.spinning), radians, name_of(integrators, settings.integrator), sharp_turn),
-       fmt::format("substeps = {:.0f} or more, or {}", std::ceil(radians / sharp_turn) * settings.substeps,
+                   names.body(island.spinning), radians, name_of(integrators, settings.integrator), followed),
+       fmt::format("substeps = {:.0f} or more, or {}", std::ceil(radians / followed) * settings.substeps,
                    own_steps)});
 }
 

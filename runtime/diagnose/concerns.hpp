@@ -30,6 +30,10 @@ constexpr Integrator most_exact(F fits) {
   return std::max_element(integrator_rows.begin(), integrator_rows.end(), less)->integrator;
 }
 
+// [rad] per step that a method follows. Of order 2, a chord is 1 % shorter than the arc of 0.5 rad. Measured on a rod
+// about a pivot at its end, the rate is off by 3e-3 in steps of 1 rad by order 4, by 3e-6 in steps of 2 rad by order 8.
+constexpr double followed_turn(const IntegratorRow& row) { return row.order >= 8 ? 2 : row.order >= 4 ? 1 : 0.5; }
+
 // `h`: of a substep [s].
 std::vector<Concern> concerns_about(const Diagnosis::Island& island, const Settings& settings, bool single, double h,
                                     const Names& names);

@@ -1,12 +1,14 @@
 // bench_search: how honest the search for a method is, and what it costs.
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <map>
 
 #include "tests/bench/search/runs.hpp"
 
 namespace cdot::search_bench {
-void study_claims(const std::vector<Scene>& scenes);  // claims.cpp
-void study_price(const std::vector<Scene>& scenes);   // price.cpp
+void study_claims(const std::vector<Scene>& scenes);    // claims.cpp
+void study_price(const std::vector<Scene>& scenes);     // price.cpp
+void study_estimate(const std::vector<Scene>& scenes);  // estimate.cpp
 }  // namespace cdot::search_bench
 
 int main(int count, char** arguments) {
@@ -15,9 +17,14 @@ int main(int count, char** arguments) {
   CLI::App app("Studies of the search for a method, over the scenes below folders.");
   std::string study, only;
   std::vector<std::string> folders;
-  app.add_option("study", study, "claims: claimed against true errors; price: against the cheapest named method")
+  const std::map<std::string, void (*)(const std::vector<Scene>&)> studies = {
+      {"claims", study_claims}, {"price", study_price}, {"estimate", study_estimate}};
+  app.add_option(
+         "study", study,
+         "claims: claimed against true errors; price: against the cheapest named method; estimate: of runs with "
+         "fixed steps, against true errors")
       ->required()
-      ->check(CLI::IsMember({"claims", "price"}));
+      ->check(CLI::IsMember(studies));
   app.add_option("folders", folders, "with scenes")->required()->check(CLI::ExistingDirectory);
   app.add_option("--only", only, "scenes whose name contains this");
   CLI11_PARSE(app, count, arguments);
@@ -26,7 +33,7 @@ int main(int count, char** arguments) {
     for (const std::string& folder : folders)
       for (Scene& scene : scenes_below(folder))
         if (short_name(scene).find(only) != std::string::npos) scenes.push_back(std::move(scene));
-    study == "claims" ? study_claims(scenes) : study_price(scenes);
+    studies.at(study)(scenes);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 2;

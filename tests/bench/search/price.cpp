@@ -32,7 +32,6 @@ class Comparison {
     std::string name;
     double cpu;
   };
-  bool find_truth();
   std::optional<double> cpu_if_exact(Integrator integrator, double local_error, double step);
   void try_local_errors(Integrator integrator);
   void try_steps(Integrator integrator);
@@ -49,25 +48,12 @@ class Comparison {
   double last_cpu_ = 0;
 };
 
-bool Comparison::find_truth() {
-  const double interval = scene_.duration / intervals_of_own_steps;
-  for (const auto& [integrator, local_error] :
-       {std::pair{Integrator::dop853, 1e-12}, {Integrator::dop853, 1e-10}, {Integrator::radau5, 1e-10}}) {
-    Run run = run_of(scene_, integrator, local_error, interval, times_, most_cpu);
-    if (!run.whole) continue;
-    truth_ = std::move(run.rows);
-    return true;
-  }
-  return false;
-}
-
 // The CPU time of a run that ends well within the accuracy: the least of some.
 std::optional<double> Comparison::cpu_if_exact(Integrator integrator, double local_error, double step) {
   const Run run = run_of(scene_, integrator, local_error, step, times_, most_cpu);
   last_cpu_ = run.result.cpu;
   if (!run.whole) return {};
-  for (std::size_t k = 0; k < truth_.size(); ++k)
-    if (!(yardstick_->apart(run.rows[k], truth_[k]) <= yardstick_->asked())) return {};
+  if (!(largest_apart(*yardstick_, run.rows, truth_) <= yardstick_->asked())) return {};
   double cpu = run.result.cpu;
   for (int k = 1; k < repeats && cpu < 0.1; ++k)
     cpu = std::min(cpu, run_of(scene_, integrator, local_error, step, times_, most_cpu).result.cpu);
@@ -112,7 +98,8 @@ void Comparison::run() {
     const Run again = run_of(scene_, times_, most_cpu);
     with_search = std::min(with_search, cpu_of(again)), alone = std::min(alone, again.result.cpu);
   }
-  if (find_truth()) {
+  truth_ = truth_of(scene_, times_, most_cpu);
+  if (!truth_.empty()) {
     for (const Integrator integrator : {Integrator::dop853, Integrator::rk4, Integrator::radau5})
       try_local_errors(integrator);
     for (const Integrator integrator : {Integrator::rattle, Integrator::implicit}) try_steps(integrator);
@@ -131,7 +118,8 @@ void Comparison::run() {
 void study_price(const std::vector<Scene>& scenes) {
   std::vector<double> ratios, of_runs;
   int reached = 0;
-  for (const Scene& scene : scenes) {
+  for (const Scene& named : scenes) {
+    const Scene scene = without_method(named);
     Comparison comparison(scene);
     comparison.run();
     std::fflush(stdout);

@@ -15,13 +15,15 @@ std::vector<Scene> scenes_below(const std::string& folder) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   std::vector<Scene> scenes;
-  for (const fs::path& file : files) {
-    Scene& scene = scenes.emplace_back(read_scene(file.string()));
-    const Settings& named = scene.settings;
-    scene.settings = {.gravity_x = named.gravity_x, .gravity_y = named.gravity_y, .gravity_z = named.gravity_z};
-    scene.step = 0, scene.accuracy = 0, scene.single = false;
-  }
+  for (const fs::path& file : files) scenes.push_back(read_scene(file.string()));
   return scenes;
+}
+
+Scene without_method(Scene scene) {
+  const Settings named = scene.settings;
+  scene.settings = {.gravity_x = named.gravity_x, .gravity_y = named.gravity_y, .gravity_z = named.gravity_z};
+  scene.step = 0, scene.accuracy = 0, scene.single = false;
+  return scene;
 }
 
 std::string short_name(const Scene& scene) {
@@ -49,6 +51,22 @@ Run run_of(const Scene& scene, Integrator integrator, double local_error, double
   Scene solved = solved_by(named, scene);
   solved.accuracy = 0;
   return run_of(solved, times, most);
+}
+
+double largest_apart(const Yardstick& yardstick, const std::vector<Frame>& a, const std::vector<Frame>& b) {
+  double most = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, yardstick.apart(a[k], b[k]));
+  return most;
+}
+
+std::vector<Frame> truth_of(const Scene& scene, const std::vector<double>& times, double most) {
+  const double interval = scene.duration / intervals_of_own_steps;
+  for (const auto& [integrator, local_error] :
+       {std::pair{Integrator::dop853, 1e-12}, {Integrator::dop853, 1e-10}, {Integrator::radau5, 1e-10}}) {
+    Run run = run_of(scene, integrator, local_error, interval, times, most);
+    if (run.whole) return std::move(run.rows);
+  }
+  return {};
 }
 
 double median(std::vector<double> numbers) {

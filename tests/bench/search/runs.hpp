@@ -5,11 +5,14 @@
 #include <vector>
 
 #include "runtime/tool/search/simulate.hpp"
+#include "runtime/tool/search/yardstick.hpp"
 
 namespace cdot::search_bench {
 
-// All scenes below a folder, in the order of their names, as if they named no method and no step.
+// All scenes below a folder, in the order of their names.
 std::vector<Scene> scenes_below(const std::string& folder);
+// As if it named no method and no step.
+Scene without_method(Scene scene);
 // "joint/planar" from the path of a scene.
 std::string short_name(const Scene& scene);
 
@@ -24,6 +27,12 @@ Run run_of(const Scene& scene, const std::vector<double>& times, double most);
 // By a named method.
 Run run_of(const Scene& scene, Integrator integrator, double local_error, double step, const std::vector<double>& times,
            double most);
+
+// The largest at one time, in the units of the yardstick.
+double largest_apart(const Yardstick& yardstick, const std::vector<Frame>& a, const std::vector<Frame>& b);
+
+// A run of far higher accuracy than the default; empty if none ends.
+std::vector<Frame> truth_of(const Scene& scene, const std::vector<double>& times, double most);
 
 double median(std::vector<double> numbers);
 
