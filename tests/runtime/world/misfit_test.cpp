@@ -49,6 +49,22 @@ TEST(Misfit, ProjectionIsRefusedIfItMovesBodiesFar) {
   }
 }
 
+// No pose closes this arch. Each round of Newton stays within its bound, but together they go too far.
+TEST(Misfit, ARefusedProjectionOfManyRoundsMovesNothing) {
+  constexpr double misfit = 6e-5;
+  World<double> world;
+  add_arch(world, 0.4 * std::sqrt(misfit), 2 + misfit);
+  const planar::Place before[] = {world.place(0), world.place(1)};
+  const ProjectResult result = world.project(1e-12);
+  ASSERT_TRUE(result.refused);
+  EXPECT_GT(result.moved, 200 * result.misfit);
+  for (int body : {0, 1}) {
+    EXPECT_EQ(world.place(body).x, before[body].x);
+    EXPECT_EQ(world.place(body).y, before[body].y);
+    EXPECT_EQ(world.place(body).angle, before[body].angle);
+  }
+}
+
 // A regular projection moves the bodies by a few times the error, near a dead centre by many times.
 TEST(Misfit, ProjectionOfASoundStartIsNotRefused) {
   for (const double angle : {1.0, 0.3, 0.1, 0.03}) {
