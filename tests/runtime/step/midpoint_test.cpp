@@ -189,6 +189,18 @@ TEST(Midpoint, SpringsAndDampersOfAnyStrengthAreStable) {
   }
 }
 
+// Springs with h^2 k / m = 2.8e4 and more. In the middle of every step they would turn the error into its opposite.
+TEST(Midpoint, SpringsTooStiffForTheStepReachTheirLength) {
+  for (const double stiffness : {1e8, 1e12}) {
+    World<double> world(by(Integrator::implicit));
+    const int ball = world.add_body({.x = 1.1, .mass = 1, .inertia = 0.1});
+    world.add_spring({.body_a = world.ground(), .body_b = ball, .stiffness = stiffness, .rest_length = 1});
+    run(world, 10 * h, h);
+    EXPECT_NEAR(world.pose(ball).x, 1, 1e-4);
+    EXPECT_NEAR(world.velocity(ball).x, 0, 1e-2);
+  }
+}
+
 // x'' = -(d x' + k x) / m from x = 1 at rest, of second order in both methods; d from none to aperiodic.
 TEST(Midpoint, DampedSpringsAreOfSecondOrder) {
   const double m = 2, k = 50, until = 1;
