@@ -16,6 +16,11 @@ constexpr int newton_rounds = 20;
 // The share of the error that a Newton round may leave. At this rate newton_rounds reach round-off: 0.2^19 = 5e-14. At
 // acceleration level a step that needs a new J is too long; error control must shorten it.
 constexpr double enough = 0.2, enough_at_acceleration_level = 0.5;
+// The round-off of K lambda, relative to the largest b, that a solve may leave. Each refinement leaves that share of
+// the error before.
+template <class T>
+constexpr double rough = by_precision<T>(1e-5, 1e-12);
+constexpr int most_refinements = 4;
 
 template <class S>
 bool is_held(const Batch<S>& batch, int i) {
@@ -79,6 +84,36 @@ void solve_soft(WorldData<S>& world, Island<S>& island, SoftSweep<typename S::Sc
   solve_velocities(world, island, world.bodies.velocity.data(), share);
 }
 
+// The largest |value(row)| of the rows that take part.
+template <class S, class F>
+double largest_of(const System<S>& system, F value) {
+  double largest = 0;
+  for (int r = 0; r < system.rows(); ++r)
+    if (!system.fixed[r] && !system.broken[r]) largest = std::max(largest, std::abs(double(value(r))));
+  return largest;
+}
+
+// Solves again for what is left of J v + bias, where the round-off of K lambda is more than the share `rough` of b.
+// Bodies much lighter than their neighbours get large impulses that cancel.
+template <class S>
+void refine(WorldData<S>& world, Island<S>& island, System<S>& system, typename S::Velocity* v) {
+  using T = typename S::Scalar;
+  constexpr double epsilon = std::numeric_limits<ExactNumber<T>>::epsilon();
+  const double allowed = rough<T> / epsilon * largest_of(system, [&](int r) { return system.b[r]; });
+  for (int round = 0; round < most_refinements; ++round) {
+    const double cancels = largest_of(system, [&](int r) { return system.diagonal(r) * system.lambda[r]; });
+    if (!(cancels > allowed)) return;
+    load_rates(island, system, v);
+    system.give([](const Batch<S>&, int) { return 0.0; });
+    system.solve();
+    system.store([](Batch<S>& batch, int i, auto lambda) {
+      batch.impulse[i] = T(lambda);
+      batch.lambda[i] += T(lambda);
+    });
+    exert(world, island, system, &BatchWorkspace<S>::impulse, v);
+  }
+}
+
 // K lambda = gamma - J dv/dt, with dv/dt without joints and known forces given.
 template <class S>
 void solve_accelerations(WorldData<S>& world, Island<S>& island) {
@@ -96,6 +131,7 @@ void solve_accelerations(WorldData<S>& world, Island<S>& island) {
   island.factored = true;
   system.solve();
   exert_solution(world, island, system, rate);
+  refine(world, island, system, rate);
 }
 
 // K lambda = -C, q += M^-1 J^T lambda.
