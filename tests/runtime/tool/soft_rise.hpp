@@ -1,0 +1,35 @@
+// The energy that appears in a scene without a source under Drift::soft, by sweeps.
+#pragma once
+
+#include <cmath>
+
+#include "runtime/tool/scene/scene.hpp"
+
+namespace cdot::test {
+
+// The shortest and the longest step of a run, in units of 1/60 s.
+struct Jitter {
+  double shortest, longest;
+  // The length of step k: between both, in no order.
+  double length(int k) const {
+    return std::sqrt(shortest * longest) * std::pow(longest / shortest, 0.5 * std::sin(12.9898 * k * k));
+  }
+};
+
+struct SoftWay {
+  int sweeps, substeps;
+  Jitter jitter;
+};
+
+struct SoftRise {
+  bool starts = false;         // on its joints: closing the gaps of a start may lift bodies
+  bool fails = false;          // a step, and says so
+  double risen = 0, time = 0;  // BalanceWatch::risen, as a share, and when [s]
+  double bound = 0;            // of risen: symplectic Euler itself is off by h/2 F v
+  bool holds() const { return risen < bound; }
+};
+
+// Of a run of 3 s by Euler's steps.
+SoftRise soft_rise(Scene scene, const SoftWay& way);
+
+}  // namespace cdot::test
