@@ -103,6 +103,38 @@ TEST(Balance, AnEnergyWithoutASourceFailsTheRunAndKeepsItsOutput) {
   EXPECT_TRUE(follow(file, "--integrator rk4 --until 0.5"));
 }
 
+// Level links of 1 m and 1 kg, held at one end.
+std::string level_chain(int links) {
+  std::string text = "duration = 10\nstep = \"1/60\"\n";
+  for (int k = 0; k < links; ++k)
+    text += fmt::format(R"(
+[[body]]
+name = "link{0}"
+mass = 1
+shape = {{ box = [1, 0.1] }}
+position = [{1}, 0]
+[[joint]]
+type = "revolute"
+bodies = ["{2}", "link{0}"]
+pa = [{3}, 0]
+pb = [-0.5, 0]
+)",
+                        k, k + 0.5, k == 0 ? "world" : fmt::format("link{}", k - 1), k == 0 ? 0 : 0.5);
+  return text;
+}
+
+// Ten sweeps in a step of 1/60 s leave the joints open by metres: 40 links gain 1e8 J.
+TEST(Balance, LongChainsUnderRattleBySweepsFailAndTheAdviceHolds) {
+  const TemporaryFolder folder;
+  for (const int links : {10, 20, 40}) {
+    const std::string file = written(folder, level_chain(links)), options = "--integrator rattle --solver iterative";
+    const Ran broken = simulated(file, options);
+    EXPECT_EQ(broken.status, 1) << links;
+    EXPECT_NE(broken.summary["failure"], "") << links;
+    EXPECT_TRUE(follow(file, options)) << links;
+  }
+}
+
 // Two pendulums: one hardly moves, the other turns by half a radian in a step of Euler's method.
 TEST(Balance, NamesTheJointOfTheWorstStep) {
   const TemporaryFolder folder;
