@@ -177,7 +177,7 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   start_half(world, island, h, share);
   const bool by_sweeps = !island.solver->exact;
   if (by_sweeps || !drift_onto_joints(world, island, h)) {
-    if (!by_sweeps) start_half(world, island, h, share);
+    if (!by_sweeps) start_half(world, island, h, share), island.residual = at_start;
     drift_with_renewed_directions(world, island, h, at_start, share);
   }
   book_start(world, island, h / 2);

@@ -9,6 +9,7 @@
 #include "runtime/tool/run/frame.hpp"
 #include "tests/torture/draw/scene_text.hpp"
 #include "tests/torture/observer.hpp"
+#include "tests/torture/pushes.hpp"
 #include "tests/torture/trial.hpp"
 
 namespace cdot::torture {
@@ -36,16 +37,10 @@ double heaviest_over_lightest(const Scene& scene) {
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (const SceneBody& body : scene.bodies) {
     if (body.is_static) continue;
-    const double mass = scene.dimension == Dimension::planar ? body.definition.mass : body.spatial.mass;
+    const double mass = mass_of(scene, body);
     least = std::min(least, mass), most = std::max(most, mass);
   }
   return most > 0 ? most / least : 1;
-}
-
-// The share of the scene's step that step k takes: between 0.2 and 1, spread evenly by the golden ratio.
-double share_of_step(int k) {
-  const double turns = 0.6180339887498949 * k;
-  return 0.2 + 0.8 * (turns - std::floor(turns));
 }
 
 // An estimate of the rounded operations on a body's velocity in a step: each row of each of its joints, once per solve.
@@ -76,7 +71,6 @@ class Trial {
   BasicWorld<S> started() const;
   StepResult step(BasicWorld<S>& world, int k) const;
   double length_of_step(int k) const { return asked_->varying ? share_of_step(k) * scene_->step : scene_->step; }
-  void change(BasicWorld<S>& world, int k) const;
   Verdict watch(BasicWorld<S>& world);
   std::optional<Verdict> look(BasicWorld<S>& world, int k);
   // The reason why methods may fail on this mechanism now; nullptr if there is none.
@@ -115,28 +109,10 @@ BasicWorld<S> Trial<S>::started() const {
   return world;
 }
 
-// Every ninth step pushes a body, first at once, then for good; a third of the way takes the last joint away.
-template <class S>
-void Trial<S>::change(BasicWorld<S>& world, int k) const {
-  if (k == steps_ / 3 && !scene_->joints.empty()) world.remove_joint(static_cast<int>(scene_->joints.size()) - 1);
-  if (k % 9 != 4) return;
-  const int body = k % static_cast<int>(scene_->bodies.size());
-  if (world.is_static(body)) return;
-  const double impulse = 0.1 * sizes_.length / scene_->duration / double(world.inverse_mass(body).m);
-  if (k % 2 == 0) {
-    typename S::Exact::Velocity shove{};
-    shove.x = impulse, shove.y = -impulse;
-    world.apply_impulse(body, shove);
-  } else {
-    typename S::Wrench force{};
-    force.force_x = -impulse / scene_->duration, force.force_y = impulse / scene_->duration;
-    world.set_force(body, force);
-  }
-}
-
 template <class S>
 StepResult Trial<S>::step(BasicWorld<S>& world, int k) const {
-  if (asked_->changes) change(world, k);
+  if (asked_->changes) change(world, *scene_, {k, steps_, sizes_.length});
+  if (asked_->forces) push_in_time(world, *scene_, {k, steps_, sizes_.length});
   const StepResult result = world.step(length_of_step(k));
   if (asked_->sabotage)
     asked_->sabotage(*scene_, k, [&](int body, double impulse) {
@@ -253,7 +229,9 @@ template <class S>
 Verdict Trial<S>::watch(BasicWorld<S>& world) {
   start_ = motion_of(world);
   start_energy_ = world.energy();
-  accounts_.emplace(start_, spring_rows(world), start_energy_, *scene_, std::numeric_limits<T>::epsilon());
+  accounts_.emplace(start_, spring_rows(world), start_energy_,
+                    asked_->forces ? under_largest_forces(*scene_, sizes_.length) : *scene_,
+                    std::numeric_limits<T>::epsilon());
   Verdict first;
   for (int k = 1; k <= steps_; ++k) {
     places_.clear();
@@ -320,7 +298,7 @@ Verdict Trial<S>::run() {
   if (!(gap.share <= start_tolerance<T>))
     return verdict(Outcome::refused, "the start is not on the joints", "", gap.share, start_tolerance<T>);
   laws_ = laws_of(*scene_);
-  if (asked_->changes) laws_.forget_what_is_kept();
+  if (asked_->changes || asked_->forces) laws_.forget_what_is_kept();
   independence_ = independence(system_matrix(world), 8 * std::numeric_limits<T>::epsilon());
   middle_ = end_ = world.snapshot();
   Verdict seen = watch(world);

@@ -10,6 +10,7 @@
 
 #include "tests/torture/advice.hpp"
 #include "tests/torture/draw/scene_text.hpp"
+#include "tests/torture/misfit.hpp"
 #include "tests/torture/shrink.hpp"
 #include "tests/torture/tally.hpp"
 
@@ -23,11 +24,12 @@ struct Options {
   Wish wish;
   std::string method, keep, scene;
   int dimension = 0;
-  bool no_bits = false, no_shrink = false, print = false, varying = false, changes = false, advice = false;
+  bool no_bits = false, no_shrink = false, print = false, varying = false, changes = false, forces = false,
+       misfit = false, advice = false;
 
   Asked asked() const {
     Asked asked;
-    asked.bits = !no_bits, asked.varying = varying, asked.changes = changes;
+    asked.bits = !no_bits, asked.varying = varying, asked.changes = changes, asked.forces = forces;
     return asked;
   }
 };
@@ -62,7 +64,7 @@ void keep(const Options& options, const std::string& name, const std::string& te
 void report(const Options& options, std::uint64_t seed, const Scene& scene, const Verdict& verdict) {
   fmt::print("\nBROKEN {}\n  seed {:#x}, {}\n", told(verdict), seed, way_of(scene));
   std::fflush(stdout);  // shrinking may take a while
-  if (options.no_shrink || options.advice) return;
+  if (options.no_shrink || options.advice || options.misfit) return;
   Asked asked = options.asked();
   asked.bits = verdict.what.starts_with("bits");
   Shrunk small = shrink(scene, verdict, asked);
@@ -83,9 +85,14 @@ void say(const Verdict& verdict) {
   fmt::print("{}{}\n", words[static_cast<int>(verdict.outcome)], why);
 }
 
+Verdict judged(const Options& options, const Scene& scene) {
+  if (options.advice) return judge_advice(scene);
+  return options.misfit ? judge_misfit(scene) : judge(scene, options.asked());
+}
+
 int judge_file(const Options& options) {
   const Scene scene = read_scene(options.scene);
-  const Verdict verdict = options.advice ? judge_advice(scene) : judge(scene, options.asked());
+  const Verdict verdict = judged(options, scene);
   say(verdict);
   return verdict.broken();
 }
@@ -94,12 +101,11 @@ int torture(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   const auto passed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   Tally tally;
-  const Asked asked = options.asked();
   for (int k = 0; options.seconds > 0 ? passed() < options.seconds : k < options.count; ++k) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(k);
-    const Mechanism mechanism = generate(seed, options.wish);
+    const Mechanism mechanism = options.misfit ? nearly_misfitting(seed, options.wish) : generate(seed, options.wish);
     if (options.print) fmt::print("{}\n", text_of(mechanism.scene));
-    const Verdict verdict = options.advice ? judge_advice(mechanism.scene) : judge(mechanism.scene, asked);
+    const Verdict verdict = judged(options, mechanism.scene);
     tally.add(mechanism, verdict);
     if (verdict.broken()) report(options, seed, mechanism.scene, verdict);
     else if (options.count == 1) say(verdict);
@@ -129,7 +135,9 @@ int main(int count, char** arguments) {
   app.add_option("--scene", options.scene, "judge this scene and no other");
   app.add_flag("--varying", options.varying, "the lengths of the steps vary");
   app.add_flag("--changes", options.changes, "impulses, forces and the loss of a joint, while running");
+  app.add_flag("--forces", options.forces, "a force on each body that is a function of time");
   app.add_flag("--advice", options.advice, "runs each by cdot-run, and follows its advice; judges nothing else");
+  app.add_flag("--misfit", options.misfit, "mechanisms at rest with a joint that is a little off; judges nothing else");
   app.add_flag("--no-bits", options.no_bits, "without repetitions: three times as fast");
   app.add_flag("--no-shrink", options.no_shrink);
   app.add_flag("--print", options.print, "every scene");

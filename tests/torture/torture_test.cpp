@@ -6,6 +6,7 @@
 
 #include "tests/torture/advice.hpp"
 #include "tests/torture/draw/scene_text.hpp"
+#include "tests/torture/misfit.hpp"
 #include "tests/torture/shrink.hpp"
 #include "tests/torture/tally.hpp"
 
@@ -42,6 +43,32 @@ TEST(Torture, Bounded) {
       EXPECT_GT(tally.drawn(dimension, std::string(type.name)), 0) << type.name;
   EXPECT_GT(tally.count(Outcome::held), tally.mechanisms() * 3 / 4);
   fmt::print("{}", tally.text());
+}
+
+// The README states longer runs of both.
+TEST(Torture, ForcesInTime) {
+  Asked asked;
+  asked.forces = true, asked.bits = false;
+  int held = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const Mechanism mechanism = generate(seed, {.steps = steps});
+    const Verdict verdict = judge(mechanism.scene, asked);
+    held += verdict.outcome == Outcome::held;
+    EXPECT_FALSE(verdict.broken()) << "seed " << seed << ": " << verdict.what << " " << verdict.value << ", at most "
+                                   << verdict.bound;
+  }
+  EXPECT_GT(held, 40);
+}
+
+TEST(Torture, NearlyMisfittingLoopsStay) {
+  int told = 0;
+  for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+    const Verdict verdict = judge_misfit(nearly_misfitting(seed, {.steps = steps}).scene);
+    told += verdict.what == "told";
+    EXPECT_FALSE(verdict.broken()) << "seed " << seed << ": " << verdict.what << " " << verdict.value << ", at most "
+                                   << verdict.bound;
+  }
+  EXPECT_GT(told, 40);
 }
 
 // The README follows the advice on a thousand mechanisms.
