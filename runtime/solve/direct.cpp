@@ -21,8 +21,10 @@ constexpr double enough = 0.2, enough_at_acceleration_level = 0.5;
 template <class T>
 constexpr double rough = by_precision<T>(1e-5, 1e-12);
 constexpr int most_refinements = 4;
-// An error that differs by less of itself from the one that the last projection left is that one.
-constexpr double unchanged = 1e-9;
+// An error that differs by less of itself from the one that the last projection left is that one. In float round-off
+// leaves errors too, and these are to be corrected.
+template <class T>
+constexpr double unchanged = by_precision<T>(-1, 1e-9);
 
 template <class S>
 bool is_held(const Batch<S>& batch, int i) {
@@ -194,7 +196,7 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
     const T worst = find_errors(world, island, time);
     island.residual = worst;
     // Joints that contradict each other would creep, were they corrected again and again.
-    if (round == 0 && worst > tolerance * island.scale && std::abs(worst - left) <= unchanged * worst) return;
+    if (round == 0 && worst > tolerance * island.scale && std::abs(worst - left) <= unchanged<T> * worst) return;
     if (round == 0) island.misfit = 0;
     if (!(worst > tolerance * island.scale) || round == newton_rounds) return;
     // Adds rows that passed their bound since the selection. Selected rows stay.

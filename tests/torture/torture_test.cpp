@@ -63,7 +63,7 @@ TEST(Torture, ForcesInTime) {
 TEST(Torture, NearlyMisfittingLoopsStay) {
   int told = 0;
   for (std::uint64_t seed = 1; seed <= 150; ++seed) {
-    const Verdict verdict = judge_misfit(nearly_misfitting(seed, {.steps = steps}).scene);
+    const Verdict verdict = judge_misfit(nearly_misfitting(seed, {.single = false, .steps = steps}).scene);
     told += verdict.what == "told";
     EXPECT_FALSE(verdict.broken()) << "seed " << seed << ": " << verdict.what << " " << verdict.value << ", at most "
                                    << verdict.bound;
