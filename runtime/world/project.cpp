@@ -14,14 +14,16 @@ namespace cdot {
 namespace {
 
 constexpr int newton_rounds = 50, most_refinements = 4;
+// Of rows that count as redundant, in the projection of an island; each costs a solve. Beyond, nothing moves.
+constexpr int most_drops = 64;
 // The share of J v + dC/dt that a projection of velocities may leave.
 template <class T>
 constexpr double rough = by_precision<T>(1e-5, 1e-12);
 
 // Adds M^-1 J^T lambda with K lambda = b to `to`. If that moves bodies too far for the largest `error`, the rows that
-// ask for it count as redundant, and the result says so; `moves` is scratch.
+// ask for it count as redundant, at most `drops` of them, and the result says so; `moves` is scratch.
 template <class S>
-void solve_and_exert(WorldData<S>& world, Island<S>& island, double error, ProjectResult& result,
+void solve_and_exert(WorldData<S>& world, Island<S>& island, double error, int& drops, ProjectResult& result,
                      typename S::Velocity* to) {
   auto& moves = world.bodies.increment;
   island.system.assemble(world.bodies);
@@ -35,7 +37,7 @@ void solve_and_exert(WorldData<S>& world, Island<S>& island, double error, Proje
     if (!too_far(island, move, error)) break;
     if (!result.refused) result.body = move.body, result.moved = move.way, result.misfit = error;
     result.refused = true;
-    if (island.system.drop_dominant_row()) continue;
+    if (drops-- > 0 && island.system.drop_dominant_row()) continue;
     for (int i : island.bodies) moves[i] = {};  // nothing moves
     break;
   }
@@ -79,10 +81,10 @@ void keep_velocities(WorldData<S>& world, Island<S>& island) {
 }
 
 template <class S>
-LongestMove move_poses(WorldData<S>& world, Island<S>& island, double error, ProjectResult& result) {
+LongestMove move_poses(WorldData<S>& world, Island<S>& island, double error, int& drops, ProjectResult& result) {
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.displacement[i] = {};
-  solve_and_exert(world, island, error, result, all.displacement.data());
+  solve_and_exert(world, island, error, drops, result, all.displacement.data());
   for (int i : island.bodies) all.pose[i] = S::moved(all.pose[i], all.displacement[i]);
   keep_velocities(world, island);
   return longest_move<S>(island, all.displacement);
@@ -108,6 +110,7 @@ void project_poses(WorldData<S>& world, Island<S>& island, ProjectResult& result
   for (int i : island.bodies) start.push_back(world.bodies.pose[i]);
   LongestMove sum;
   double before = std::numeric_limits<double>::infinity(), first = 0;
+  int drops = most_drops;
   for (int round = 0; round < newton_rounds; ++round) {
     evaluate(world, island);
     measure_errors(island);
@@ -118,7 +121,7 @@ void project_poses(WorldData<S>& world, Island<S>& island, ProjectResult& result
     if (worst == 0 || ((worst < 1e-6 || result.refused) && worst >= before)) return;
     before = worst;
     if (round == 0) first = worst;
-    const LongestMove move = move_poses(world, island, worst, result);
+    const LongestMove move = move_poses(world, island, worst, drops, result);
     sum = {sum.way + move.way, move.body};
     if (!too_far(island, sum, first)) continue;
     if (!result.refused) result.body = sum.body, result.moved = sum.way, result.misfit = first;
@@ -143,13 +146,14 @@ void project_velocities(WorldData<S>& world, Island<S>& island, double tolerance
   const auto rate = [](const Batch<S>& batch, int i) { return batch.rate[i] + batch.bias[i]; };
   // A solve leaves round-off of impulses that cancel, on bodies much lighter than others. More solves take that off.
   double first = 0, before = std::numeric_limits<double>::infinity();
+  int drops = most_drops;
   for (int round = 0; round <= most_refinements && !result.refused; ++round) {
     if (round > 0) load_rates(island, island.system, all.velocity.data());
     const double worst = largest_error(island, result, rate);
     if (round == 0) first = worst;
     else if (!(worst > rough<typename S::Scalar> * first && worst < 0.5 * before)) return;
     before = worst;
-    solve_and_exert(world, island, worst, result, all.velocity.data());
+    solve_and_exert(world, island, worst, drops, result, all.velocity.data());
   }
 }
 

@@ -104,6 +104,9 @@ TEST(Torture, FoundAndMended) {
   });
 }
 
+// Its start cannot be projected, whichever rows count as redundant. The search for them ran on for minutes.
+TEST(Torture, ProjectionsEnd) { EXPECT_FALSE(judge(generate(0x758903, {.steps = 10}).scene).broken()); }
+
 // Scenes that no step of their length can solve: the failed step names island and joint and restores the state; all
 // earlier steps satisfy the invariants.
 TEST(Torture, FoundAndTold) {
