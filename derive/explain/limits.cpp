@@ -73,6 +73,8 @@ void assume(const Joint& joint, Step& step) {
                 {leaf(p.axes[0]), leaf(p.axes[1]), leaf(p.axes[2])});
     } else if (p.kind == ParameterKind::unit || p.kind == ParameterKind::frame) {
       step.list("{} has length 1.", {leaf(p.symbol)});
+    } else if (!p.range.empty()) {
+      step.list("{} lies " + p.range + ".", {leaf(p.symbol)});
     }
   }
   for (const Row& row : joint.rows) {

@@ -23,7 +23,7 @@ std::string spoken_kind(const Parameter& p) {
     case ParameterKind::frame: return " axis of the frame " + p.name + " (length 1)";
     case ParameterKind::scalar: break;
   }
-  return "the number " + p.name;
+  return "the number " + p.name + (p.range.empty() ? "" : ", " + p.range);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 
 namespace cdot::derive {
 namespace {
@@ -46,6 +48,20 @@ std::vector<Expr> body_euler_parameters(Pool& pool, int body) {
 }
 Expr time_symbol(Pool& pool) { return pool.symbol("time", Role::time); }
 Expr pi_symbol(Pool& pool) { return pool.symbol("pi", Role::constant); }
+
+std::optional<double> constant_value(Expr e) {
+  if (e->kind == Kind::number) return e->value.value();
+  if (e->kind == Kind::symbol && e->role == Role::constant) return std::numbers::pi;
+  if (e->kind != Kind::sum && e->kind != Kind::product) return {};
+  double result = e->kind == Kind::sum ? 0 : 1;
+  for (std::size_t i = 0; i < e->args.size(); ++i) {
+    const std::optional<double> part = constant_value(e->args[i]);
+    if (!part) return {};
+    if (e->kind == Kind::sum) result += e->coefs[i].value() * *part;
+    else result *= std::pow(*part, e->exponents[i]);
+  }
+  return result;
+}
 
 bool is_symbol_of_tool(std::string_view name) {
   if (name == "time" || name == "pi") return true;

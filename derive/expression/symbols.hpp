@@ -1,6 +1,7 @@
 // The leaves that stand for the state of a body; each has one name.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ Expr inverse_inertia(Pool& pool, int body);
 std::vector<Expr> body_euler_parameters(Pool& pool, int body);
 Expr time_symbol(Pool& pool);
 Expr pi_symbol(Pool& pool);
+// Of sums and products of numbers and pi; empty for all else.
+std::optional<double> constant_value(Expr e);
 
 // Names that these leaves and the world's axes reserve.
 bool is_symbol_of_tool(std::string_view name);

@@ -1,5 +1,6 @@
 // Kernels to C++: generated/planar/<joint>.hpp, generated/spatial/<joint>.hpp and the registries.
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <set>
 
@@ -106,8 +107,18 @@ class KernelWriter {
          1);
   }
 
+  // ", 0, infinity"; empty for a parameter without bounds.
+  static std::string range(const Parameter& p) {
+    if (p.range.empty()) return "";
+    const auto bound = [](double value) {
+      return std::isinf(value) ? std::string(value < 0 ? "-unbounded" : "unbounded") : fmt::format("{}", value);
+    };
+    return fmt::format(", {}, {}", bound(p.above), bound(p.below));
+  }
+
   std::string where(const Parameter& p) const {
-    if (p.kind == ParameterKind::scalar) return "[" + derive::text(p.unit) + "]";
+    if (p.kind == ParameterKind::scalar)
+      return fmt::format("[{}]{}{}", derive::text(p.unit), p.range.empty() ? "" : " ", p.range);
     const bool direction = p.kind == ParameterKind::unit || p.kind == ParameterKind::frame;
     return fmt::format("{} fixed in {}{}", text(p.kind),
                        p.body < 0 ? "the world" : joint_.bodies[static_cast<std::size_t>(p.body)],
@@ -129,8 +140,8 @@ class KernelWriter {
     int offset = 0;
     for (const Parameter& p : joint_.parameters) {
       const int size = static_cast<int>(fields_of(joint_, p).size());
-      line(fmt::format("{{{}, ParameterKind::{}, {}, {}, {}, {}, {}}},", literal(p.name), text(p.kind), p.body,
-                       literal(derive::text(p.unit)), offset, size, p.default_value ? "true" : "false"),
+      line(fmt::format("{{{}, ParameterKind::{}, {}, {}, {}, {}, {}{}}},", literal(p.name), text(p.kind), p.body,
+                       literal(derive::text(p.unit)), offset, size, p.default_value ? "true" : "false", range(p)),
            3);
       offset += size;
     }

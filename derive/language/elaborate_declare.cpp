@@ -39,12 +39,13 @@ void Elaborator::declare(Source& source, const DeclaredAst& d) {
   p.where = in_spec(source, d.name.where);
   const bool placed = !d.broken && resolve_body(source, d, p);
   Value given = default_value(source, d);
-  const bool good = placed && default_fits(source, d, given) && resolve_unit(source, d, given, p);
+  const bool good =
+      placed && default_fits(source, d, given) && resolve_unit(source, d, given, p) && resolve_range(source, d, p);
   if (const auto known = names_.find(full); good && source.include && known != names_.end()) {
     const auto before = std::find_if(joint_.parameters.begin(), joint_.parameters.end(),
                                      [&](const Parameter& q) { return q.name == full; });
     if (before != joint_.parameters.end() && before->kind == p.kind && before->body == p.body &&
-        before->unit == p.unit && same_default(before->default_value, given.e))
+        before->unit == p.unit && before->range == p.range && same_default(before->default_value, given.e))
       return;
   }
   if (!name_is_free(source, d.name, full)) return;
@@ -156,6 +157,40 @@ bool Elaborator::resolve_unit(Source& source, const DeclaredAst& d, const Value&
     return false;
   }
   return true;
+}
+
+bool Elaborator::resolve_range(Source& source, const DeclaredAst& d, Parameter& p) {
+  if (!d.range || d.broken) return true;
+  for (const auto& [ast, to] : {std::pair(&d.range->above, &p.above), std::pair(&d.range->below, &p.below)}) {
+    if (!*ast) continue;
+    const std::optional<double> value = bound(source, **ast, d, p);
+    if (!value) return false;
+    *to = *value;
+  }
+  if (!(p.above < p.below)) {
+    source.diagnostics.error(d.range->where, "no number lies in this range", "put the smaller bound first");
+    return false;
+  }
+  p.range = source.file->text.substr(static_cast<std::size_t>(d.range->where.begin),
+                                     static_cast<std::size_t>(d.range->where.end - d.range->where.begin));
+  return true;
+}
+
+// One bound of a range, a constant in the unit of the parameter; empty if that is reported as an error.
+std::optional<double> Elaborator::bound(Source& source, const Ast& ast, const DeclaredAst& d, const Parameter& p) {
+  const Value v = evaluate(source, ast);
+  if (v.type == Type::poison) return {};
+  const std::optional<double> value = v.type == Type::scalar ? constant_value(v.e) : std::nullopt;
+  const bool plain_angle = v.unit == Unit{} && p.unit == Unit{.rad = 1};
+  if (!value)
+    source.diagnostics.error(ast.where, "a bound of " + quote(d.name.text) + " is not a constant",
+                             "write a number, such as 0 or pi");
+  else if (!plain_angle && !same_unit(scalar(Expr(), p.unit), v))
+    source.diagnostics.error(
+        ast.where, "a bound of " + quote(d.name.text) + " is in " + spoken(*v.unit) + ", not in " + spoken(p.unit),
+        "give the number its unit, as in 2 [m]");
+  else return value;
+  return {};
 }
 
 // A frame of another body as it is; a direction n for the x axis is completed to a triad by axes that depend on nothing

@@ -198,13 +198,26 @@ Triple<double> random_direction(int dimension, Random& random, double second) {
   return axes_of(random_orientation(random))[0];
 }
 
+// A number of [0.5, 2] moved into the range of a parameter, if it is outside.
+double in_range(const Joint& joint, Expr leaf, double drawn) {
+  for (const Parameter& p : joint.parameters) {
+    if (p.symbol != leaf || (p.above < drawn && drawn < p.below)) continue;
+    const double share = drawn / 2.5;  // in [0.2, 0.8]
+    if (std::isinf(p.below)) return p.above + drawn;
+    if (std::isinf(p.above)) return p.below - drawn;
+    return p.above + share * (p.below - p.above);
+  }
+  return drawn;
+}
+
 // Draws the value of a leaf that is neither pose nor velocity.
 void draw_leaf(const Joint& joint, Expr leaf, Random& random, Sample& sample) {
   const double first = random.between(0.5, 2), second = random.between(-2, 2);
   const Pool::Axis axis = joint.pool->axis_of(leaf);
   const bool tensor = joint.dimension == 3 && leaf->role == Role::inverse_inertia;
   if (!leaf->vector && is_scalar_of_sample(leaf->role)) {
-    sample.scalars[leaf->symbol] = tensor ? inverse_inertia_component(leaf->symbol, first) : first;
+    sample.scalars[leaf->symbol] =
+        tensor ? inverse_inertia_component(leaf->symbol, first) : in_range(joint, leaf, first);
     if (tensor && is_tensor(leaf)) {
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = i; j < 3; ++j) {

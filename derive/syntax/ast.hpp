@@ -49,11 +49,18 @@ struct Ast {
   std::vector<int> row_lengths;
 };
 
+// The values that a parameter may have, without the bounds themselves.
+struct RangeAst {
+  std::optional<Ast> above, below;
+  Span where;
+};
+
 struct DeclaredAst {
   std::string kind;  // point vector unit frame scalar
   Word name;
   std::optional<WrittenUnit> unit;
-  Word body;  // empty text: a scalar, or reported already
+  std::optional<RangeAst> range;  // of a scalar
+  Word body;                      // empty text: a scalar, or reported already
   std::optional<Ast> value;
   Span where;
   bool broken = false;

@@ -124,7 +124,8 @@ class JointParser {
       s.declared.kind = kind;
       s.declared.name = p_.name("the name of the " + kind);
       s.declared.unit = p_.unit();
-      if (kind != "scalar") on_body(s.declared);
+      if (kind == "scalar") range(s.declared);
+      else on_body(s.declared);
       default_value(s.declared);
       finish(s);
     } while (p_.accept(","));
@@ -133,8 +134,29 @@ class JointParser {
   }
 
   static std::string form_of(const std::string& kind) {
-    if (kind == "scalar") return "scalar NAME [unit] = default";
+    if (kind == "scalar") return "scalar NAME [unit] above 0 = default, where the bound and the default may be missing";
     return kind + " NAME on BODY = default";
+  }
+
+  // "above" expression, "below" expression, or "between" expression "and" expression
+  void range(DeclaredAst& d) {
+    const Token first = p_.peek();
+    if (p_.at_symbol("<") || p_.at_symbol(">"))
+      return p_.fail(first.where, "a range is written in words",
+                     std::string("write ") + (first.text == "<" ? "below" : "above") + " and a number");
+    const bool both = p_.at_word("between");
+    if (!both && !p_.at_word("above") && !p_.at_word("below")) return;
+    p_.take();
+    RangeAst range;
+    (first.text == "below" ? range.below : range.above) = p_.expression();
+    if (both && !p_.at_word("and") && !p_.failed())
+      p_.fail(p_.peek().where, "the upper bound is missing: `and` and a number must follow", "write between 0 and 1");
+    if (both && !p_.failed()) {
+      p_.take();
+      range.below = p_.expression();
+    }
+    range.where = p_.from(first);
+    d.range = std::move(range);
   }
 
   void on_body(DeclaredAst& d) {

@@ -31,7 +31,7 @@ struct pulley {
     T pb_x, pb_y;  // point fixed in b [m]
     T ga_x, ga_y;  // point fixed in the world [m]
     T gb_x, gb_y;  // point fixed in the world [m]
-    T ratio;  // [1]
+    T ratio;  // [1] above 0
     T length;  // [m]
   };
   static constexpr std::array<ParameterInfo, 6> parameters = {{
@@ -39,7 +39,7 @@ struct pulley {
       {"pb", ParameterKind::point, 1, "m", 2, 2, false},
       {"ga", ParameterKind::point, -1, "m", 4, 2, false},
       {"gb", ParameterKind::point, -1, "m", 6, 2, false},
-      {"ratio", ParameterKind::scalar, -1, "1", 8, 1, true},
+      {"ratio", ParameterKind::scalar, -1, "1", 8, 1, true, 0, unbounded},
       {"length", ParameterKind::scalar, -1, "m", 9, 1, true},
   }};
 

@@ -23,12 +23,12 @@ struct cone {
   struct Parameters {
     T na_x, na_y, na_z;  // unit fixed in a
     T nb_x, nb_y, nb_z;  // unit fixed in b
-    T half;  // [rad]
+    T half;  // [rad] between 0 and pi
   };
   static constexpr std::array<ParameterInfo, 3> parameters = {{
       {"na", ParameterKind::unit, 0, "1", 0, 3, false},
       {"nb", ParameterKind::unit, 1, "1", 3, 3, true},
-      {"half", ParameterKind::scalar, -1, "rad", 6, 1, false},
+      {"half", ParameterKind::scalar, -1, "rad", 6, 1, false, 0, 3.141592653589793},
   }};
 
   static constexpr int bodies = 2, rows = 1;

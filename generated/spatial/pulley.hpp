@@ -32,7 +32,7 @@ struct pulley {
     T pb_x, pb_y, pb_z;  // point fixed in b [m]
     T ga_x, ga_y, ga_z;  // point fixed in the world [m]
     T gb_x, gb_y, gb_z;  // point fixed in the world [m]
-    T ratio;  // [1]
+    T ratio;  // [1] above 0
     T length;  // [m]
   };
   static constexpr std::array<ParameterInfo, 6> parameters = {{
@@ -40,7 +40,7 @@ struct pulley {
       {"pb", ParameterKind::point, 1, "m", 3, 3, false},
       {"ga", ParameterKind::point, -1, "m", 6, 3, false},
       {"gb", ParameterKind::point, -1, "m", 9, 3, false},
-      {"ratio", ParameterKind::scalar, -1, "1", 12, 1, true},
+      {"ratio", ParameterKind::scalar, -1, "1", 12, 1, true, 0, unbounded},
       {"length", ParameterKind::scalar, -1, "m", 13, 1, true},
   }};
 

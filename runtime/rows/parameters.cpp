@@ -34,6 +34,12 @@ void check_numbers(const JointType& type, const ParameterInfo& info, const Named
       throw Error(fmt::format("parameter `{}` of joint `{}` is not finite", info.name, type.name));
 }
 
+void check_range(const JointType& type, const ParameterInfo& info, double number) {
+  if (!(info.above < number && number < info.below))
+    throw Error(fmt::format("parameter `{}` of joint `{}` is {:.6g} [{}]. Likely fix: a number{}", info.name, type.name,
+                            number, info.unit, range_of(info)));
+}
+
 // Scales a direction of any length but 0 to length 1.
 void normalise(const JointType& type, const ParameterInfo& info, double* numbers, int size) {
   double square = 0;
@@ -88,9 +94,17 @@ std::vector<const NamedValue*> match(const JointType& type, const std::vector<Na
 void take(const JointType& type, const ParameterInfo& info, const NamedValue& value, double* at) {
   std::copy(value.numbers.begin(), value.numbers.end(), at);
   make_directions(type, info, at, value.numbers.size());
+  check_range(type, info, *at);
 }
 
 }  // namespace
+
+std::string range_of(const ParameterInfo& info) {
+  if (std::isinf(info.above) && std::isinf(info.below)) return "";
+  if (std::isinf(info.below)) return fmt::format(" above {:.6g}", info.above);
+  if (std::isinf(info.above)) return fmt::format(" below {:.6g}", info.below);
+  return fmt::format(" between {:.6g} and {:.6g}", info.above, info.below);
+}
 
 template <class S>
 std::vector<double> parameter_numbers(int type_index, const std::vector<NamedValue>& given,
@@ -114,6 +128,7 @@ std::vector<double> parameter_numbers(int type_index, const std::vector<NamedVal
       if (!std::isfinite(at[k]))
         throw Error(
             fmt::format("the default of parameter `{}` of joint `{}` is not finite here", info.name, type.name));
+    check_range(type, info, *at);
   }
   return numbers;
 }

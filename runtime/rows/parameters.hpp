@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include <cdot/joints.hpp>
@@ -14,6 +15,9 @@ namespace cdot {
 template <class S>
 std::vector<double> parameter_numbers(int type, const std::vector<NamedValue>& given, const typename S::Pose* poses,
                                       double time);
+
+// " above 0", " between 0 and 3.14159"; empty for a parameter without bounds.
+std::string range_of(const ParameterInfo& info);
 
 // Writes the given parameters into `numbers`; the others stay. Returns the given ones. Throws Error.
 std::vector<const ParameterInfo*> change_parameters(const JointType& type, const std::vector<NamedValue>& given,

@@ -73,6 +73,8 @@ enum class ParameterKind {
   scalar   // 1 number
 };
 
+inline constexpr double unbounded = std::numeric_limits<double>::infinity();
+
 struct ParameterInfo {
   std::string_view name;
   ParameterKind kind;
@@ -81,6 +83,7 @@ struct ParameterInfo {
   int offset;             // of its first number in Parameters<T>, in units of T
   int size;
   bool has_default;  // default_value(index, ...) computes it from the initial pose and the parameters before it
+  double above = -unbounded, below = unbounded;  // a scalar lies between these
 };
 
 inline float abs(float x) { return std::fabs(x); }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <map>
 
+#include "runtime/rows/parameters.hpp"
 #include "runtime/tool/scene/keys.hpp"
 #include "runtime/tool/scene/read.hpp"
 
@@ -12,7 +13,8 @@ namespace {
 
 // "the point pa on body a", "the direction t on the world", "the scalar l [m]"
 std::string described(const ParameterInfo& parameter) {
-  if (parameter.kind == ParameterKind::scalar) return fmt::format("the scalar {} [{}]", parameter.name, parameter.unit);
+  if (parameter.kind == ParameterKind::scalar)
+    return fmt::format("the scalar {} [{}]{}", parameter.name, parameter.unit, range_of(parameter));
   const bool on_world = parameter.body < 0;
   return fmt::format("the {} {} on {}", parameter.kind == ParameterKind::point ? "point" : "direction", parameter.name,
                      on_world ? "the world" : fmt::format("body {}", static_cast<char>('a' + parameter.body)));

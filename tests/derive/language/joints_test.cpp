@@ -1,6 +1,9 @@
 // The meaning of specs: parameters and their leaves, rows, includes, anchors.
+#include <cmath>
 #include <gtest/gtest.h>
+#include <numbers>
 
+#include "derive/numbers/numeric.hpp"
 #include "tests/derive/language/reading.hpp"
 
 namespace cdot::derive {
@@ -36,6 +39,31 @@ TEST(Joints, NameTheirLeavesAfterTheSpec) {
   EXPECT_TRUE(is_number(p[4].default_value, 2));
   EXPECT_TRUE(r.joint->uses_world);
   EXPECT_EQ(r.joint->bodies, (std::vector<std::string>{"a", "b"}));
+}
+
+// Bounds are constants; samples lie between them.
+TEST(Joints, HoldTheRangesOfTheirNumbers) {
+  const ReadResult r = read_body(
+      " scalar h [rad] between 0 and pi/2 = 1 [rad]\n scalar k above 2\n scalar l [m] below -3 [m]\n scalar n\n"
+      " angle(a) - angle(b) <= h\n n * k * dot(x(a) - x(b), world.x) = l\n");
+  const auto& p = r.joint->parameters;
+  ASSERT_EQ(p.size(), 4u);
+  EXPECT_EQ(p[0].above, 0);
+  EXPECT_EQ(p[0].below, std::numbers::pi / 2);
+  EXPECT_EQ(p[0].range, "between 0 and pi/2");
+  EXPECT_TRUE(p[0].default_value);
+  EXPECT_EQ(p[1].above, 2);
+  EXPECT_EQ(p[2].below, -3);
+  EXPECT_TRUE(p[3].range.empty());
+  EXPECT_TRUE(std::isinf(p[3].below));
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const std::vector<Expr> leaves = {p[0].symbol, p[1].symbol, p[2].symbol, p[3].symbol};
+    const Sample sample = random_sample(*r.joint, leaves, seed);
+    for (const Parameter& one : {p[0], p[1], p[2], p[3]}) {
+      const double value = sample.scalars.at(one.name);
+      EXPECT_TRUE(one.above < value && value < one.below) << one.name << " = " << value;
+    }
+  }
 }
 
 TEST(Joints, TellEqualitiesFromInequalitiesAndVelocities) {

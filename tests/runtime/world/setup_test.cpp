@@ -94,6 +94,31 @@ TEST(Setup, ParametersThatNoPoseSatisfiesAreRefused) {
       Error);
 }
 
+// A cone of 7 rad would act as one of 0.72 rad. Both bounds are outside.
+TEST(Setup, NumbersOutsideTheirRangesAreRefused) {
+  SpatialWorld<double> space;
+  const int body = space.add_body({.mass = 1, .inertia = {1, 1, 1}});
+  const auto cone = [&](double half) {
+    return JointDefinition{"cone", {space.ground(), body}, {{"na", {1, 0, 0}}, {"half", {half}}}, {}};
+  };
+  for (const double half : {7.0, -0.5, 0.0, 3.15})
+    EXPECT_EQ(
+        message_of([&] { space.add_joint(cone(half)); }),
+        fmt::format("parameter `half` of joint `cone` is {:.6g} [rad]. Likely fix: a number between 0 and 3.14159",
+                    half));
+  const int joint = space.add_joint(cone(3.14));
+  EXPECT_THROW(space.set_parameters(joint, {{"half", {7}}}), Error);
+  EXPECT_EQ(space.joint_parameters(joint).back(), 3.14);
+  EXPECT_EQ(
+      message_of([&] {
+        space.add_joint({"pulley",
+                         {space.ground(), body},
+                         {{"pa", {0, 1, 0}}, {"pb", {1, 0, 0}}, {"ga", {0, 2, 0}}, {"gb", {1, 2, 0}}, {"ratio", {-1}}},
+                         {}});
+      }),
+      "parameter `ratio` of joint `pulley` is -1 [1]. Likely fix: a number above 0");
+}
+
 TEST(Setup, MissingParametersTakeTheSpecsDefaults) {
   World<double> world;
   const int a = world.add_body({.x = 1, .y = 2, .angle = 0.5, .mass = 1, .inertia = 1});
