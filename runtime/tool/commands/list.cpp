@@ -4,6 +4,7 @@
 #include <cdot/effects.hpp>
 #include <cdot/joints.hpp>
 
+#include "runtime/rows/parameters.hpp"
 #include "runtime/text/json.hpp"
 #include "runtime/tool/commands/options.hpp"
 #include "runtime/tool/scene/keys.hpp"
@@ -32,8 +33,9 @@ std::string list_text(Dimension dimension) {
                         type.row_kinds.size(), type.row_kinds.size() == 1 ? "" : "s");
     for (const ParameterInfo& parameter : type.parameters) {
       const std::string body = body_name(parameter);
-      text += fmt::format("    {:<12} {} [{}]{}{}\n", parameter.name, kind_of(parameter), parameter.unit,
-                          body.empty() ? "" : " on " + body, parameter.has_default ? ", optional" : "");
+      text +=
+          fmt::format("    {:<12} {} [{}]{}{}\n", parameter.name, kind_of(parameter), parameter.unit,
+                      body.empty() ? range_of(parameter) : " on " + body, parameter.has_default ? ", optional" : "");
     }
     for (const CoordinateInfo& coordinate : type.coordinates) {
       text +=
