@@ -33,7 +33,7 @@ struct Parameter {
   Unit unit;
   Expr value;   // as it occurs in expressions: point: its place in the world (x_a + ra); frame: its x axis
   Expr symbol;  // the leaf behind it: the arm `ra`, the direction `t`, the number; what a kernel reads or rotates
-  std::vector<Expr> axes;          // of a frame in space: its three leaves, `symbol` first
+  std::vector<Expr> axes;                                   // of a frame in space: its three leaves, `symbol` first
   double above = -std::numeric_limits<double>::infinity();  // a scalar lies between these
   double below = std::numeric_limits<double>::infinity();
   std::string range;               // "between 0 and pi", as written; empty: any number

@@ -100,8 +100,7 @@ void on_spin(const Diagnosis::Island& island, const Settings& settings, double h
       {true,
        fmt::format("{} rotates by {:.2g} rad per substep: {} is accurate below about {} rad",
                    names.body(island.spinning), radians, name_of(integrators, settings.integrator), followed),
-       fmt::format("substeps = {:.0f} or more, or {}", std::ceil(radians / followed) * settings.substeps,
-                   own_steps)});
+       fmt::format("substeps = {:.0f} or more, or {}", std::ceil(radians / followed) * settings.substeps, own_steps)});
 }
 
 // The linearly implicit step adds tension as inertia. Where h omega is small anyway, this only slows down rotations.
