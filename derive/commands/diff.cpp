@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 struct Options {
   std::vector<std::string> what;
   std::string specs_folder = "specs";
-  bool json = false, all = false;
+  bool json = false, all = false, full = false;
   int processes = usual_processes();
 };
 
@@ -103,7 +103,7 @@ FileVerdict verdict_on(const Pairing& pair, const SpecsFolder& folder, const Opt
   }
   const bool everything = options.all || !options.what.empty();
   FileVerdict verdict{render(*report.file, report.diagnostics),
-                      options.json ? to_json(report) : to_text(report, everything),
+                      options.json ? to_json(report) : to_text(report, {everything, options.full}),
                       report.diagnostics.has_errors(),
                       {}};
   for (const Judgement& j : report.judgements) ++verdict.counts[static_cast<std::size_t>(j.agreement)];
@@ -137,6 +137,7 @@ void add_options(Line& line, Options& options) {
            "Specs by name or path (with a .hand file beside them), .hand files, or ids of entries (LIN-4).\n"
            "Default: all");
   line.add("--all", &options.all, "Also show entries that agree (named specs always show them)");
+  line.add("--full", &options.full, "Show whole formulas and their difference, however long");
   line.add("--json", &options.json,
            "An array with, per entry: id, joint, title, source, verdict (agrees, agrees-if, differs, listed),\n"
            "condition (of agrees-if; the reason of listed), remarks, and items: what, row, column, kind,\n"

@@ -114,6 +114,26 @@ std::vector<Contribution> contributions(const Entry& entry, const ScalarRow& row
   return sources;
 }
 
+// Replaces the differences from `before` on by one slip that explains them all, if there are several or if it is the
+// inverse or the frame of a mass. `confirm(row, column)` shows by numbers that an entry is wrong.
+template <class Confirmed>
+void tell_slip(Entry& entry, const Part* part, const HandItem& item, std::size_t before, const Sides& sides,
+               Confirmed confirm) {
+  std::vector<Difference>& differences = entry.verdict.differences;
+  const std::size_t told = differences.size() - before;
+  const std::string what = part ? item.what : "claim on " + item.what;
+  if (told == 0 || (told == 1 && item.what != "K" && part)) return;
+  const std::optional<Slip> slip =
+      slip_of_whole(entry, part, part ? item.what : "claim", sides.published, sides.generated);
+  if (!slip || (told == 1 && part && slip->kind != "inverse" && slip->kind != "frame")) return;
+  differences.erase(differences.begin() + static_cast<std::ptrdiff_t>(before), differences.end());
+  int wrong = 0;
+  const auto index = [](int i) { return static_cast<std::size_t>(i); };
+  while (entry.equal(sides.published.entries[index(wrong)], sides.generated.entries[index(wrong)])) ++wrong;
+  add_plain(entry, item, {what, "", "", {}, {}, &entry.joint}, slip->kind, slip->sentence,
+            confirm(wrong / sides.generated.columns, wrong % sides.generated.columns));
+}
+
 // A published quantity beside the generated one, in the source's signs of C.
 struct Quantity {
   Entry& entry;
@@ -133,15 +153,18 @@ struct Quantity {
         e = Rational(sign_of(r, c)) * e;
       }
     }
+    const std::size_t before = entry.verdict.differences.size();
     const Sides sides{published, generated, groups_of_rows(entry, part, generated.rows), columns};
     derive::compare(entry, sides, [&](int r, int c) {
       Place place{item.what, name_of_row(part, r), "", {}, {}, &entry.joint};
       describe(place, r, c);
-      const Expr hand = published.at(r, c), right = generated.at(r, c);
+      const Expr hand = entry.as_assumed(published.at(r, c)), right = entry.as_assumed(generated.at(r, c));
       Difference d = describe_difference(place, hand, right, entry.poses());
       d.confirmed = confirm(r, c, right, hand);
       return finished(entry, item, std::move(d), hand, right);
     });
+    tell_slip(entry, &part, item, before, sides,
+              [&](int r, int c) { return confirm(r, c, generated.at(r, c), published.at(r, c)); });
   }
 
   int sign(int r) const { return part.sign[static_cast<std::size_t>(r)]; }
@@ -190,7 +213,8 @@ void judge_Cdot(Entry& entry, const Part& part, const HandItem& item) {
     if (item.what == "b") return;
     place.sources = contributions(entry, Cdot.row(r), Cdot.sign(r), [](const ScalarRow& row) { return row.Cdot; });
   };
-  Cdot.compare(part.generated.Cdot, one_column, sign, describe, [&](int r, int c, Expr generated, Expr published) {
+  const Matrix generated_rates = without_baumgarte(entry, part, item, part.generated.Cdot);
+  Cdot.compare(generated_rates, one_column, sign, describe, [&](int r, int c, Expr generated, Expr published) {
     const auto rate = [&](const Sample& sample) { return sign(r, c) * entry.confirm().rate(Cdot.row(r), sample); };
     return entry.confirm().against(rate, generated, published);
   });
@@ -225,8 +249,8 @@ void judge_K(Entry& entry, const Part& part, const HandItem& item) {
   const Quantity K{entry, part, item};
   const auto sign = [&](int r, int c) { return K.sign(r) * K.sign(c); };
   K.compare(
-      part.generated.K, groups_of_rows(entry, part, part.generated.K.columns), sign,
-      [&](Place& place, int, int c) { place.column = name_of_row(part, c); },
+      without_softness(entry, part, item, part.generated.K), groups_of_rows(entry, part, part.generated.K.columns),
+      sign, [&](Place& place, int, int c) { place.column = name_of_row(part, c); },
       [&](int r, int c, Expr generated, Expr published) {
         const Confirm confirm = entry.confirm();
         const auto mass = [&](const Sample& sample) { return sign(r, c) * confirm.mass(K.row(r), K.row(c), sample); };
@@ -251,12 +275,16 @@ void judge_claim(Entry& entry, const HandItem& item) {
           left.rows, [&](int) { return vector; }, row_name),
       grouped(
           left.columns, [](int) { return false; }, [&](const Group& g) { return left.columns > 1 ? number(g) : ""; })};
+  const std::size_t before = entry.verdict.differences.size();
   compare(entry, sides, [&](int r, int c) {
     const Place place{what, row_name({r, 1, ""}), left.columns > 1 ? std::to_string(c + 1) : "", {}, {}, &entry.joint};
-    Difference d = describe_difference(place, left.at(r, c), right.at(r, c), entry.poses());
-    d.confirmed = entry.confirm().claim(left.at(r, c), right.at(r, c));
-    return finished(entry, item, std::move(d), left.at(r, c), right.at(r, c));
+    const Expr claimed = entry.as_assumed(left.at(r, c)), correct = entry.as_assumed(right.at(r, c));
+    Difference d = describe_difference(place, claimed, correct, entry.poses());
+    d.confirmed = entry.confirm().claim(claimed, correct);
+    return finished(entry, item, std::move(d), claimed, correct);
   });
+  tell_slip(entry, nullptr, item, before, sides,
+            [&](int r, int c) { return entry.confirm().claim(left.at(r, c), right.at(r, c)); });
 }
 
 // Judges a formula without a value, also in other readings that its author may have meant.

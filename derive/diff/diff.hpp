@@ -19,7 +19,7 @@ struct Difference {
   std::string what;         // C, Cdot, J, K, b, update
   std::string row, column;  // "1", "w_b"; empty where there are none
   std::string kind;         // sign, factor, wrong body, missing term, extra term, transposed, undeclared
-                            // assumption
+                            // assumption; of a whole matrix also order, inverse, frame
   std::string generated, hand,
       difference;  // infix, in the spec's names; difference = hand - generated
   std::string sentence;
@@ -47,7 +47,11 @@ struct DiffReport {
 // Judges every entry of a .hand file against the spec beside it, as it was read.
 DiffReport judge(const std::filesystem::path& hand, const ReadResult& spec);
 
-std::string to_text(const DiffReport& report, bool all);  // `all`: also what agrees, in a line each
+struct ReportOptions {
+  bool all = false;   // also what agrees, in a line each
+  bool full = false;  // whole formulas, however long; else three lines for each difference
+};
+std::string to_text(const DiffReport& report, const ReportOptions& options);
 std::string to_json(const DiffReport& report);
 std::string joined_json(const std::vector<std::string>& arrays);  // of several reports, as one
 

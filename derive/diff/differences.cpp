@@ -28,7 +28,7 @@ std::string without_component(const std::string& text, std::size_t i) {
 }
 
 std::string condition_of(const Difference& d) {
-  const std::size_t at = d.sentence.find("equal only where ");
+  const std::size_t at = d.sentence.find("equal where ");
   return at == std::string::npos ? "" : d.sentence.substr(at);
 }
 
@@ -96,7 +96,7 @@ Difference finished(Entry& entry, const HandItem& item, Difference difference, E
   if (difference.kind != "sign" && difference.kind != "wrong body") {
     const std::string hidden =
         hidden_assumption(entry.joint, entry.poses_on_constraint(), published, generated, entry.poses());
-    if (!hidden.empty()) difference.sentence += fmt::format("; equal only where {}", hidden);
+    if (!hidden.empty()) difference.sentence += fmt::format("; equal where {}", hidden);
     const bool unsaid = item.kind == HandItem::Kind::claim || hidden == "C = 0";
     if (!hidden.empty() && unsaid) difference.kind = "undeclared assumption";
   }

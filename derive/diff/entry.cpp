@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "derive/diff/terms.hpp"
 #include "derive/expression/symbols.hpp"
 #include "derive/numbers/modular.hpp"
 
@@ -109,6 +110,16 @@ void prepare_poses(Entry& entry, const std::vector<Part>& parts) {
   }
 }
 
+void take_order(Entry& entry, Part& part) {
+  std::vector<ScalarRow> rows = rows_in_order_of(entry, part);
+  if (rows.empty()) return;
+  std::string names;
+  for (const ScalarRow& row : rows) names += (names.empty() ? "`" : ", `") + row.name + "`";
+  entry.verdict.remarks.push_back("its rows stand in the order " + names);
+  part.rows = std::move(rows);
+  part.generated = generated_for(entry, part.rows);
+}
+
 // The scope of an entry, if it is not all rows of the spec as written: " of pin", " with t on a".
 std::string scope_of(const Entry& entry, const Part& part) {
   std::string scope;
@@ -145,14 +156,15 @@ void judge_item(Entry& entry, const Part& part, const HandItem& item) {
   if (item.kind == HandItem::Kind::bound) return judge_bound(entry, part, item);
   if (item.kind == HandItem::Kind::claim) return judge_claim(entry, item);
   if (item.kind != HandItem::Kind::quantity) return;
-  const std::size_t before = entry.verdict.differences.size();
+  const std::size_t before = entry.verdict.differences.size(), told = entry.verdict.remarks.size();
   const bool others_need_assumptions = std::exchange(entry.needs_assumptions, false);
   if (item.what == "C") judge_C(entry, part, item);
   else if (item.what == "J") judge_J(entry, part, item);
   else if (item.what == "K") judge_K(entry, part, item);
   else judge_Cdot(entry, part, item);
-  // An assumption may simplify the published formula: its cost is then no fair comparison.
-  if (entry.verdict.differences.size() == before && !entry.needs_assumptions) add_costs(entry, part, item);
+  // An assumption may simplify the published formula, a remark tells of terms that it adds: no fair comparison.
+  const bool plain = entry.verdict.differences.size() == before && entry.verdict.remarks.size() == told;
+  if (plain && !entry.needs_assumptions) add_costs(entry, part, item);
   entry.needs_assumptions = entry.needs_assumptions || others_need_assumptions;
 }
 
@@ -190,6 +202,19 @@ std::vector<Expr> Entry::columns_in_form(const std::vector<JacobianEntry>& J) co
     columns.insert(columns.end(), own.begin(), own.end());
   }
   return columns;
+}
+
+Expr Entry::as_assumed(Expr e) const {
+  if (!assumed) return e;
+  std::map<const Node*, Expr> replacements;
+  for (const HandAssumption& a : hand.assumptions) {
+    const Expr left = a.left_expression, right = a.right_expression;
+    if (!left || !right || left->vector != right->vector) continue;
+    // A symbol that the entry made up for this stays out of the words.
+    if (left->kind == Kind::symbol && free_symbols(right).empty()) replacements.emplace(&*left, right);
+    else if (right->kind == Kind::symbol && free_symbols(left).empty()) replacements.emplace(&*right, left);
+  }
+  return substitute(e, replacements);
 }
 
 // Poses with C = 0.
@@ -253,15 +278,13 @@ Judgement judge(Entry entry) {
     parts.push_back({&hand, rows, generated_for(entry, rows), {}});
   }
   prepare_poses(entry, parts);
+  for (Part& part : parts) take_order(entry, part);
   find_signs(entry, parts);
   for (const Part& part : parts) {
     for (const HandItem& item : part.hand->items) judge_item(entry, part, item);
     judge_updates(entry, part);
   }
-  const bool opposite = std::any_of(parts.begin(), parts.end(), [](const Part& part) {
-    return std::count(part.sign.begin(), part.sign.end(), -1) > 0;
-  });
-  if (opposite) verdict.remarks.push_back("C has the opposite sign: J changes its sign, K does not");
+  if (const std::string remark = remark_on_signs(parts); !remark.empty()) verdict.remarks.push_back(remark);
   if (entry.only_by_numbers) verdict.remarks.push_back("equal at 12 random poses; exact arithmetic did not decide");
   conclude(entry);
   return verdict;

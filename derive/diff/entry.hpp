@@ -36,6 +36,8 @@ struct Entry {
   const Poses& poses() const { return assumed ? *assumed : *anywhere; }
   const Poses& poses_on_constraint();
   Confirm confirm() const { return {joint, immovable, poses(), form}; }
+  // With the leaves that the entry assumes to be something else in terms of that: `ratio = 1`, `fb.x = fa.x`.
+  Expr as_assumed(Expr e) const;
   // True if both are equal everywhere, or under the entry's assumptions.
   bool equal(Expr published, Expr generated);
 };
@@ -45,14 +47,21 @@ Entry read_entry(const HandEntryAst& ast, const HandFile& file, const ReadResult
                  const std::map<std::string, std::string>& changed_anchors, Diagnostics& diagnostics);
 Judgement judge(Entry entry);
 
+// The rows in the order of the source; empty if that is the spec's, or if in no order all quantities of the part agree.
+std::vector<ScalarRow> rows_in_order_of(const Entry& entry, const Part& part);
+
 // The sign of C is the author's choice, row by row. All parts together decide it.
 void find_signs(const Entry& entry, std::vector<Part>& parts);
+std::string remark_on_signs(const std::vector<Part>& parts);  // empty if all have the spec's
 
 // Each adds its differences to the verdict.
 void judge_C(Entry& entry, const Part& part, const HandItem& item);
 void judge_Cdot(Entry& entry, const Part& part, const HandItem& item);  // also b = -Cdot
 void judge_J(Entry& entry, const Part& part, const HandItem& item);
 void judge_K(Entry& entry, const Part& part, const HandItem& item);
+// The generated quantity, with the terms that a solver adds on purpose where the published one has them. Adds remarks.
+Matrix without_baumgarte(Entry& entry, const Part& part, const HandItem& item, Matrix generated);
+Matrix without_softness(Entry& entry, const Part& part, const HandItem& item, Matrix generated);
 void judge_claim(Entry& entry, const HandItem& item);
 void judge_problem(Entry& entry, const Part& part, const HandItem& item);  // a formula without a value
 void judge_updates(Entry& entry, const Part& part);
@@ -70,6 +79,14 @@ struct Sides {
   std::vector<Group> rows, columns;
 };
 void compare(Entry& entry, const Sides& sides, const std::function<Difference(int row, int column)>& difference);
+// One slip that explains all differences of a matrix: "K^-1 stands where K belongs". `generated`: in the source's
+// signs.
+struct Slip {
+  std::string kind, sentence;
+};
+// `part`: null for a claim.
+std::optional<Slip> slip_of_whole(const Entry& entry, const Part* part, const std::string& what,
+                                  const Matrix& published, const Matrix& generated);
 // "w_a", "v_b.x"; of its change in positions "x_b.x".
 std::string column_name(const Joint& joint, Form form, int column, bool positions = false);
 // In space the columns of one velocity, or of its change, form a group.

@@ -1,30 +1,77 @@
 // Judgements as text for people and as JSON for programs.
+#include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "derive/diff/diff.hpp"
 
 namespace cdot::derive {
 
-std::string to_text(const DiffReport& report, bool all) {
+namespace {
+
+constexpr std::size_t widest = 120;
+const std::string indent(9, ' '), further(11, ' ');
+
+// The text in lines of at most `widest` characters, at most `most` of them; the last one tells of more.
+std::vector<std::string> in_lines(const std::string& first, const std::string& text, std::size_t most) {
+  std::vector<std::string> lines;
+  std::string line = first;
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::string word = text.substr(at, end - at);
+    const bool empty = line.find_first_not_of(' ') == line.npos;
+    if (!empty && line.size() + 1 + word.size() > widest) {
+      lines.push_back(line);
+      line = further;
+    }
+    line += (line.find_first_not_of(' ') == line.npos ? "" : " ") + word;
+    at = end + 1;
+  }
+  lines.push_back(line);
+  bool cut = lines.size() > most;
+  lines.resize(std::min(lines.size(), most));
+  for (std::string& one : lines) {
+    if (one.size() <= widest) continue;
+    one.resize(widest - 4);
+    cut = true;
+  }
+  if (cut) lines.back() = lines.back().substr(0, widest - 4) + " ...";
+  return lines;
+}
+
+// The place, the kind and what belongs there, then the formulas if a line holds them, and the numbers: three lines.
+std::string brief(const Difference& d) {
+  constexpr std::size_t most = 3;
+  std::vector<std::string> lines = in_lines(indent, fmt::format("{}: {}", d.kind, d.sentence), most - 1);
+  const std::string formulas = fmt::format("{}generated {}; published {}", further, d.generated, d.hand);
+  if (lines.size() + 1 < most && !d.generated.empty() && formulas.size() <= widest) lines.push_back(formulas);
+  if (!d.confirmed.empty()) lines.push_back(in_lines(further, d.confirmed, 1).front());
+  return fmt::format("{}\n", fmt::join(lines, "\n"));
+}
+
+std::string full(const Difference& d) {
+  std::string s = fmt::format("{}{}: {}\n", indent, d.kind, d.sentence);
+  if (!d.generated.empty()) s += fmt::format("{}generated   {}\n", further, d.generated);
+  s += fmt::format("{}published   {}\n", further, d.hand);
+  if (!d.difference.empty()) s += fmt::format("{}difference  {}\n", further, d.difference);
+  return s + fmt::format("{}{}\n", further, d.confirmed);
+}
+
+}  // namespace
+
+std::string to_text(const DiffReport& report, const ReportOptions& options) {
   std::string s;
   for (const Judgement& j : report.judgements) {
-    if (!all && j.agreement != Agreement::differs) continue;
+    if (!options.all && j.agreement != Agreement::differs) continue;
     s += fmt::format("{:<8} {:<10} {}\n", j.id, name_of(j.agreement), j.title);
-    if (!j.condition.empty()) {
-      s += fmt::format("         {} {}\n", j.agreement == Agreement::listed ? "not judged:" : "if", j.condition);
-    }
-    if (j.agreement == Agreement::differs) {
-      s += fmt::format("         {}:{}, after {}\n", report.file->path, report.file->line(j.where.begin), j.source);
-    }
-    for (const Difference& d : j.differences) {
-      s += fmt::format("         {}: {}\n", d.kind, d.sentence);
-      if (!d.generated.empty()) s += fmt::format("           generated   {}\n", d.generated);
-      s += fmt::format("           published   {}\n", d.hand);
-      if (!d.difference.empty()) s += fmt::format("           difference  {}\n", d.difference);
-      s += fmt::format("           {}\n", d.confirmed);
-    }
-    for (const std::string& remark : j.remarks) s += fmt::format("         note: {}\n", remark);
+    if (!j.condition.empty())
+      s += fmt::format("{}{} {}\n", indent, j.agreement == Agreement::listed ? "not judged:" : "if", j.condition);
+    if (j.agreement == Agreement::differs)
+      s += fmt::format("{}{}:{}, after {}\n", indent, report.file->path, report.file->line(j.where.begin), j.source);
+    for (const Difference& d : j.differences) s += options.full ? full(d) : brief(d);
+    for (const std::string& remark : j.remarks) s += fmt::format("{}note: {}\n", indent, remark);
   }
   return s;
 }

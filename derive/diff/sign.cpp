@@ -39,14 +39,30 @@ void add_misfit(Misfit& misfit, const Entry& entry, const Part& part, const Hand
   }
 }
 
-// From K alone: D K D with the D = diag(+-1) that fits best; the first row's sign is free.
+// The rows of one vector equation have one sign: its C is the author's choice as a whole. Others are alone.
+std::vector<std::size_t> first_of_equation(const std::vector<ScalarRow>& rows) {
+  std::vector<std::size_t> first;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool joins = i > 0 && rows[i].row && rows[i].row == rows[i - 1].row;
+    first.push_back(joins ? first.back() : i);
+  }
+  return first;
+}
+
+// From K alone: D K D with the D = diag(+-1) that fits best; the first equation's sign is free.
 std::vector<int> signs_of_mass(const Entry& entry, const Part& part) {
   const Matrix& K = part.generated.K;
+  const std::vector<std::size_t> first = first_of_equation(part.rows);
   int best = -1;
   std::vector<int> kept = part.sign;
   for (unsigned pattern = 0; pattern < (1u << part.rows.size()); pattern += 2) {
     std::vector<int> sign;
-    for (std::size_t i = 0; i < part.rows.size(); ++i) sign.push_back((pattern >> i) & 1 ? -1 : 1);
+    bool together = true;
+    for (std::size_t i = 0; i < part.rows.size(); ++i) {
+      sign.push_back((pattern >> i) & 1 ? -1 : 1);
+      together = together && sign[i] == sign[first[i]];
+    }
+    if (!together) continue;
     int agreed = 0;
     for (const HandItem& item : part.hand->items) {
       if (item.kind != HandItem::Kind::quantity || item.what != "K" || !item.value) continue;
@@ -66,13 +82,14 @@ std::vector<int> signs_of_mass(const Entry& entry, const Part& part) {
 }  // namespace
 
 void find_signs(const Entry& entry, std::vector<Part>& parts) {
-  std::map<std::string, std::array<Misfit, 2>>
-      evidence;  // by row, with the sign 1 and -1; several parts may have a row
+  // By the first row of an equation, with the sign 1 and -1; several parts may have a row.
+  std::map<std::string, std::array<Misfit, 2>> evidence;
   for (const Part& part : parts) {
+    const std::vector<std::size_t> first = first_of_equation(part.rows);
     for (std::size_t row = 0; row < part.rows.size(); ++row) {
       for (const HandItem& item : part.hand->items) {
         if (item.kind != HandItem::Kind::quantity || item.what == "K") continue;
-        auto& [plus, minus] = evidence[part.rows[row].name];
+        auto& [plus, minus] = evidence[part.rows[first[row]].name];
         add_misfit(plus, entry, part, item, row, 1);
         add_misfit(minus, entry, part, item, row, -1);
       }
@@ -80,13 +97,32 @@ void find_signs(const Entry& entry, std::vector<Part>& parts) {
   }
   for (Part& part : parts) {
     bool any = false;
-    for (const ScalarRow& row : part.rows) {
-      const auto found = evidence.find(row.name);
+    for (const std::size_t first : first_of_equation(part.rows)) {
+      const auto found = evidence.find(part.rows[first].name);
       any = any || found != evidence.end();
       part.sign.push_back(found != evidence.end() && found->second[1] < found->second[0] ? -1 : 1);
     }
     if (!any) part.sign = signs_of_mass(entry, part);
   }
+}
+
+// Of which equations C has the opposite sign, and the consequence.
+std::string remark_on_signs(const std::vector<Part>& parts) {
+  std::string opposite;
+  bool all = true;
+  for (const Part& part : parts) {
+    for (std::size_t i = 0; i < part.rows.size(); ++i) {
+      const bool turned = part.sign[i] < 0;
+      all = all && turned;
+      const std::string& name = part.rows[i].row ? part.rows[i].row->name : part.rows[i].name;
+      if (turned && opposite.find("`" + name + "`") == opposite.npos)
+        opposite += (opposite.empty() ? "`" : ", `") + name + "`";
+    }
+  }
+  if (opposite.empty()) return "";
+  return all ? "C has the opposite sign: J changes its sign, K does not"
+             : "C of " + opposite +
+                   " has the opposite sign: its rows of J change their sign, and K between it and others";
 }
 
 }  // namespace cdot::derive

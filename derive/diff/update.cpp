@@ -124,10 +124,11 @@ void judge_updates(Entry& entry, const Part& part) {
     if (confirmed.empty()) confirmed = entry.confirm().after(level, part.rows, change);
     const std::string column = column_name(entry.joint, Form::global, c, level == UpdateLevel::positions);
     const Place place{"update", "", column, {}, {}, &entry.joint};
-    Difference d = describe_difference(place, published.at(0, c), generated.at(0, c), entry.poses());
+    const Expr hand = entry.as_assumed(published.at(0, c)), right = entry.as_assumed(generated.at(0, c));
+    Difference d = describe_difference(place, hand, right, entry.poses());
     d.confirmed = confirmed;
     if (only_size && d.kind == "factor") d.sentence += "; the direction of the impulse is right, its size is not";
-    return finished(entry, *said_by[static_cast<std::size_t>(c)], std::move(d), published.at(0, c), generated.at(0, c));
+    return finished(entry, *said_by[static_cast<std::size_t>(c)], std::move(d), hand, right);
   });
 }
 

@@ -49,12 +49,6 @@ std::string where_from(const Contribution& source, const Joint& joint) {
   return fmt::format("{} moves with {}", s, body);
 }
 
-// A confusion of two bodies, or arms, in one class of symbols.
-struct Exchange {
-  std::map<const Node*, Expr> replacements;  // that undo it
-  std::string words;
-};
-
 // The symbols of one body by class: masses, inertias, velocities.
 std::vector<std::vector<Expr>> symbols_by_class(const Joint& joint, std::size_t body) {
   const BodySymbols s = body_symbols(joint, static_cast<int>(body));
@@ -80,24 +74,6 @@ void add_exchanges(const std::vector<Expr>& ours, const std::vector<Expr>& their
   both.replacements.insert(back.replacements.begin(), back.replacements.end());
   both.words = fmt::format("{} and {} are exchanged", one, other);
   all.insert(all.end(), {forth, back, both});
-}
-
-std::vector<Exchange> exchanges(const Joint& joint) {
-  std::vector<Exchange> all;
-  for (std::size_t a = 0; a < joint.bodies.size(); ++a) {
-    for (std::size_t b = a + 1; b < joint.bodies.size(); ++b) {
-      const auto ours = symbols_by_class(joint, a), theirs = symbols_by_class(joint, b);
-      for (std::size_t c = 0; c < ours.size(); ++c) add_exchanges(ours[c], theirs[c], all);
-    }
-  }
-  std::vector<Expr> arms;
-  for (const Parameter& p : joint.parameters) {
-    if (p.kind == ParameterKind::point && p.body >= 0) arms.push_back(p.symbol);
-  }
-  for (std::size_t i = 0; i < arms.size(); ++i) {
-    for (std::size_t j = i + 1; j < arms.size(); ++j) add_exchanges({arms[i]}, {arms[j]}, all);
-  }
-  return all;
 }
 
 // Names a confusion of bodies that explains the difference; empty if none does.
@@ -198,6 +174,24 @@ Explained explained(const Place& place, Expr hand, Expr generated, Expr differen
 }
 
 }  // namespace
+
+std::vector<Exchange> exchanges(const Joint& joint) {
+  std::vector<Exchange> all;
+  for (std::size_t a = 0; a < joint.bodies.size(); ++a) {
+    for (std::size_t b = a + 1; b < joint.bodies.size(); ++b) {
+      const auto ours = symbols_by_class(joint, a), theirs = symbols_by_class(joint, b);
+      for (std::size_t c = 0; c < ours.size(); ++c) add_exchanges(ours[c], theirs[c], all);
+    }
+  }
+  std::vector<Expr> arms;
+  for (const Parameter& p : joint.parameters) {
+    if (p.kind == ParameterKind::point && p.body >= 0) arms.push_back(p.symbol);
+  }
+  for (std::size_t i = 0; i < arms.size(); ++i) {
+    for (std::size_t j = i + 1; j < arms.size(); ++j) add_exchanges({arms[i]}, {arms[j]}, all);
+  }
+  return all;
+}
 
 std::string name_of(const Place& place) {
   const auto is_digit = [](const std::string& s) { return s.find_first_not_of("0123456789") == s.npos; };

@@ -1,6 +1,7 @@
 // Names the error in a published expression: its kind, and a sentence with the reason for the right one.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,13 @@ struct Place {
   std::vector<Expr> elsewhere;        // the generated entries of the other bodies in the same row
   const Joint* joint = nullptr;
 };
+
+// A confusion of two bodies, or arms, in one class of symbols: masses, inertias, velocities.
+struct Exchange {
+  std::map<const Node*, Expr> replacements;  // that undo it, or make it
+  std::string words;                         // "rb stands where ra belongs"
+};
+std::vector<Exchange> exchanges(const Joint& joint);
 
 // "J, row 1, w_b"; "K, row 2, column 1"; "Cdot, row line".
 std::string name_of(const Place& place);

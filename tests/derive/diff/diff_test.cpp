@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(
                            "w_b", "missing term", "-cross(rb + u, t)", "-cross(rb, t)", "cross(u, t)",
                            "J, row 1, w_b: the hand derivation lacks -cross(u, t): t turns with b "
                            "(dt/dt = w_b x t), so the "
-                           "product rule has a term for it; equal only where u = 0"},
+                           "product rule has a term for it; equal where u = 0"},
                     Lesson{"AFlippedSign", "[ t', cross(ra, t), -t', -cross(rb - u, t) ; 0, 1, 0, -1 ]", "w_b", "sign",
                            "-cross(rb + u, t)", "-cross(rb - u, t)", "2*cross(u, t)",
                            "J, row 1, w_b: the term -cross(u, t) has the wrong sign: t turns with "
@@ -85,9 +85,9 @@ TEST(Diff, NamesTheKindOfEveryMistake) {
        "inv_I_b stands "
        "where inv_I_a belongs"},
       {"line", "  claim C: dot(t, u) = 0\n", "undeclared assumption",
-       "claim on C: nothing belongs here; equal only where C = 0"},
+       "claim on C: nothing belongs here; equal where C = 0"},
       {"pulley", "  J = -[ na', cross(ra, na), nb', ratio * cross(rb, nb) ]\n", "factor",
-       "J, row 1, v_b.x: the factor ratio is missing in -nb.x; equal only where ratio = 1"},
+       "J, row 1, v_b.x: the factor ratio is missing in -nb.x; equal where ratio = 1"},
       {"line", "  Cdot = dot(v(pa), t) - dot(v(b), t) + cross(rb + u, t) * v(b)\n", "factor",
        "Cdot, row 1: a number and a vector cannot be added or compared: `cross(rb + u, t) * v(b)`"},
   };
@@ -153,10 +153,10 @@ TEST(Diff, LooksForConditionsWithinWhatIsAssumed) {
   const std::string K = "  K = 1/I(b) + abs(ratio)/I(a)\n";
   const Judgement anywhere = judged("angle_ratio", K);
   ASSERT_EQ(anywhere.differences.size(), 1u);
-  EXPECT_NE(anywhere.differences[0].sentence.find("equal only where ratio = 1"), std::string::npos);
+  EXPECT_NE(anywhere.differences[0].sentence.find("equal where ratio = 1"), std::string::npos);
   const Judgement negative = judged("angle_ratio", "  free s\n  assume ratio = -s\n" + K);
   ASSERT_EQ(negative.differences.size(), 1u);
-  EXPECT_NE(negative.differences[0].sentence.find("equal only where ratio = -1"), std::string::npos);
+  EXPECT_NE(negative.differences[0].sentence.find("equal where ratio = -1"), std::string::npos);
 }
 
 // For vector rows in world axes a common rotation gives J v = w x C, which is 0 on C = 0.

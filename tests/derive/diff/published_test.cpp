@@ -111,7 +111,7 @@ TEST(Published, SentencesNameWhatIsWrong) {
   const std::map<std::string, std::string> expected = {
       {"GEA-5", "missing term: K, row 1, column 1: the hand derivation lacks 2*inv_I_c*ratio"},
       {"PUL-4",
-       "factor: Cdot, row 1: the factor w_unnamed stands where w_a belongs; equal only where "
+       "factor: Cdot, row 1: the factor w_unnamed stands where w_a belongs; equal where "
        "w_unnamed = w_a"},
       {"PRI-12", "sign: C, row angular: it has theta_initial = -phi where phi belongs"},
       {"WHL-2",
@@ -119,7 +119,7 @@ TEST(Published, SentencesNameWhatIsWrong) {
        "ay) * v(b)`; with "
        "w(b) in place of v(b) it is right"},
       {"ANG-6",
-       "factor: update, w_a: the factor sign stands where ratio belongs; equal only where ratio = "
+       "factor: update, w_a: the factor sign stands where ratio belongs; equal where ratio = "
        "1"},
       {"ANG-9",
        "factor: update, w_a: the factor 1/k stands where ratio/(inv_I_b + inv_I_a*ratio^2) "

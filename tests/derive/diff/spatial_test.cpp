@@ -34,7 +34,7 @@ Judgement judged_beside(const std::string& spec, const std::string& items) {
       judge(folder / "own.hand", derive::SpecsFolder(specs_folder()).read(folder / "own.joint"));
   fs::remove_all(folder);
   EXPECT_FALSE(report.diagnostics.has_errors()) << render(*report.file, report.diagnostics);
-  std::printf("%s\n", to_text(report, true).c_str());
+  std::printf("%s\n", to_text(report, {.all = true}).c_str());
   return report.judgements.empty() ? Judgement{} : report.judgements[0];
 }
 
@@ -113,7 +113,7 @@ TEST(Spatial, TheTermOfATurningDirectionIsNamed) {
   EXPECT_EQ(j.differences[0].sentence,
             "J, row 1, w_a: the hand derivation lacks -cross(d, n): n turns with a (dn/dt = w_a x "
             "n), so the product "
-            "rule has a term for it; equal only where d = 0");
+            "rule has a term for it; equal where d = 0");
   ASSERT_EQ(j.remarks.size(), 1u);
   EXPECT_NE(j.remarks[0].find("angular momentum"), std::string::npos);
 }

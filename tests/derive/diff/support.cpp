@@ -30,7 +30,7 @@ derive::Judgement judged(const std::string& joint, const std::string& items) {
     ADD_FAILURE() << "the entry was not judged";
     return {};
   }
-  std::printf("%s\n", to_text(report, true).c_str());
+  std::printf("%s\n", to_text(report, {.all = true}).c_str());
   return report.judgements[0];
 }
 

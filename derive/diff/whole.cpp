@@ -1,0 +1,380 @@
+// One slip that explains all differences of a published matrix: an order, an inverse, a frame, a factor. A reading
+// turns the generated numbers into those that such a slip gives; it is named if these are the published ones at every
+// pose.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <numeric>
+
+#include "derive/diff/entry.hpp"
+#include "derive/expression/symbols.hpp"
+#include "derive/numbers/elimination.hpp"
+
+namespace cdot::derive {
+namespace {
+
+constexpr double round_off = 1e-8;
+constexpr int most_rows = 6;  // whose orders are tried
+
+using List = std::vector<double>;
+using Order = std::vector<int>;
+
+bool same(double a, double b) { return std::abs(a - b) <= round_off * (1 + std::abs(a) + std::abs(b)); }
+bool same(const List& a, const List& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) { return same(x, y); });
+}
+
+// "1 and 2", "1, 2 and 3"
+std::string listed(const std::vector<std::string>& names) {
+  if (names.size() == 1) return names[0];
+  return fmt::format("{} and {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
+}
+
+// Calls `tried(order)` with all orders of 0 ... n-1 but the first, until it returns true.
+template <class Tried>
+bool any_order(int n, Tried tried) {
+  Order order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), 0);
+  while (std::next_permutation(order.begin(), order.end()))
+    if (tried(order)) return true;
+  return false;
+}
+
+// "rows 1 and 2 are exchanged", "the columns of a and b are exchanged", "rows stand in the order 2, 3, 1".
+std::string words_of(const Order& order, const std::string& what, const std::vector<std::string>& names) {
+  std::vector<std::string> moved, all;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const auto from = static_cast<std::size_t>(order[i]);
+    all.push_back(names[from]);
+    if (from != i) moved.push_back(names[i]);
+  }
+  if (moved.size() == 2) return fmt::format("{} {} are exchanged", what, listed(moved));
+  return fmt::format("{} stand in the order {}", what, fmt::join(all, ", "));
+}
+
+class Whole {
+ public:
+  Whole(const Entry& entry, const Part* part, const std::string& what, const Matrix& published, const Matrix& generated)
+      : entry_(entry), part_(part), what_(what), hand_(published), mine_(generated) {
+    for (const Sample& sample : entry.poses().samples()) {
+      published_.push_back(values_at(published.entries, sample));
+      generated_.push_back(values_at(generated.entries, sample));
+    }
+  }
+
+  std::optional<Slip> slip() const {
+    for (const auto reading :
+         {&Whole::other_rows, &Whole::other_columns, &Whole::other_form, &Whole::inverse, &Whole::wrong_sign,
+          &Whole::masses, &Whole::turned_inertia, &Whole::lever, &Whole::other_body, &Whole::multiple})
+      if (std::optional<Slip> found = (this->*reading)()) return found;
+    return {};
+  }
+
+ private:
+  std::string row_name(int row) const { return part_ ? name_of_row(*part_, row) : std::to_string(row + 1); }
+  std::size_t at(int row, int column) const { return static_cast<std::size_t>(row * mine_.columns + column); }
+
+  // True if the published numbers are `expected(numbers, pose)` of the generated ones.
+  template <class Expected>
+  bool is(Expected expected) const {
+    for (std::size_t i = 0; i < published_.size(); ++i)
+      if (!same(published_[i], expected(i))) return false;
+    return !published_.empty();
+  }
+  // The generated matrix with its rows and columns in another order.
+  List reordered(const List& from, const Order* rows, const Order* columns) const {
+    List to;
+    for (int r = 0; r < mine_.rows; ++r)
+      for (int c = 0; c < mine_.columns; ++c)
+        to.push_back(from[at(rows ? (*rows)[static_cast<std::size_t>(r)] : r,
+                             columns ? (*columns)[static_cast<std::size_t>(c)] : c)]);
+    return to;
+  }
+
+  std::optional<Slip> other_rows() const {
+    std::optional<Slip> found;
+    if (mine_.rows < 2 || mine_.rows > most_rows) return found;
+    std::vector<std::string> names;
+    for (int r = 0; r < mine_.rows; ++r) names.push_back(row_name(r));
+    any_order(mine_.rows, [&](const Order& order) {
+      const Order* const columns = what_ == "K" ? &order : nullptr;
+      if (!is([&](std::size_t i) { return reordered(generated_[i], &order, columns); })) return false;
+      found = Slip{"order", words_of(order, what_ == "K" ? "rows and columns" : "rows", names)};
+      return true;
+    });
+    return found;
+  }
+
+  // Of J: bodies in another order; of each body, w before v.
+  std::optional<Slip> other_columns() const {
+    if (what_ != "J") return {};
+    const int bodies = static_cast<int>(entry_.joint.bodies.size()), width = entry_.width();
+    const auto matches = [&](auto column) {
+      Order columns;
+      for (int c = 0; c < mine_.columns; ++c) columns.push_back(column(c / width, c % width));
+      return is([&](std::size_t i) { return reordered(generated_[i], nullptr, &columns); });
+    };
+    std::optional<Slip> found;
+    any_order(bodies, [&](const Order& order) {
+      if (!matches([&](int b, int k) { return order[static_cast<std::size_t>(b)] * width + k; })) return false;
+      found = Slip{"order", words_of(order, "the columns of", entry_.joint.bodies)};
+      return true;
+    });
+    if (found) return found;
+    const int turns = width - entry_.joint.dimension;
+    if (matches([&](int b, int k) { return b * width + (k < turns ? entry_.joint.dimension + k : k - turns); }))
+      found = Slip{"order", "the columns of w stand before those of v"};
+    return found;
+  }
+
+  // Of J in space: the columns for angular velocities along other axes. w . v = w' . v' with w' = A^T w.
+  std::optional<Slip> other_form() const {
+    if (what_ != "J" || entry_.joint.dimension == 2 || entry_.form == Form::euler) return {};
+    const bool to_local = entry_.form == Form::global;
+    const auto turned = [&](std::size_t pose) {
+      List to = generated_[pose];
+      for (int r = 0; r < mine_.rows; ++r)
+        for (int c = 0; c < mine_.columns; c += 6) {
+          const auto axes = axes_of(entry_.poses().samples()[pose].bodies[static_cast<std::size_t>(c / 6)].e);
+          for (std::size_t i = 0; i < 3; ++i) {
+            double& component = to[at(r, c + 3) + i];
+            component = 0;
+            for (std::size_t k = 0; k < 3; ++k)
+              component += (to_local ? axes[i][k] : axes[k][i]) * generated_[pose][at(r, c + 3) + k];
+          }
+        }
+      return to;
+    };
+    if (!is(turned)) return {};
+    return Slip{"frame", fmt::format("its columns of w are for angular velocities along the axes of {}: say `form {}`",
+                                     to_local ? "the bodies" : "the world", to_local ? "local" : "global")};
+  }
+
+  std::optional<Slip> inverse() const {
+    if (what_ != "K") return {};
+    const auto inverted = [&](std::size_t pose) {
+      const auto n = static_cast<std::size_t>(mine_.rows);
+      std::vector<List> rows(n);
+      for (std::size_t r = 0; r < n; ++r)
+        rows[r].assign(generated_[pose].begin() + static_cast<std::ptrdiff_t>(r * n),
+                       generated_[pose].begin() + static_cast<std::ptrdiff_t>((r + 1) * n));
+      List inverse(n * n);
+      for (std::size_t c = 0; c < n; ++c) {
+        List unit(n);
+        unit[c] = 1;
+        const List column = solved(rows, unit, [](double a, double pivot) { return a / pivot; });
+        for (std::size_t r = 0; r < n; ++r) inverse[r * n + c] = column[r];
+      }
+      return inverse;
+    };
+    if (!is(inverted)) return {};
+    return Slip{"inverse", "this is K^-1, the inverse of K"};
+  }
+
+  // True if the published numbers are the generated ones at samples changed by `change`.
+  template <class Change>
+  bool at_changed(Change change) const {
+    return is([&](std::size_t i) {
+      Sample sample = entry_.poses().samples()[i];
+      change(sample);
+      return values_at(mine_.entries, sample);
+    });
+  }
+
+  std::vector<std::string> tensor_names(const std::string& body) const {
+    if (entry_.joint.dimension == 2) return {"inv_I_" + body};
+    std::vector<std::string> names;
+    for (const char* ij : {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"}) {
+      std::string key(ij);
+      std::sort(key.begin(), key.end());
+      names.push_back("inv_I_" + body + "_" + key);
+    }
+    return names;
+  }
+  // The inverse inertia of a body, 1 or 9 numbers; empty if nothing here depends on it.
+  List inverse_inertia(const Sample& sample, const std::string& body) const {
+    List numbers;
+    for (const std::string& name : tensor_names(body)) {
+      const auto found = sample.scalars.find(name);
+      if (found == sample.scalars.end()) return {};
+      numbers.push_back(found->second);
+    }
+    return numbers;
+  }
+  template <class Changed>
+  void change_inertia(Sample& sample, Changed changed) const {
+    for (std::size_t b = 0; b < entry_.joint.bodies.size(); ++b) {
+      const std::string& body = entry_.joint.bodies[b];
+      const List before = inverse_inertia(sample, body);
+      if (before.empty()) continue;
+      const List after = changed(before, b);
+      const std::vector<std::string> names = tensor_names(body);
+      for (std::size_t k = 0; k < names.size(); ++k) sample.scalars[names[k]] = after[k];
+    }
+  }
+  static List inverted_tensor(const List& I) {
+    if (I.size() == 1) return {1 / I[0]};
+    const auto cofactor = [&](std::size_t r, std::size_t c) {
+      const std::size_t i = (r + 1) % 3, j = (r + 2) % 3, k = (c + 1) % 3, l = (c + 2) % 3;
+      return I[3 * i + k] * I[3 * j + l] - I[3 * i + l] * I[3 * j + k];
+    };
+    const double det = I[0] * cofactor(0, 0) + I[1] * cofactor(0, 1) + I[2] * cofactor(0, 2);
+    List inverse;
+    for (std::size_t r = 0; r < 3; ++r)
+      for (std::size_t c = 0; c < 3; ++c) inverse.push_back(cofactor(c, r) / det);
+    return inverse;
+  }
+
+  // Of one body: its columns of J, or the terms of its velocities; all of them, those of v or those of w.
+  std::optional<Slip> wrong_sign() const {
+    const int width = entry_.width(), linear = entry_.joint.dimension;
+    for (std::size_t b = 0; b < entry_.joint.bodies.size(); ++b)
+      for (const auto& [v, w, words] : {std::tuple(true, true, "of body {}"), std::tuple(true, false, "of v_{}"),
+                                        std::tuple(false, true, "of w_{}")}) {
+        const auto turned = [&, v = v, w = w](std::size_t pose) {
+          List to = generated_[pose];
+          for (int r = 0; r < mine_.rows; ++r)
+            for (int k = 0; k < width; ++k)
+              if (k < linear ? v : w) to[at(r, static_cast<int>(b) * width + k)] *= -1;
+          return to;
+        };
+        const auto reversed = [&, v = v, w = w](Sample& sample) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            if (v) sample.bodies[b].v[k] *= -1;
+            if (w) sample.bodies[b].w[k] *= -1;
+          }
+        };
+        if (what_ == "J" ? !is(turned) : !at_changed(reversed)) continue;
+        const std::string of = fmt::format(fmt::runtime(words), entry_.joint.bodies[b]);
+        return Slip{"sign", fmt::format("the {} {} have the wrong sign", what_ == "J" ? "columns" : "terms", of)};
+      }
+    return {};
+  }
+
+  std::optional<Slip> masses() const {
+    const auto invert_masses = [&](Sample& sample) {
+      for (const std::string& body : entry_.joint.bodies)
+        if (const auto m = sample.scalars.find("inv_m_" + body); m != sample.scalars.end()) m->second = 1 / m->second;
+    };
+    const auto invert_inertia = [&](Sample& sample) {
+      change_inertia(sample, [](const List& I, std::size_t) { return inverted_tensor(I); });
+    };
+    if (at_changed(invert_masses)) return Slip{"inverse", "masses m stand where 1/m belongs"};
+    if (at_changed(invert_inertia))
+      return Slip{"inverse", entry_.joint.dimension == 2 ? "inertias I stand where 1/I belongs"
+                                                         : "inertias I stand where I^-1 belongs"};
+    if (at_changed([&](Sample& sample) { invert_masses(sample), invert_inertia(sample); }))
+      return Slip{"inverse", "masses and inertias stand where their inverses belong: J M J^T in place of J M^-1 J^T"};
+    return {};
+  }
+
+  // Of W = A B A^T with B in the body's axes: B itself, or A^T W A in place of W where W is meant in body axes.
+  std::optional<Slip> turned_inertia() const {
+    if (entry_.joint.dimension == 2) return {};
+    // R W R^T, or R^T W R
+    const auto turned = [&](Sample& sample, int times) {
+      change_inertia(sample, [&](List W, std::size_t b) {
+        const auto axes = axes_of(sample.bodies[b].e);  // columns of A
+        for (int t = 0; t < times; ++t) {
+          List next(9);
+          for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t j = 0; j < 3; ++j)
+              for (std::size_t k = 0; k < 3; ++k)
+                for (std::size_t l = 0; l < 3; ++l) next[3 * i + j] += axes[i][k] * W[3 * k + l] * axes[j][l];
+          W = next;
+        }
+        return W;
+      });
+    };
+    if (at_changed([&](Sample& sample) { turned(sample, 1); }))
+      return Slip{"frame", "the inertia is left in the axes of its body: A^T I^-1 A stands where I^-1 belongs"};
+    if (at_changed([&](Sample& sample) { turned(sample, 2); }))
+      return Slip{"frame", "the inertia is turned to the wrong side: A^T I^-1 A in place of A I^-1 A^T"};
+    return {};
+  }
+
+  // An arm, or a name that the spec gives to a vector, times 1/2, 2 or -1.
+  std::optional<Slip> lever() const {
+    std::vector<std::pair<std::string, Expr>> levers;
+    for (const Parameter& p : entry_.joint.parameters)
+      if (p.kind == ParameterKind::point && p.body >= 0) levers.emplace_back(p.symbol->symbol, p.symbol);
+    for (const Let& let : entry_.joint.lets)
+      if (let.value->vector) levers.emplace_back(let.name, let.value);
+    std::map<const Node*, Expr> named;  // stays as it is
+    for (const Let& let : entry_.joint.lets) named.emplace(&*let.value, let.value);
+    for (const auto& [name, lever] : levers)
+      for (const auto& [factor, words] : {std::pair(Rational(1, 2), "half of {} stands where {} belongs"),
+                                          std::pair(Rational(2), "twice {} stands where {} belongs"),
+                                          std::pair(Rational(-1), "-{} stands where {} belongs")})
+        if (is_with(named, lever, factor * lever))
+          return Slip{factor == Rational(-1) ? "sign" : "factor", fmt::format(fmt::runtime(words), name, name)};
+    return {};
+  }
+
+  bool is_with(std::map<const Node*, Expr> named, Expr lever, Expr other) const {
+    named[&*lever] = other;
+    const std::vector<Expr> entries = substituted(mine_, named);
+    return is([&](std::size_t i) { return values_at(entries, entry_.poses().samples()[i]); });
+  }
+
+  // Undone in the published matrix, the exchange gives the generated one.
+  std::optional<Slip> other_body() const {
+    for (const Exchange& exchange : exchanges(entry_.joint)) {
+      const std::vector<Expr> mended = substituted(hand_, exchange.replacements);
+      bool right = true;
+      for (std::size_t i = 0; right && i < generated_.size(); ++i)
+        right = same(values_at(mended, entry_.poses().samples()[i]), generated_[i]);
+      if (right) return Slip{"wrong body", exchange.words};
+    }
+    return {};
+  }
+
+  static std::vector<Expr> substituted(const Matrix& in, const std::map<const Node*, Expr>& replacements) {
+    std::vector<Expr> entries;
+    for (const Expr e : in.entries) entries.push_back(substitute(e, replacements, KeepNames::no));
+    return entries;
+  }
+
+  // All of it, or one row, times a constant.
+  std::optional<Slip> multiple() const {
+    std::optional<double> all = ratio(0, mine_.rows);
+    if (all) return Slip{"factor", fmt::format("all of it is {:.6g} times what it should be", *all)};
+    for (int r = 0; r < mine_.rows && what_ != "K"; ++r) {
+      bool others = true;
+      for (std::size_t i = 0; i < published_.size(); ++i)
+        for (int s = 0; s < mine_.rows; ++s)
+          for (int c = 0; c < mine_.columns; ++c)
+            others = others && (s == r || same(published_[i][at(s, c)], generated_[i][at(s, c)]));
+      const std::optional<double> k = others ? ratio(r, r + 1) : std::nullopt;
+      if (k) return Slip{"factor", fmt::format("row {} is {:.6g} times what it should be", row_name(r), *k)};
+    }
+    return {};
+  }
+  std::optional<double> ratio(int first, int end) const {
+    std::optional<double> k;
+    for (std::size_t i = 0; i < published_.size(); ++i)
+      for (int r = first; r < end; ++r)
+        for (int c = 0; c < mine_.columns; ++c) {
+          const double p = published_[i][at(r, c)], g = generated_[i][at(r, c)];
+          if (!k && std::abs(g) > 1e-3) k = p / g;
+          if (k ? !same(p, *k * g) : !same(p, 0)) return {};
+        }
+    return k;
+  }
+
+  const Entry& entry_;
+  const Part* part_;  // null: of a claim
+  const std::string what_;
+  const Matrix &hand_, &mine_;
+  std::vector<List> published_, generated_;  // by pose
+};
+
+}  // namespace
+
+std::optional<Slip> slip_of_whole(const Entry& entry, const Part* part, const std::string& what,
+                                  const Matrix& published, const Matrix& generated) {
+  return Whole(entry, part, what, published, generated).slip();
+}
+
+}  // namespace cdot::derive
