@@ -101,7 +101,7 @@ void compare_sizes(Entry& entry, const HandItem& item, const std::string& what, 
 // Each leaf of C that moves with a body, and the term of the product rule that it brings into `quantity`, which picks
 // an entry of J or all of Cdot.
 template <class Quantity>
-std::vector<Contribution> contributions(const Entry& entry, const ScalarRow& row, int sign, Quantity quantity) {
+std::vector<Contribution> contributions(const Entry& entry, const ScalarRow& row, Rational scale, Quantity quantity) {
   std::vector<Contribution> sources;
   if (row.kind == RowKind::velocity) return sources;
   for (const Expr leaf : leaves_of(std::span(&row.C, 1))) {
@@ -109,7 +109,7 @@ std::vector<Contribution> contributions(const Entry& entry, const ScalarRow& row
     ScalarRow only;
     only.Cdot = time_derivative(row.C, entry.joint, {entry.immovable, leaf});
     only.J = isolate_velocities(only.Cdot, entry.joint);
-    sources.push_back({leaf, Rational(sign) * quantity(only)});
+    sources.push_back({leaf, scale * quantity(only)});
   }
   return sources;
 }
@@ -134,15 +134,15 @@ void tell_slip(Entry& entry, const Part* part, const HandItem& item, std::size_t
             confirm(wrong / sides.generated.columns, wrong % sides.generated.columns));
 }
 
-// A published quantity beside the generated one, in the source's signs of C.
+// A published quantity beside the generated one, in the source's signs and scales of C.
 struct Quantity {
   Entry& entry;
   const Part& part;
   const HandItem& item;
 
   // `describe` completes the place of an entry; `confirm` shows by numbers that the published entry is wrong.
-  template <class Sign, class Describe, class Confirmed>
-  void compare(Matrix generated, const std::vector<Group>& columns, Sign sign_of, Describe describe,
+  template <class Scale, class Describe, class Confirmed>
+  void compare(Matrix generated, const std::vector<Group>& columns, Scale scale_of, Describe describe,
                Confirmed confirm) const {
     const Matrix& published = *item.value;
     if (published.rows != generated.rows || published.columns != generated.columns)
@@ -150,7 +150,7 @@ struct Quantity {
     for (int r = 0; r < generated.rows; ++r) {
       for (int c = 0; c < generated.columns; ++c) {
         Expr& e = generated.entries[static_cast<std::size_t>(r * generated.columns + c)];
-        e = Rational(sign_of(r, c)) * e;
+        e = scale_of(r, c) * e;
       }
     }
     const std::size_t before = entry.verdict.differences.size();
@@ -167,7 +167,7 @@ struct Quantity {
               [&](int r, int c) { return confirm(r, c, generated.at(r, c), published.at(r, c)); });
   }
 
-  int sign(int r) const { return part.sign[static_cast<std::size_t>(r)]; }
+  Rational scale(int r) const { return part.scale[static_cast<std::size_t>(r)]; }
   const ScalarRow& row(int r) const { return part.rows[static_cast<std::size_t>(r)]; }
 };
 
@@ -200,7 +200,7 @@ std::vector<Group> groups_of_velocities(const Joint& joint, Form form, int colum
 void judge_C(Entry& entry, const Part& part, const HandItem& item) {
   const Quantity C{entry, part, item};
   C.compare(
-      part.generated.C, one_column, [&](int r, int) { return C.sign(r); }, [](Place&, int, int) {},
+      part.generated.C, one_column, [&](int r, int) { return C.scale(r); }, [](Place&, int, int) {},
       [&](int r, int, Expr generated, Expr published) {
         return entry.confirm().value_of_C(C.row(r), entry.poses_on_constraint(), generated, published);
       });
@@ -208,14 +208,16 @@ void judge_C(Entry& entry, const Part& part, const HandItem& item) {
 
 void judge_Cdot(Entry& entry, const Part& part, const HandItem& item) {
   const Quantity Cdot{entry, part, item};
-  const auto sign = [&](int r, int) { return item.what == "b" ? -Cdot.sign(r) : Cdot.sign(r); };
+  const auto scale = [&](int r, int) { return item.what == "b" ? -Cdot.scale(r) : Cdot.scale(r); };
   const auto describe = [&](Place& place, int r, int) {
     if (item.what == "b") return;
-    place.sources = contributions(entry, Cdot.row(r), Cdot.sign(r), [](const ScalarRow& row) { return row.Cdot; });
+    place.sources = contributions(entry, Cdot.row(r), Cdot.scale(r), [](const ScalarRow& row) { return row.Cdot; });
   };
   const Matrix generated_rates = without_baumgarte(entry, part, item, part.generated.Cdot);
-  Cdot.compare(generated_rates, one_column, sign, describe, [&](int r, int c, Expr generated, Expr published) {
-    const auto rate = [&](const Sample& sample) { return sign(r, c) * entry.confirm().rate(Cdot.row(r), sample); };
+  Cdot.compare(generated_rates, one_column, scale, describe, [&](int r, int c, Expr generated, Expr published) {
+    const auto rate = [&](const Sample& sample) {
+      return scale(r, c).value() * entry.confirm().rate(Cdot.row(r), sample);
+    };
     return entry.confirm().against(rate, generated, published);
   });
 }
@@ -228,17 +230,17 @@ void judge_J(Entry& entry, const Part& part, const HandItem& item) {
     for (int other = c % entry.width(); other < static_cast<int>(mine.size()); other += entry.width()) {
       if (other != c) place.elsewhere.push_back(mine[static_cast<std::size_t>(other)]);
     }
-    place.sources = contributions(entry, J.row(r), J.sign(r), [&](const ScalarRow& row) {
+    place.sources = contributions(entry, J.row(r), J.scale(r), [&](const ScalarRow& row) {
       return entry.columns_in_form(row.J)[static_cast<std::size_t>(c)];
     });
   };
   J.compare(
       part.generated.J, groups_of_velocities(entry.joint, entry.form, part.generated.J.columns),
-      [&](int r, int) { return J.sign(r); }, describe,
+      [&](int r, int) { return J.scale(r); }, describe,
       [&](int r, int c, Expr generated, Expr published) {
         const Confirm confirm = entry.confirm();
         const auto slope = [&](const Sample& sample) {
-          return J.sign(r) * confirm.columns(J.row(r), sample)[static_cast<std::size_t>(c)];
+          return J.scale(r).value() * confirm.columns(J.row(r), sample)[static_cast<std::size_t>(c)];
         };
         return confirm.against(slope, generated, published);
       });
@@ -247,13 +249,15 @@ void judge_J(Entry& entry, const Part& part, const HandItem& item) {
 
 void judge_K(Entry& entry, const Part& part, const HandItem& item) {
   const Quantity K{entry, part, item};
-  const auto sign = [&](int r, int c) { return K.sign(r) * K.sign(c); };
+  const auto scale = [&](int r, int c) { return K.scale(r) * K.scale(c); };
   K.compare(
       without_softness(entry, part, item, part.generated.K), groups_of_rows(entry, part, part.generated.K.columns),
       sign, [&](Place& place, int, int c) { place.column = name_of_row(part, c); },
       [&](int r, int c, Expr generated, Expr published) {
         const Confirm confirm = entry.confirm();
-        const auto mass = [&](const Sample& sample) { return sign(r, c) * confirm.mass(K.row(r), K.row(c), sample); };
+        const auto mass = [&](const Sample& sample) {
+          return scale(r, c).value() * confirm.mass(K.row(r), K.row(c), sample);
+        };
         return confirm.against(mass, generated, published);
       });
 }

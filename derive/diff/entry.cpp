@@ -284,7 +284,7 @@ Judgement judge(Entry entry) {
     for (const HandItem& item : part.hand->items) judge_item(entry, part, item);
     judge_updates(entry, part);
   }
-  if (const std::string remark = remark_on_signs(parts); !remark.empty()) verdict.remarks.push_back(remark);
+  for (std::string& remark : remarks_on_signs(parts)) verdict.remarks.push_back(std::move(remark));
   if (entry.only_by_numbers) verdict.remarks.push_back("equal at 12 random poses; exact arithmetic did not decide");
   conclude(entry);
   return verdict;

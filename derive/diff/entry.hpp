@@ -13,7 +13,7 @@ struct Part {
   const HandPart* hand = nullptr;
   std::vector<ScalarRow> rows;
   Generated generated;
-  std::vector<int> sign;  // of each row: -1 where the source has the opposite sign of C
+  std::vector<Rational> scale;  // of each row: C of the source is that of the spec times this, -1 for the opposite sign
 };
 
 struct Entry {
@@ -50,9 +50,9 @@ Judgement judge(Entry entry);
 // The rows in the order of the source; empty if that is the spec's, or if in no order all quantities of the part agree.
 std::vector<ScalarRow> rows_in_order_of(const Entry& entry, const Part& part);
 
-// The sign of C is the author's choice, row by row. All parts together decide it.
+// The sign and scale of C are the author's choice, equation by equation. All parts together decide them.
 void find_signs(const Entry& entry, std::vector<Part>& parts);
-std::string remark_on_signs(const std::vector<Part>& parts);  // empty if all have the spec's
+std::vector<std::string> remarks_on_signs(const std::vector<Part>& parts);
 
 // Each adds its differences to the verdict.
 void judge_C(Entry& entry, const Part& part, const HandItem& item);

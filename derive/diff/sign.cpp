@@ -1,7 +1,8 @@
-// The sign of C is the author's choice, row by row. The chosen sign has the fewest differing entries of C, Cdot, J and
-// b in the whole entry, and the fewest differing terms in them.
+// The sign and the scale of C are the author's choice, equation by equation. The chosen ones have the fewest differing
+// entries of C, Cdot, J and b in the whole entry, and the fewest differing terms in them.
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <fmt/format.h>
 
 #include "derive/diff/entry.hpp"
 #include "derive/diff/terms.hpp"
@@ -20,13 +21,14 @@ int block_of(const Entry& entry, int column) {
   return 2 * (column / entry.width()) + (column % entry.width() < entry.joint.dimension ? 0 : 1);
 }
 
-// Adds the misfit of one row of an item, if the row has this sign.
-void add_misfit(Misfit& misfit, const Entry& entry, const Part& part, const HandItem& item, std::size_t row, int sign) {
+// Adds the misfit of one row of an item, if the row has this scale.
+void add_misfit(Misfit& misfit, const Entry& entry, const Part& part, const HandItem& item, std::size_t row,
+                Rational scale) {
   if (!item.value) return;
   const Generated& g = part.generated;
   const Matrix& mine = item.what == "C" ? g.C : item.what == "J" ? g.J : g.Cdot;
   if (item.value->rows != mine.rows || item.value->columns != mine.columns) return;
-  const Rational factor(item.what == "b" ? -sign : sign);
+  const Rational factor = item.what == "b" ? -scale : scale;
   int block = -1;  // columns of v, or of w, of one body count as one
   for (int c = 0; c < mine.columns; ++c) {
     const Expr hand = item.value->at(static_cast<int>(row), c);
@@ -50,13 +52,13 @@ std::vector<std::size_t> first_of_equation(const std::vector<ScalarRow>& rows) {
 }
 
 // From K alone: D K D with the D = diag(+-1) that fits best; the first equation's sign is free.
-std::vector<int> signs_of_mass(const Entry& entry, const Part& part) {
+std::vector<Rational> signs_of_mass(const Entry& entry, const Part& part) {
   const Matrix& K = part.generated.K;
   const std::vector<std::size_t> first = first_of_equation(part.rows);
   int best = -1;
-  std::vector<int> kept = part.sign;
+  std::vector<Rational> kept = part.scale;
   for (unsigned pattern = 0; pattern < (1u << part.rows.size()); pattern += 2) {
-    std::vector<int> sign;
+    std::vector<Rational> sign;
     bool together = true;
     for (std::size_t i = 0; i < part.rows.size(); ++i) {
       sign.push_back((pattern >> i) & 1 ? -1 : 1);
@@ -69,7 +71,7 @@ std::vector<int> signs_of_mass(const Entry& entry, const Part& part) {
       if (item.value->rows != K.rows || item.value->columns != K.columns) continue;
       for (int i = 0; i < K.rows; ++i) {
         for (int j = 0; j < K.columns; ++j) {
-          const Rational s(sign[static_cast<std::size_t>(i)] * sign[static_cast<std::size_t>(j)]);
+          const Rational s = sign[static_cast<std::size_t>(i)] * sign[static_cast<std::size_t>(j)];
           agreed += entry.poses().equal(item.value->at(i, j), s * K.at(i, j)) ? 1 : 0;
         }
       }
@@ -79,19 +81,57 @@ std::vector<int> signs_of_mass(const Entry& entry, const Part& part) {
   return kept;
 }
 
+// The rational number with a small denominator that k is, but for round-off.
+std::optional<Rational> rational_near(double k) {
+  constexpr int largest = 64;
+  if (!(std::abs(k) < 1e6)) return {};
+  for (int den = 1; den <= largest; ++den) {
+    const double num = std::round(k * den);
+    if (num != 0 && std::abs(k * den - num) < 1e-7) return Rational(static_cast<std::int64_t>(num), den);
+  }
+  return {};
+}
+
+// The numbers by which the source's C may be that of the spec: 1, -1, and their constant ratio where there is one.
+std::vector<Rational> candidates(const Entry& entry, const Part& part, std::size_t first, std::size_t rows) {
+  std::vector<Rational> all = {Rational(1), Rational(-1)};
+  for (const HandItem& item : part.hand->items) {
+    if (item.kind != HandItem::Kind::quantity || item.what != "C" || !item.value) continue;
+    const Matrix& mine = part.generated.C;
+    if (item.value->rows != mine.rows || item.value->columns != 1) continue;
+    std::optional<Rational> common;
+    for (std::size_t r = first; r < first + rows; ++r) {
+      const std::optional<double> ratio = entry.poses().constant_ratio(item.value->entries[r], mine.entries[r]);
+      const std::optional<Rational> k = ratio ? rational_near(*ratio) : std::nullopt;
+      if (!k || (common && *common != *k)) return all;
+      common = k;
+    }
+    if (common && abs(*common) != Rational(1)) all.push_back(*common);
+  }
+  return all;
+}
+
 }  // namespace
 
 void find_signs(const Entry& entry, std::vector<Part>& parts) {
-  // By the first row of an equation, with the sign 1 and -1; several parts may have a row.
-  std::map<std::string, std::array<Misfit, 2>> evidence;
+  struct Evidence {
+    std::vector<Rational> scales;
+    std::vector<Misfit> misfits;
+  };
+  std::map<std::string, Evidence> evidence;  // by the first row of an equation; several parts may have it
   for (const Part& part : parts) {
     const std::vector<std::size_t> first = first_of_equation(part.rows);
     for (std::size_t row = 0; row < part.rows.size(); ++row) {
       for (const HandItem& item : part.hand->items) {
         if (item.kind != HandItem::Kind::quantity || item.what == "K") continue;
-        auto& [plus, minus] = evidence[part.rows[first[row]].name];
-        add_misfit(plus, entry, part, item, row, 1);
-        add_misfit(minus, entry, part, item, row, -1);
+        Evidence& of = evidence[part.rows[first[row]].name];
+        if (of.scales.empty()) {
+          const auto rows = static_cast<std::size_t>(std::count(first.begin(), first.end(), first[row]));
+          of.scales = candidates(entry, part, first[row], rows);
+          of.misfits.resize(of.scales.size());
+        }
+        for (std::size_t k = 0; k < of.scales.size(); ++k)
+          add_misfit(of.misfits[k], entry, part, item, row, of.scales[k]);
       }
     }
   }
@@ -100,29 +140,43 @@ void find_signs(const Entry& entry, std::vector<Part>& parts) {
     for (const std::size_t first : first_of_equation(part.rows)) {
       const auto found = evidence.find(part.rows[first].name);
       any = any || found != evidence.end();
-      part.sign.push_back(found != evidence.end() && found->second[1] < found->second[0] ? -1 : 1);
+      Rational scale(1);
+      if (found != evidence.end()) {
+        const std::vector<Misfit>& misfits = found->second.misfits;
+        scale =
+            found->second
+                .scales[static_cast<std::size_t>(std::min_element(misfits.begin(), misfits.end()) - misfits.begin())];
+      }
+      part.scale.push_back(scale);
     }
-    if (!any) part.sign = signs_of_mass(entry, part);
+    if (!any) part.scale = signs_of_mass(entry, part);
   }
 }
 
-// Of which equations C has the opposite sign, and the consequence.
-std::string remark_on_signs(const std::vector<Part>& parts) {
-  std::string opposite;
-  bool all = true;
+// Of which equations C has another sign or scale, and the consequence.
+std::vector<std::string> remarks_on_signs(const std::vector<Part>& parts) {
+  std::map<Rational, std::string> names;  // of equations, by their scale
   for (const Part& part : parts) {
     for (std::size_t i = 0; i < part.rows.size(); ++i) {
-      const bool turned = part.sign[i] < 0;
-      all = all && turned;
-      const std::string& name = part.rows[i].row ? part.rows[i].row->name : part.rows[i].name;
-      if (turned && opposite.find("`" + name + "`") == opposite.npos)
-        opposite += (opposite.empty() ? "`" : ", `") + name + "`";
+      const std::string name = "`" + (part.rows[i].row ? part.rows[i].row->name : part.rows[i].name) + "`";
+      std::string& said = names[part.scale[i]];
+      if (said.find(name) == said.npos) said += (said.empty() ? "" : ", ") + name;
     }
   }
-  if (opposite.empty()) return "";
-  return all ? "C has the opposite sign: J changes its sign, K does not"
-             : "C of " + opposite +
-                   " has the opposite sign: its rows of J change their sign, and K between it and others";
+  std::vector<std::string> remarks;
+  for (const auto& [scale, equations] : names) {
+    if (scale == Rational(1)) continue;
+    const std::string of = names.size() == 1 ? "" : " of " + equations;
+    remarks.push_back(
+        scale != Rational(-1)
+            ? fmt::format("C{} is {} times that of the spec: J is, too, and K twice over", of, scale.text())
+        : names.size() == 1
+            ? "C has the opposite sign: J changes its sign, K does not"
+            : fmt::format("C{} has the opposite sign: its rows of J change their sign, and K between them "
+                          "and others",
+                          of));
+  }
+  return remarks;
 }
 
 }  // namespace cdot::derive

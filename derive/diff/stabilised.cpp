@@ -10,7 +10,7 @@
 namespace cdot::derive {
 namespace {
 
-constexpr double round_off = 1e-8, no_divisor = 1e-6;
+constexpr double rate_rounding = 1e-8, least_divisor = 1e-6;
 constexpr std::size_t longest_term = 60;
 
 // The same parameters, masses and free symbols, with the bodies of another sample.
@@ -26,9 +26,10 @@ bool is_constant_share(Expr e, Expr divisor, int sign, const Poses& poses) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::vector<double> here = values_at({e, divisor}, all[i]);
     const std::vector<double> there = values_at({e, divisor}, with_bodies_of(all[(i + 1) % all.size()], all[i]));
-    if (std::abs(here[1]) < no_divisor || std::abs(there[1]) < no_divisor) continue;
+    if (std::abs(here[1]) < least_divisor || std::abs(there[1]) < least_divisor) continue;
     const double share = here[0] / here[1];
-    if (!(share * sign > 0) || std::abs(there[0] / there[1] - share) > round_off * (1 + std::abs(share))) return false;
+    if (!(share * sign > 0) || std::abs(there[0] / there[1] - share) > rate_rounding * (1 + std::abs(share)))
+      return false;
     ++seen;
   }
   return seen > 0;
@@ -50,11 +51,11 @@ std::string in_short(Expr e, const Entry& entry, const std::string& otherwise) {
 Matrix without_baumgarte(Entry& entry, const Part& part, const HandItem& item, Matrix generated) {
   if (item.what != "b" || item.value->rows != generated.rows || item.value->columns != 1) return generated;
   for (std::size_t r = 0; r < part.rows.size(); ++r) {
-    const Expr published = item.value->entries[r], C = Rational(part.sign[r]) * part.generated.C.entries[r];
-    const Expr added = published + Rational(part.sign[r]) * generated.entries[r];
+    const Expr published = item.value->entries[r], C = part.scale[r] * part.generated.C.entries[r];
+    const Expr added = published + part.scale[r] * generated.entries[r];
     if (is_zero(C) || entry.poses().equal(added, C->pool->number(0))) continue;
     if (!is_constant_share(added, C, -1, entry.poses())) continue;
-    generated.entries[r] = Rational(-part.sign[r]) * published;
+    generated.entries[r] = Rational(-1) / part.scale[r] * published;
     entry.verdict.remarks.push_back(fmt::format("b agrees in row {}, plus a Baumgarte term that drives C to 0: {}",
                                                 name_of_row(part, static_cast<int>(r)),
                                                 in_short(added, entry, "a multiple of C")));

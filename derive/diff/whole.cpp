@@ -14,19 +14,19 @@
 namespace cdot::derive {
 namespace {
 
-constexpr double round_off = 1e-8;
-constexpr int most_rows = 6;  // whose orders are tried
+constexpr double rounding = 1e-8;
+constexpr int most_ordered = 6;  // whose orders are tried
 
 using List = std::vector<double>;
 using Order = std::vector<int>;
 
-bool same(double a, double b) { return std::abs(a - b) <= round_off * (1 + std::abs(a) + std::abs(b)); }
-bool same(const List& a, const List& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) { return same(x, y); });
+bool alike(double a, double b) { return std::abs(a - b) <= rounding * (1 + std::abs(a) + std::abs(b)); }
+bool alike(const List& a, const List& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) { return alike(x, y); });
 }
 
 // "1 and 2", "1, 2 and 3"
-std::string listed(const std::vector<std::string>& names) {
+std::string joined_by_and(const std::vector<std::string>& names) {
   if (names.size() == 1) return names[0];
   return fmt::format("{} and {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
 }
@@ -49,7 +49,7 @@ std::string words_of(const Order& order, const std::string& what, const std::vec
     all.push_back(names[from]);
     if (from != i) moved.push_back(names[i]);
   }
-  if (moved.size() == 2) return fmt::format("{} {} are exchanged", what, listed(moved));
+  if (moved.size() == 2) return fmt::format("{} {} are exchanged", what, joined_by_and(moved));
   return fmt::format("{} stand in the order {}", what, fmt::join(all, ", "));
 }
 
@@ -79,7 +79,7 @@ class Whole {
   template <class Expected>
   bool is(Expected expected) const {
     for (std::size_t i = 0; i < published_.size(); ++i)
-      if (!same(published_[i], expected(i))) return false;
+      if (!alike(published_[i], expected(i))) return false;
     return !published_.empty();
   }
   // The generated matrix with its rows and columns in another order.
@@ -94,7 +94,7 @@ class Whole {
 
   std::optional<Slip> other_rows() const {
     std::optional<Slip> found;
-    if (mine_.rows < 2 || mine_.rows > most_rows) return found;
+    if (mine_.rows < 2 || mine_.rows > most_ordered) return found;
     std::vector<std::string> names;
     for (int r = 0; r < mine_.rows; ++r) names.push_back(row_name(r));
     any_order(mine_.rows, [&](const Order& order) {
@@ -324,7 +324,7 @@ class Whole {
       const std::vector<Expr> mended = substituted(hand_, exchange.replacements);
       bool right = true;
       for (std::size_t i = 0; right && i < generated_.size(); ++i)
-        right = same(values_at(mended, entry_.poses().samples()[i]), generated_[i]);
+        right = alike(values_at(mended, entry_.poses().samples()[i]), generated_[i]);
       if (right) return Slip{"wrong body", exchange.words};
     }
     return {};
@@ -345,7 +345,7 @@ class Whole {
       for (std::size_t i = 0; i < published_.size(); ++i)
         for (int s = 0; s < mine_.rows; ++s)
           for (int c = 0; c < mine_.columns; ++c)
-            others = others && (s == r || same(published_[i][at(s, c)], generated_[i][at(s, c)]));
+            others = others && (s == r || alike(published_[i][at(s, c)], generated_[i][at(s, c)]));
       const std::optional<double> k = others ? ratio(r, r + 1) : std::nullopt;
       if (k) return Slip{"factor", fmt::format("row {} is {:.6g} times what it should be", row_name(r), *k)};
     }
@@ -358,7 +358,7 @@ class Whole {
         for (int c = 0; c < mine_.columns; ++c) {
           const double p = published_[i][at(r, c)], g = generated_[i][at(r, c)];
           if (!k && std::abs(g) > 1e-3) k = p / g;
-          if (k ? !same(p, *k * g) : !same(p, 0)) return {};
+          if (k ? !alike(p, *k * g) : !alike(p, 0)) return {};
         }
     return k;
   }
