@@ -252,7 +252,7 @@ void judge_K(Entry& entry, const Part& part, const HandItem& item) {
   const auto scale = [&](int r, int c) { return K.scale(r) * K.scale(c); };
   K.compare(
       without_softness(entry, part, item, part.generated.K), groups_of_rows(entry, part, part.generated.K.columns),
-      sign, [&](Place& place, int, int c) { place.column = name_of_row(part, c); },
+      scale, [&](Place& place, int, int c) { place.column = name_of_row(part, c); },
       [&](int r, int c, Expr generated, Expr published) {
         const Confirm confirm = entry.confirm();
         const auto mass = [&](const Sample& sample) {
