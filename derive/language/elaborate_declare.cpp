@@ -24,6 +24,9 @@ bool is_reserved(const std::string& name) {
   return std::find(words.begin(), words.end(), name) != words.end();
 }
 
+// A number without a unit takes the declared one: `scalar k [1/m] = 0.25`.
+bool is_plain_number(const Value& v) { return v.type == Type::scalar && v.unit == Unit{} && constant_value(v.e); }
+
 // True unless both includes give a default and these differ.
 bool same_default(Expr a, Expr b) { return !a || !b || a == b; }
 
@@ -148,7 +151,7 @@ bool Elaborator::resolve_unit(Source& source, const DeclaredAst& d, const Value&
     source.diagnostics.error(d.unit->where, "a point is in metres", "remove the unit");
     return false;
   }
-  if (d.value && !same_unit(scalar(Expr(), p.unit), given)) {
+  if (d.value && !is_plain_number(given) && !same_unit(scalar(Expr(), p.unit), given)) {
     source.diagnostics.error(
         d.value->where,
         "the default of " + quote(d.name.text) + " is in " + spoken(*given.unit) + ", not in " + spoken(p.unit),
@@ -181,11 +184,10 @@ std::optional<double> Elaborator::bound(Source& source, const Ast& ast, const De
   const Value v = evaluate(source, ast);
   if (v.type == Type::poison) return {};
   const std::optional<double> value = v.type == Type::scalar ? constant_value(v.e) : std::nullopt;
-  const bool plain_angle = v.unit == Unit{} && p.unit == Unit{.rad = 1};
   if (!value)
     source.diagnostics.error(ast.where, "a bound of " + quote(d.name.text) + " is not a constant",
                              "write a number, such as 0 or pi");
-  else if (!plain_angle && !same_unit(scalar(Expr(), p.unit), v))
+  else if (!is_plain_number(v) && !same_unit(scalar(Expr(), p.unit), v))
     source.diagnostics.error(
         ast.where, "a bound of " + quote(d.name.text) + " is in " + spoken(*v.unit) + ", not in " + spoken(p.unit),
         "give the number its unit, as in 2 [m]");

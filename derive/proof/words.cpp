@@ -21,6 +21,9 @@ std::string spec_text(Expr e, const Joint& joint) {
     if (body.theta) spelled.emplace(&*body.theta, joint.pool->symbol("angle(" + name + ")", Role::given));
     spelled.emplace(&*body.x, joint.pool->vector_symbol("x(" + name + ")", Role::given));
   }
+  for (const Parameter& p : joint.parameters)
+    for (std::size_t k = 0; k < p.axes.size(); ++k)
+      spelled.emplace(&*p.axes[k], joint.pool->vector_symbol(p.name + "." + "xyz"[k], Role::given, -1, true));
   return text(substitute(e, spelled));
 }
 

@@ -111,6 +111,9 @@ Ast Parser::number() {
          "use at most 18 digits, and powers of ten from e-18 to e18");
   }
   result.unit = unit();
+  const auto is_next = [&](const NamedUnit& u) { return at_name() && peek().text == u.name; };
+  if (!result.unit && std::ranges::any_of(known_units, is_next))
+    fail(peek().where, "a unit stands in brackets", "write " + t.text + " [" + peek().text + "]");
   result.where = from(t);
   return failed_ ? Ast{} : std::move(result);
 }

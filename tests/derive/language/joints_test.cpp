@@ -66,6 +66,19 @@ TEST(Joints, HoldTheRangesOfTheirNumbers) {
   }
 }
 
+// A default without a unit is in the declared one.
+TEST(Joints, NumbersTakeTheDeclaredUnit) {
+  const ReadResult r = read_body(
+      " scalar k [1/m] = 0.25\n scalar h [rad] above -1 = 0.5\n scalar l [m] = 2\n"
+      " k * norm(x(a) - x(b)) = 1\n angle(a) - angle(b) <= h\n norm(x(a) - x(b)) >= l\n");
+  const auto& p = r.joint->parameters;
+  ASSERT_EQ(p.size(), 3u);
+  EXPECT_EQ(text(p[0].unit), "1/m");
+  EXPECT_EQ(text(p[1].unit), "rad");
+  EXPECT_EQ(text(p[2].unit), "m");
+  EXPECT_TRUE(is_number(p[2].default_value, 2));
+}
+
 TEST(Joints, TellEqualitiesFromInequalitiesAndVelocities) {
   const ReadResult r = read_body(
       " point pa on a\n point pb on b\n unit t on b\n scalar l [m]\n pa = pb\n far: norm(pa - pb) "
