@@ -2,6 +2,7 @@
 // function that runs it. The exit status is 0 all well, 1 the answer is no, 2 bad usage or input.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "runtime/command_line/command_line.hpp"
@@ -16,6 +17,9 @@ Run derive_command(Line& line);
 Run explain_command(Line& line);
 Run diff_command(Line& line);
 Run check_command(Line& line);
+
+// Writes through a temporary file, so that nobody reads half of one.
+void write_file(const std::filesystem::path& path, const std::string& content);
 
 void add_specs(Line& line, std::string& folder);  // --specs
 void add_jobs(Line& line, int& processes);        // -j, for commands on several specs

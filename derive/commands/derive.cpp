@@ -113,19 +113,6 @@ Files present(const fs::path& root) {
   return files;
 }
 
-// Writes through a temporary file, so that nobody reads half of one.
-void write_file(const fs::path& path, const std::string& content) {
-  fs::create_directories(path.parent_path());
-  fs::path temporary = path;
-  temporary += ".new";
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    out << content;
-    if (!out.flush()) throw std::runtime_error(fmt::format("cannot write {}", temporary.string()));
-  }
-  fs::rename(temporary, path);
-}
-
 // The first line in which two texts differ, for people.
 std::string first_difference(const std::string& old_text, const std::string& new_text) {
   std::istringstream a(old_text), b(new_text);
@@ -223,6 +210,18 @@ Run derive_command(Line& line) { return with_options<Options>(line, add_options,
 
 void add_specs(Line& line, std::string& folder) {
   line.add("--specs", &folder, "Folder of specs").shown_as("DIR").shows_default();
+}
+
+void write_file(const fs::path& path, const std::string& content) {
+  if (path.has_parent_path()) fs::create_directories(path.parent_path());
+  fs::path temporary = path;
+  temporary += ".new";
+  {
+    std::ofstream out(temporary, std::ios::binary);
+    out << content;
+    if (!out.flush()) throw std::runtime_error(fmt::format("cannot write {}", temporary.string()));
+  }
+  fs::rename(temporary, path);
 }
 
 void add_jobs(Line& line, int& processes) {

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::vector<std::string> what;
-  std::string specs_folder = "specs";
+  std::string specs_folder = "specs", page;
   bool json = false, all = false, full = false;
   int processes = usual_processes();
 };
@@ -88,16 +88,23 @@ std::vector<Pairing> pairs_of(const std::vector<std::string>& words, const Specs
   return pairs;
 }
 
+}  // namespace
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Exhibit, id, joint, title, html, agreement)
+
+namespace {
+
 // Of one .hand file.
 struct FileVerdict {
   std::string complaints, text;  // for stderr and stdout
   bool unreadable = false;
   std::array<int, 4> counts = {};  // by Agreement
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE(FileVerdict, complaints, text, unreadable, counts)
+  std::vector<Exhibit> exhibits;   // for a page
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(FileVerdict, complaints, text, unreadable, counts, exhibits)
 };
 
 FileVerdict verdict_on(const Pairing& pair, const SpecsFolder& folder, const Options& options) {
-  DiffReport report = judge(pair.hand, folder.read(pair.spec));
+  DiffReport report = judge(pair.hand, folder.read(pair.spec), !options.page.empty());
   if (!pair.entry.empty()) {
     std::erase_if(report.judgements, [&](const Judgement& j) { return j.id != pair.entry; });
   }
@@ -105,7 +112,9 @@ FileVerdict verdict_on(const Pairing& pair, const SpecsFolder& folder, const Opt
   FileVerdict verdict{render(*report.file, report.diagnostics),
                       options.json ? to_json(report) : to_text(report, {everything, options.full}),
                       report.diagnostics.has_errors(),
+                      {},
                       {}};
+  if (!options.page.empty()) verdict.exhibits = exhibits_of(report);
   for (const Judgement& j : report.judgements) ++verdict.counts[static_cast<std::size_t>(j.agreement)];
   return verdict;
 }
@@ -120,11 +129,13 @@ int run(const Options& options) {
     total.unreadable = total.unreadable || verdict.unreadable;
     for (std::size_t k = 0; k < total.counts.size(); ++k) total.counts[k] += verdict.counts[k];
     std::cerr << verdict.complaints;
+    std::ranges::copy(verdict.exhibits, std::back_inserter(total.exhibits));
     if (options.json) entries.push_back(verdict.text);
-    else std::cout << verdict.text << std::flush;
+    else if (options.page.empty()) std::cout << verdict.text << std::flush;
   };
   const int failed = in_processes(
       names, {}, options.processes, [&](std::size_t i) { return verdict_on(pairs[i], folder, options); }, take);
+  if (!options.page.empty()) write_file(options.page, page_of(total.exhibits));
   if (options.json) std::cout << joined_json(entries);
   else
     fmt::print("{} agree, {} agree if a condition holds, {} differ, {} are listed without a verdict\n", total.counts[0],
@@ -142,6 +153,13 @@ void add_options(Line& line, Options& options) {
            "An array with, per entry: id, joint, title, source, verdict (agrees, agrees-if, differs, listed),\n"
            "condition (of agrees-if; the reason of listed), remarks, and items: what, row, column, kind,\n"
            "generated, hand, difference, sentence, confirmed (the numbers that show it)");
+  line.add("--html", &options.page,
+           "Write one page that shows every entry: both formulas with the wrong entries marked, and each difference.\n"
+           "It needs nothing else; #LIN-4 links to an entry, #differs shows what differs")
+      .shown_as("PAGE")
+      .excludes("--json")
+      .excludes("--all")
+      .excludes("--full");
   add_specs(line, options.specs_folder);
   add_jobs(line, options.processes);
   line.footer("Exit status: 0 no entry differs; 1 some entry differs; 2 bad usage or input.");

@@ -68,6 +68,7 @@ std::optional<std::vector<int>> further_rows(const Matrix& larger, const Matrix&
 // Matrices of different sizes: transposed, or with missing or extra rows.
 void compare_sizes(Entry& entry, const HandItem& item, const std::string& what, const Matrix& hand,
                    const Matrix& generated) {
+  show_apart(entry, what, item, &hand, &generated);
   Place place{what, "", "", {}, {}, &entry.joint};
   const auto size = [](const Matrix& m) { return fmt::format("{} x {}", m.rows, m.columns); };
   const std::string sizes = fmt::format("{} numbers stand where {} belong", size(hand), size(generated));
@@ -154,7 +155,7 @@ struct Quantity {
       }
     }
     const std::size_t before = entry.verdict.differences.size();
-    const Sides sides{published, generated, groups_of_rows(entry, part, generated.rows), columns};
+    const Sides sides{item.what, published, generated, groups_of_rows(entry, part, generated.rows), columns};
     derive::compare(entry, sides, [&](int r, int c) {
       Place place{item.what, name_of_row(part, r), "", {}, {}, &entry.joint};
       describe(place, r, c);
@@ -274,7 +275,7 @@ void judge_claim(Entry& entry, const HandItem& item) {
   };
   const bool vector = entry.joint.dimension == 3 && left.rows == 3;
   const Sides sides{
-      left, right,
+      what, left, right,
       grouped(
           left.rows, [&](int) { return vector; }, row_name),
       grouped(
@@ -299,6 +300,10 @@ void judge_problem(Entry& entry, const Part& part, const HandItem& item) {
     if (item.what == "J") place.column = column_name(entry.joint, entry.form, 0);
     if (item.what == "K") place.column = place.row;
   }
+  const bool quantity = item.kind == HandItem::Kind::quantity;
+  Matrix right = generated_of(part, item);
+  for (Expr& e : right.entries) e = item.what == "b" ? -e : e;
+  show_apart(entry, place.what, item, nullptr, quantity ? &right : nullptr);
   std::string sentence = item.problem, confirmed = "no value: " + item.problem;
   const Matrix& Cdot = part.generated.Cdot;
   const bool rate = item.what == "Cdot" || item.what == "b";

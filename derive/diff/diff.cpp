@@ -30,7 +30,7 @@ std::string_view name_of(Agreement agreement) {
   return "";
 }
 
-DiffReport judge(const std::filesystem::path& hand, const ReadResult& plain) {
+DiffReport judge(const std::filesystem::path& hand, const ReadResult& plain, bool with_sheets) {
   const HandFile file = read_hand(load_source(hand));
   DiffReport report{file.file, {}, file.diagnostics};
   if (!plain.joint) throw NoSuchSpec(render(*plain.file, plain.diagnostics));
@@ -45,6 +45,7 @@ DiffReport judge(const std::filesystem::path& hand, const ReadResult& plain) {
     read.joint = derive(*read.joint).joint;  // without the coordinates that its rows determine
     const std::size_t before = report.diagnostics.list.size();
     Entry entry = read_entry(ast, file, read, changed(ast.anchors, *plain.joint), report.diagnostics);
+    entry.with_sheets = with_sheets;
     if (report.diagnostics.list.size() == before) report.judgements.push_back(judge(std::move(entry)));
   }
   return report;

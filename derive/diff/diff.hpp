@@ -28,13 +28,21 @@ struct Difference {
   Span where;
 };
 
+// One judged formula for a page, as HTML with MathML: both sides with their wrong entries marked.
+struct Sheet {
+  std::string what;                  // "K", "update", "claim on C"
+  std::string published, generated;  // alike where nothing differs
+};
+
 struct Judgement {
-  std::string id, joint, title, source;
+  std::string id, joint, title, source, note;
   Agreement agreement = Agreement::agrees;
   std::string condition;  // of agrees_if; the reason of listed
   std::vector<Difference> differences;
   std::vector<std::string> remarks;  // the sign of C, broken momentum, how equality was decided
   std::vector<LedgerRow> costs;      // of what agrees
+  std::vector<Sheet> sheets;         // if they are asked for
+  std::vector<std::string> names;    // MathML "u = pa - pb" for each name in the sheets
   Span where;
 };
 
@@ -45,7 +53,7 @@ struct DiffReport {
 };
 
 // Judges every entry of a .hand file against the spec beside it, as it was read.
-DiffReport judge(const std::filesystem::path& hand, const ReadResult& spec);
+DiffReport judge(const std::filesystem::path& hand, const ReadResult& spec, bool with_sheets = false);
 
 struct ReportOptions {
   bool all = false;   // also what agrees, in a line each
@@ -54,5 +62,13 @@ struct ReportOptions {
 std::string to_text(const DiffReport& report, const ReportOptions& options);
 std::string to_json(const DiffReport& report);
 std::string joined_json(const std::vector<std::string>& arrays);  // of several reports, as one
+
+// An entry in the page of all: its HTML without the frame that carries its anchor.
+struct Exhibit {
+  std::string id, joint, title, html;  // joint: "planar/line"
+  Agreement agreement = Agreement::agrees;
+};
+std::vector<Exhibit> exhibits_of(const DiffReport& report);  // judged with sheets
+std::string page_of(const std::vector<Exhibit>& exhibits);   // one file that needs nothing else
 
 }  // namespace cdot::derive

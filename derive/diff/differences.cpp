@@ -120,12 +120,15 @@ void add_plain(Entry& entry, const HandItem& item, const Place& place, std::stri
 }
 
 void compare(Entry& entry, const Sides& sides, const std::function<Difference(int, int)>& difference) {
+  std::vector<bool> wrong(sides.generated.entries.size());
   for (const Group& rows : sides.rows) {
     for (const Group& columns : sides.columns) {
       Differences found;
       for (int r = rows.first; r < rows.first + rows.count; ++r) {
         for (int c = columns.first; c < columns.first + columns.count; ++c) {
-          if (!entry.equal(sides.published.at(r, c), sides.generated.at(r, c))) found.push_back(difference(r, c));
+          if (entry.equal(sides.published.at(r, c), sides.generated.at(r, c))) continue;
+          wrong[static_cast<std::size_t>(r * sides.generated.columns + c)] = true;
+          found.push_back(difference(r, c));
         }
       }
       for (Difference& d : merged(std::move(found), sides, rows, columns, entry.joint)) {
@@ -136,6 +139,7 @@ void compare(Entry& entry, const Sides& sides, const std::function<Difference(in
       }
     }
   }
+  show(entry, sides, wrong);
 }
 
 }  // namespace cdot::derive

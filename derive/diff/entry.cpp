@@ -185,6 +185,11 @@ void conclude(Entry& entry) {
 
 }  // namespace
 
+const Matrix& generated_of(const Part& part, const HandItem& item) {
+  const Generated& g = part.generated;
+  return item.what == "C" ? g.C : item.what == "J" ? g.J : item.what == "K" ? g.K : g.Cdot;
+}
+
 int Entry::width() const {
   return static_cast<int>(joint.dimension == 2 ? columns_per_body(2) : columns_per_body(form));
 }
@@ -261,6 +266,7 @@ Entry read_entry(const HandEntryAst& ast, const HandFile& file, const ReadResult
   verdict.joint = joint.name;
   verdict.title = entry.hand.title;
   verdict.source = entry.hand.source;
+  verdict.note = entry.hand.note;
   verdict.where = entry.hand.where;
   return entry;
 }

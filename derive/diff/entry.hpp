@@ -16,6 +16,9 @@ struct Part {
   std::vector<Rational> scale;  // of each row: C of the source is that of the spec times this, -1 for the opposite sign
 };
 
+// Of the quantity that an item is about; Cdot for b = -Cdot.
+const Matrix& generated_of(const Part& part, const HandItem& item);
+
 struct Entry {
   explicit Entry(const Joint& of) : joint(of) {}
 
@@ -28,6 +31,7 @@ struct Entry {
   HandEntry hand;
   std::optional<Poses> anywhere, assumed, on_constraint;
   bool needs_assumptions = false, only_by_numbers = false;  // for the answers of equal() so far
+  bool with_sheets = false;
   Judgement verdict;
 
   Pool& pool() const { return *joint.pool; }
@@ -75,10 +79,16 @@ struct Group {
   std::string name;
 };
 struct Sides {
+  std::string what;  // "K", "claim on K"
   const Matrix &published, &generated;
   std::vector<Group> rows, columns;
 };
 void compare(Entry& entry, const Sides& sides, const std::function<Difference(int row, int column)>& difference);
+// Adds both sides to the sheets, if these are asked for. `wrong` tells of each entry.
+void show(Entry& entry, const Sides& sides, const std::vector<bool>& wrong);
+// Where entries have no counterparts: `published` is null if it has no value, or too many.
+void show_apart(Entry& entry, const std::string& what, const HandItem& item, const Matrix* published,
+                const Matrix* generated);
 // One slip that explains all differences of a matrix: "K^-1 stands where K belongs". `generated`: in the source's
 // signs.
 struct Slip {

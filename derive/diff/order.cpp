@@ -14,18 +14,13 @@ constexpr int most_rows = 6;
 
 bool of_rows(const HandItem& item) { return item.what != "K"; }
 
-const Matrix& generated_quantity(const Part& part, const HandItem& item) {
-  const Generated& g = part.generated;
-  return item.what == "C" ? g.C : item.what == "J" ? g.J : item.what == "K" ? g.K : g.Cdot;
-}
-
 // The quantities of the part, if all have a value of the right size.
 std::vector<const HandItem*> quantities(const Part& part) {
   std::vector<const HandItem*> all;
   for (const HandItem& item : part.hand->items) {
     if (item.kind != HandItem::Kind::quantity) continue;
     if (!item.value) return {};
-    const Matrix& mine = generated_quantity(part, item);
+    const Matrix& mine = generated_of(part, item);
     if (item.value->rows != mine.rows || item.value->columns != mine.columns) return {};
     all.push_back(&item);
   }
@@ -57,7 +52,7 @@ class Orders {
       bool all = true;
       for (const HandItem* item : items_) {
         if (!of_rows(*item)) continue;
-        const Matrix& mine = generated_quantity(part_, *item);
+        const Matrix& mine = generated_of(part_, *item);
         const Rational factor(item->what == "b" ? -s : s);
         for (int c = 0; all && c < mine.columns; ++c)
           all = entry_.poses().equal(item->value->at(i, c), factor * mine.at(j, c));

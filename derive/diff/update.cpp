@@ -120,7 +120,7 @@ void judge_updates(Entry& entry, const Part& part) {
   const std::vector<Group> groups =
       groups_of_velocities(entry.joint, Form::global, columns, level == UpdateLevel::positions);
   std::string confirmed;
-  compare(entry, {published, generated, {Group{}}, groups}, [&](int, int c) {
+  compare(entry, {"update", published, generated, {Group{}}, groups}, [&](int, int c) {
     if (confirmed.empty()) confirmed = entry.confirm().after(level, part.rows, change);
     const std::string column = column_name(entry.joint, Form::global, c, level == UpdateLevel::positions);
     const Place place{"update", "", column, {}, {}, &entry.joint};
@@ -136,6 +136,7 @@ void judge_bound(Entry& entry, const Part& part, const HandItem& item) {
   const bool inequality = std::all_of(part.rows.begin(), part.rows.end(),
                                       [](const ScalarRow& row) { return row.kind == RowKind::inequality; });
   if (inequality == item.pushes_only) return;
+  show_apart(entry, "bound", item, nullptr, nullptr);
   std::vector<Expr> b;
   for (const Expr e : part.generated.Cdot.entries) b.push_back(-e);
   const std::string confirmed = entry.confirm().bound(part.rows, solved(part.generated.K, b), inequality);

@@ -3,12 +3,12 @@
 #include <map>
 #include <utility>
 
+#include "derive/explain/mathml.hpp"
 #include "derive/explain/write.hpp"
 
 namespace cdot::derive {
-namespace {
 
-std::string escaped(const std::string& s) {
+std::string html_escaped(const std::string& s) {
   std::string out;
   for (const char c : s) {
     switch (c) {
@@ -22,11 +22,10 @@ std::string escaped(const std::string& s) {
   return out;
 }
 
-// `code` between backticks.
-std::string prose(const std::string& s) {
+std::string html_prose(const std::string& s) {
   std::string out;
   bool code = false;
-  for (const char c : escaped(s)) {
+  for (const char c : html_escaped(s)) {
     if (c != '`') {
       out += c;
       continue;
@@ -36,6 +35,8 @@ std::string prose(const std::string& s) {
   }
   return out;
 }
+
+namespace {
 
 std::string greek(const std::string& letter) {
   static const std::map<std::string, std::string> letters = {
@@ -48,10 +49,10 @@ std::string greek(const std::string& letter) {
 std::string name(const Formula& leaf, const std::vector<std::string>& bodies) {
   const SpelledName s = spell(leaf.name, bodies);
   const bool vector = leaf.leaf && leaf.leaf->vector;
-  std::string base =
-      filled(vector ? "<mi mathvariant=\"normal\" class=\"vector\">#1</mi>" : "<mi>#1</mi>", escaped(greek(s.letter)));
+  std::string base = filled(vector ? "<mi mathvariant=\"normal\" class=\"vector\">#1</mi>" : "<mi>#1</mi>",
+                            html_escaped(greek(s.letter)));
   if (s.dots > 0) base = filled("<mover accent=\"true\">#1<mo>#2</mo></mover>", base, s.dots == 1 ? "˙" : "¨");
-  const std::string index = "<mtext>" + escaped(s.index) + "</mtext>";
+  const std::string index = "<mtext>" + html_escaped(s.index) + "</mtext>";
   if (s.inverse) return filled("<msubsup>#1#2<mrow><mo>−</mo><mn>1</mn></mrow></msubsup>", base, index);
   return s.index.empty() ? base : filled("<msub>#1#2</msub>", base, index);
 }
@@ -111,13 +112,6 @@ mi.vector { font-weight: bold; }
 .matrix mtd { padding: .15em .5em; }
 )";
 
-std::string head(const std::string& plain_title) {
-  const std::string title = escaped(plain_title);
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\" />\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n<title>" +
-         title + "</title>\n<style>" + style + "</style>\n</head>\n<body>\n<h1>" + title + "</h1>\n";
-}
-
 constexpr std::string_view math = "<math><mrow>#1</mrow></math>";
 
 std::string item(const std::string& words, bool bullet) {
@@ -128,17 +122,31 @@ std::string chain(const Chain& chain, const FormulaWriter& formula) {
   std::string out = "<div class=\"chain\"><table>\n", left = filled(math, formula.write(chain.left));
   for (const Link& link : chain.links) {
     out += "<tr><td class=\"left\">" + std::exchange(left, "") + "</td><td>" +
-           filled(math, "<mo>=</mo>" + formula.write(link.formula)) + "</td><td class=\"rule\">" + escaped(link.rule) +
-           "</td></tr>\n";
+           filled(math, "<mo>=</mo>" + formula.write(link.formula)) + "</td><td class=\"rule\">" +
+           html_escaped(link.rule) + "</td></tr>\n";
   }
   return out + "</table></div>\n";
 }
 
+std::string head(const std::string& title) { return html_head(title); }
+
 }  // namespace
 
+std::string html_head(const std::string& plain_title, std::string_view more_style) {
+  const std::string title = html_escaped(plain_title);
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\" />\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n<title>" +
+         title + "</title>\n<style>" + style + std::string(more_style) + "</style>\n</head>\n<body>\n<h1>" + title +
+         "</h1>\n";
+}
+
+std::string in_mathml(const Formula& formula, const std::vector<std::string>& bodies) {
+  return filled(math, FormulaWriter(mathml, bodies).write(formula));
+}
+
 std::string explanation_html(const Explanation& explanation) {
-  return written(explanation, {mathml, head, "</body>\n</html>\n", "<h2>#1. #2</h2>\n", "<ul>\n", "</ul>\n", math,
-                               escaped, prose, item, chain});
+  return written(explanation, {mathml, head, html_foot, "<h2>#1. #2</h2>\n", "<ul>\n", "</ul>\n", math, html_escaped,
+                               html_prose, item, chain});
 }
 
 }  // namespace cdot::derive
