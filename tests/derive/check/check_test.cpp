@@ -43,6 +43,22 @@ TEST(Check, ASquaredAngleVanishesToo) {
   EXPECT_TRUE(mentions(said, "J vanishes where C = 0")) << said;
 }
 
+// The offered rows are accepted: advice never goes round in a circle.
+TEST(Check, ParallelDirectionsAreOfferedAsTwoRows) {
+  std::string said;
+  const std::string frames = "  frame fa on a\n  frame fb on b\n  pa = pb\n";
+  EXPECT_FALSE(checked(frames + "  dot(fa.x, fb.x) = 1\n", &said, "spatial").clean());
+  EXPECT_TRUE(mentions(said, "write `cross(fa.x, fb.x) = 0 keep 2`")) << said;
+  EXPECT_TRUE(checked(frames + "  cross(fa.x, fb.x) = 0 keep 2\n", nullptr, "spatial").clean());
+  said.clear();
+  EXPECT_FALSE(checked("  unit na on a\n  unit nb on b\n  pa = pb\n  dot(na, nb) = 1\n", &said, "spatial").clean());
+  EXPECT_TRUE(mentions(said, "declared by `frame f on a`")) << said;
+  said.clear();
+  EXPECT_FALSE(checked("  unit na on a\n  unit nb on b\n  pa = pb\n  dot(na, nb) = 1\n", &said).clean());
+  EXPECT_TRUE(mentions(said, "write `angle(na, nb) = 0`")) << said;
+  EXPECT_TRUE(checked("  unit na on a\n  unit nb on b\n  pa = pb\n  angle(na, nb) = 0\n").clean());
+}
+
 TEST(Check, DependentRowsAreNamed) {
   std::string said;
   EXPECT_FALSE(checked("  pa = pb\n  dot(pa - pb, a.x) = 0\n", &said).clean());
@@ -102,7 +118,7 @@ TEST(Check, TellsWhereTheEffectiveMassIsSingularInSpace) {
   std::string said;
   const std::string frames = "  frame fa on a\n  frame fb on b\n";
   EXPECT_TRUE(checked(frames + "  pa = pb\n  cross(fa.x, fb.x) = 0 keep 2\n", &said, "spatial").clean());
-  EXPECT_TRUE(mentions(said, "while nothing but a can move, K is singular where dot(fa_x, fb_x) = 0")) << said;
+  EXPECT_TRUE(mentions(said, "while nothing but a can move, K is singular where dot(fa.x, fb.x) = 0")) << said;
   EXPECT_TRUE(mentions(said, "while nothing can turn, K is singular at every pose")) << said;
   said.clear();
   EXPECT_TRUE(checked("  norm(pa - pb) = 2 [m]\n", &said, "spatial").clean());
