@@ -168,6 +168,17 @@ std::string sentence(const ScalarRow& row, const Felt& felt, bool rotation, cons
          spec_text(felt.translation, joint) + " per metre";
 }
 
+// A velocity row of one body, as of a sleigh, acts against the ground: the ground has to stand in it.
+std::string against_ground(const ScalarRow& row, const Joint& joint) {
+  const std::string differences = "use differences of points, or say which point is fixed in the world";
+  if (row.kind != RowKind::velocity || joint.bodies.size() != 1) return differences;
+  std::string point = "x(a)", rate = "v(a)";
+  for (const Parameter& p : joint.parameters)
+    if (p.kind == ParameterKind::point && p.body == 0) point = p.name, rate = "v(" + p.name + ")";
+  return "against the ground, declare `point ground on world = " + point + "` and write " + rate +
+         " - v(ground) in place of " + rate;
+}
+
 void fail(Law& law, const Joint& joint, const Block& block, const ScalarRow& row, const Felt& felt, bool rotation,
           Momentum& momentum) {
   Expr written;
@@ -190,7 +201,7 @@ void fail(Law& law, const Joint& joint, const Block& block, const ScalarRow& row
   for (const Expr term : guilty) parts.push_back(spec_text(term, joint));
   if (terms.size() > 1) law.text += "; the cause is " + listed(parts);
   law.fix = rotation ? "use angles and directions of bodies relative to each other, or say what is fixed in the world"
-                     : "use differences of points, or say which point is fixed in the world";
+                     : against_ground(row, joint);
   if (joint.file) law.parts = occurrences(*joint.file, where, spellings(guilty, joint, rotation));
 }
 

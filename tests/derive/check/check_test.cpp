@@ -43,6 +43,22 @@ TEST(Check, ASquaredAngleVanishesToo) {
   EXPECT_TRUE(mentions(said, "J vanishes where C = 0")) << said;
 }
 
+// A sleigh, as people write it first, and as the message shows it.
+TEST(Check, AVelocityRowOfOneBodyNamesTheGround) {
+  const std::string blade = "joint own planar\n  \"own\"\n  point pa on a\n  unit e on a\n";
+  const auto said_of = [](const std::string& text) {
+    const ReadResult read = read_joint(std::make_shared<SourceFile>("own.joint", text), {});
+    std::string said;
+    for (const Finding& f : check(read).findings) said += render(*read.file, f);
+    return said;
+  };
+  EXPECT_TRUE(mentions(said_of(blade + "  velocity dot(e, v(pa)) = 0\n"),
+                       "declare `point ground on world = pa` and write v(pa) - v(ground) in place of v(pa)"));
+  const std::string mended =
+      said_of(blade + "  point ground on world = pa\n  velocity dot(e, v(pa) - v(ground)) = 0\n");
+  EXPECT_FALSE(mentions(mended, "error") || mentions(mended, "warning")) << mended;
+}
+
 // The offered rows are accepted: advice never goes round in a circle.
 TEST(Check, ParallelDirectionsAreOfferedAsTwoRows) {
   std::string said;
