@@ -163,7 +163,7 @@ class Whole {
       for (std::size_t c = 0; c < n; ++c) {
         List unit(n);
         unit[c] = 1;
-        const List column = solved(rows, unit, [](double a, double pivot) { return a / pivot; });
+        const List column = derive::solved(rows, unit, [](double a, double pivot) { return a / pivot; });
         for (std::size_t r = 0; r < n; ++r) inverse[r * n + c] = column[r];
       }
       return inverse;

@@ -113,7 +113,8 @@ Ast Parser::number() {
   result.unit = unit();
   const auto is_next = [&](const NamedUnit& u) { return at_name() && peek().text == u.name; };
   if (!result.unit && std::ranges::any_of(known_units, is_next))
-    fail(peek().where, "a unit stands in brackets", "write " + t.text + " [" + peek().text + "]");
+    fail(peek().where, "a unit stands in brackets",
+         "write " + std::string(t.text) + " [" + std::string(peek().text) + "]");
   result.where = from(t);
   return failed_ ? Ast{} : std::move(result);
 }

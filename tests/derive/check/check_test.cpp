@@ -43,6 +43,25 @@ TEST(Check, ASquaredAngleVanishesToo) {
   EXPECT_TRUE(mentions(said, "J vanishes where C = 0")) << said;
 }
 
+// A vector row rotates with its bodies on C = 0, unless the angle of one of them scales a part of it.
+TEST(Check, AVectorRowThatARotationChangesIsRejected) {
+  std::string said;
+  EXPECT_FALSE(checked("  pa - pb = angle(a) * arm(pa)\n", &said).clean());
+  EXPECT_TRUE(mentions(said, "angular momentum is not conserved: C1_x")) << said;
+}
+
+TEST(Check, AFactorThatMayVanishIsNotRegularEverywhere) {
+  std::string said;
+  EXPECT_TRUE(checked("  pa = pb\n  scalar ratio [1]\n  (1 + ratio)*(angle(a) - angle(b)) = 0\n", &said).clean());
+  EXPECT_FALSE(mentions(said, "regular at every pose")) << said;
+  EXPECT_TRUE(mentions(said, "ratio + 1 = 0")) << said;
+}
+
+TEST(Check, SmallRowsAreAsGoodAsLargeOnes) {
+  for (const char* factor : {"1e-7", "1", "1e7"})
+    EXPECT_TRUE(checked(std::string("  ") + factor + "*(pa - pb) = 0\n").clean());
+}
+
 // A sleigh, as people write it first, and as the message shows it.
 TEST(Check, AVelocityRowOfOneBodyNamesTheGround) {
   const std::string blade = "joint own planar\n  \"own\"\n  point pa on a\n  unit e on a\n";

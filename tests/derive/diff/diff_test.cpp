@@ -130,6 +130,99 @@ TEST(Diff, AnAxisFixedInTheOtherBodyIsExactToo) {
   EXPECT_EQ(j.condition, "t is fixed in a");
 }
 
+// Without b's columns a common motion of all bodies means nothing.
+TEST(Diff, AnImmovableBodyBreaksNoMomentum) {
+  const Judgement j = judged("revolute", "  assume b immovable\n  J = [ E, S(ra), 0, 0 ]\n");
+  EXPECT_EQ(j.agreement, Agreement::agrees);
+  EXPECT_TRUE(j.remarks.empty());
+}
+
+// The rows of one vector equation change their sign together, others alone.
+TEST(Diff, AKAloneHasTheSignsOfItsEquations) {
+  const std::string diagonal_x = "1/m(a) + 1/m(b) + ra.y^2/I(a) + rb.y^2/I(b)",
+                    diagonal_y = "1/m(a) + 1/m(b) + ra.x^2/I(a) + rb.x^2/I(b)",
+                    between = "(ra.x*ra.y/I(a) + rb.x*rb.y/I(b))";
+  const auto K = [&](const std::string& off) {
+    return "  K = [" + diagonal_x + ", " + off + " ; " + off + ", " + diagonal_y + "]\n";
+  };
+  EXPECT_EQ(judged("revolute", K("-" + between)).agreement, Agreement::agrees);
+  const Judgement wrong = judged("revolute", K(between));
+  EXPECT_EQ(wrong.agreement, Agreement::differs);
+  const std::string s_a = "cross(ra, t)/I(a)", s_b = "cross(rb + u, t)/I(b)";
+  const std::string line = "1/m(a) + 1/m(b) + cross(ra, t)^2/I(a) + cross(rb + u, t)^2/I(b)";
+  const Judgement flipped = judged(
+      "prismatic", "  K = [" + line + ", -" + s_a + " - " + s_b + " ; -" + s_a + " - " + s_b + ", 1/I(a) + 1/I(b)]\n");
+  EXPECT_EQ(flipped.agreement, Agreement::agrees);
+  ASSERT_EQ(flipped.remarks.size(), 1u);
+  EXPECT_NE(flipped.remarks[0].find("has the opposite sign"), std::string::npos);
+}
+
+TEST(Diff, OneSlipOfAWholeMatrixIsOneSentence) {
+  const std::string K =
+      "[1/m(a) + 1/m(b) + ra.y^2/I(a) + rb.y^2/I(b), -ra.x*ra.y/I(a) - rb.x*rb.y/I(b) ; "
+      "-ra.x*ra.y/I(a) - rb.x*rb.y/I(b), 1/m(a) + 1/m(b) + ra.x^2/I(a) + rb.x^2/I(b)]";
+  const std::string of_masses =
+      "[m(a) + m(b) + ra.y^2/I(a) + rb.y^2/I(b), -ra.x*ra.y/I(a) - rb.x*rb.y/I(b) ; "
+      "-ra.x*ra.y/I(a) - rb.x*rb.y/I(b), m(a) + m(b) + ra.x^2/I(a) + rb.x^2/I(b)]";
+  const struct {
+    const char* joint;
+    std::string items;
+    const char *kind, *sentence;
+  } table[] = {
+      {"revolute", "  K = inverse(" + K + ")\n", "inverse", "K: this is K^-1, the inverse of K"},
+      {"revolute", "  K = " + of_masses + "\n", "inverse", "K: masses m stand where 1/m belongs"},
+      {"revolute", "  J = [ -E, -S(rb), E, S(ra) ]\n", "wrong body", "J: ra and rb are exchanged"},
+      {"revolute", "  J = [ E, S(ra)/2, -E, -S(rb) ]\n", "factor", "J: half of ra stands where ra belongs"},
+      {"prismatic",
+       "  C = [ dot(t, u) ; angle(a) - angle(b) - phi ]\n"
+       "  J = [ 0, 1, 0, -1 ; t', cross(ra, t), -t', -cross(rb + u, t) ]\n",
+       "order", "J: rows 1 and 2 are exchanged"},
+      {"prismatic", "  J = [ t', cross(ra, t), -t', -cross(rb + u, t) ; 0, 3, 0, -3 ]\n", "factor",
+       "J: row 2 is 3 times what it should be"},
+      {"spatial/n1", "  form local\n  J = [ 0, cross(na, nb)', 0, -cross(na, nb)' ]\n", "frame",
+       "J: its columns of w are for angular velocities along the axes of the world: say `form global`"},
+  };
+  for (const auto& row : table) {
+    const Judgement j = judged(row.joint, row.items);
+    ASSERT_EQ(j.differences.size(), 1u) << row.items;
+    EXPECT_EQ(j.differences[0].kind, row.kind) << row.items;
+    EXPECT_EQ(j.differences[0].sentence, row.sentence) << row.items;
+  }
+}
+
+TEST(Diff, OrderAndScaleAreTheAuthorsChoice) {
+  const Judgement order = judged("prismatic",
+                                 "  C = [ angle(a) - angle(b) - phi ; dot(t, u) ]\n"
+                                 "  J = [ 0, 1, 0, -1 ; t', cross(ra, t), -t', -cross(rb + u, t) ]\n");
+  EXPECT_EQ(order.agreement, Agreement::agrees);
+  ASSERT_FALSE(order.remarks.empty());
+  EXPECT_NE(order.remarks[0].find("its rows stand in the order"), std::string::npos);
+  const Judgement scale =
+      judged("angle", "  C = 2*(angle(a) - angle(b) - phi)\n  J = [ 0, 2, 0, -2 ]\n  K = 4/I(a) + 4/I(b)\n");
+  EXPECT_EQ(scale.agreement, Agreement::agrees);
+  ASSERT_EQ(scale.remarks.size(), 1u);
+  EXPECT_EQ(scale.remarks[0], "C is 2 times that of the spec: J is, too, and K twice over");
+  EXPECT_EQ(
+      judged("angle", "  C = 2*(angle(a) - angle(b) - phi)\n  J = [ 0, 2, 0, -2 ]\n  K = 1/I(a) + 1/I(b)\n").agreement,
+      Agreement::differs);
+}
+
+// What a solver adds on purpose; with the wrong sign, or of a mass, it is a mistake.
+TEST(Diff, BaumgarteTermsAndSoftnessAreNoMistakes) {
+  const std::string C = "(angle(a) - angle(b) - phi)", rate = "(w(a) - w(b))";
+  const Judgement b = judged("angle", "  free beta, h\n  b = -" + rate + " - beta/h*" + C + "\n");
+  EXPECT_EQ(b.agreement, Agreement::agrees);
+  ASSERT_EQ(b.remarks.size(), 1u);
+  EXPECT_NE(b.remarks[0].find("plus a Baumgarte term"), std::string::npos);
+  EXPECT_EQ(judged("angle", "  free beta, h\n  b = -" + rate + " + beta/h*" + C + "\n").agreement, Agreement::differs);
+  const Judgement K = judged("angle", "  free softness\n  K = 1/I(a) + 1/I(b) + softness\n");
+  EXPECT_EQ(K.agreement, Agreement::agrees);
+  ASSERT_EQ(K.remarks.size(), 1u);
+  EXPECT_NE(K.remarks[0].find("plus softness on the diagonal: softness"), std::string::npos);
+  EXPECT_EQ(judged("angle", "  free softness\n  K = 1/I(a) + 1/I(b) - softness\n").agreement, Agreement::differs);
+  EXPECT_EQ(judged("angle", "  K = 2/I(a) + 1/I(b)\n").agreement, Agreement::differs);
+}
+
 TEST(Diff, AnInequalityNeedsItsBound) {
   EXPECT_EQ(judged("max_distance", "  bound lambda >= 0\n").agreement, Agreement::agrees);
   EXPECT_EQ(judged("max_distance", "  bound lambda free\n").agreement, Agreement::differs);
