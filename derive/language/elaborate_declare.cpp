@@ -190,7 +190,7 @@ std::optional<double> Elaborator::bound(Source& source, const Ast& ast, const De
   else if (!is_plain_number(v) && !same_unit(scalar(Expr(), p.unit), v))
     source.diagnostics.error(
         ast.where, "a bound of " + quote(d.name.text) + " is in " + spoken(*v.unit) + ", not in " + spoken(p.unit),
-        "give the number its unit, as in 2 [m]");
+        "write the number alone: it takes the declared unit");
   else return value;
   return {};
 }
