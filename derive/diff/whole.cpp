@@ -64,9 +64,9 @@ class Whole {
   }
 
   std::optional<Slip> slip() const {
-    for (const auto reading :
-         {&Whole::other_rows, &Whole::other_columns, &Whole::other_form, &Whole::inverse, &Whole::wrong_sign,
-          &Whole::masses, &Whole::turned_inertia, &Whole::lever, &Whole::other_body, &Whole::multiple})
+    for (const auto reading : {&Whole::other_rows, &Whole::other_columns, &Whole::other_form, &Whole::inverse,
+                               &Whole::wrong_sign, &Whole::masses, &Whole::turned_inertia, &Whole::lever,
+                               &Whole::other_body, &Whole::lever_of_other_body, &Whole::multiple})
       if (std::optional<Slip> found = (this->*reading)()) return found;
     return {};
   }
@@ -327,6 +327,34 @@ class Whole {
         right = alike(values_at(mended, entry_.poses().samples()[i]), generated_[i]);
       if (right) return Slip{"wrong body", exchange.words};
     }
+    return {};
+  }
+
+  // Of K: in the terms of one body, the arm of another.
+  std::optional<Slip> lever_of_other_body() const {
+    if (what_ != "K") return {};
+    std::vector<Expr> arms;
+    for (const Parameter& p : entry_.joint.parameters)
+      if (p.kind == ParameterKind::point && p.body >= 0) arms.push_back(p.symbol);
+    for (const std::string& body : entry_.joint.bodies)
+      for (const Expr arm : arms)
+        for (const Expr other : arms) {
+          if (arm == other) continue;
+          const std::vector<Expr> exchanged = substituted(mine_, {{&*arm, other}});
+          const auto expected = [&](std::size_t pose) {
+            const Sample& sample = entry_.poses().samples()[pose];
+            Sample without = sample;
+            for (auto& [name, value] : without.scalars)
+              if (name == "inv_m_" + body || name.starts_with("inv_I_" + body)) value = 0;
+            List of = values_at(exchanged, sample);
+            const List rest = values_at(exchanged, without), others = values_at(mine_.entries, without);
+            for (std::size_t i = 0; i < of.size(); ++i) of[i] += others[i] - rest[i];
+            return of;
+          };
+          if (is(expected))
+            return Slip{"wrong body", fmt::format("in the terms of body {}, {} stands where {} belongs", body,
+                                                  other->symbol, arm->symbol)};
+        }
     return {};
   }
 

@@ -173,6 +173,10 @@ TEST(Diff, OneSlipOfAWholeMatrixIsOneSentence) {
       {"revolute", "  K = " + of_masses + "\n", "inverse", "K: masses m stand where 1/m belongs"},
       {"revolute", "  J = [ -E, -S(rb), E, S(ra) ]\n", "wrong body", "J: ra and rb are exchanged"},
       {"revolute", "  J = [ E, S(ra)/2, -E, -S(rb) ]\n", "factor", "J: half of ra stands where ra belongs"},
+      {"revolute",
+       "  K = [1/m(a) + 1/m(b) + ra.y^2/I(a) + ra.y^2/I(b), -ra.x*ra.y/I(a) - ra.x*ra.y/I(b) ; "
+       "-ra.x*ra.y/I(a) - ra.x*ra.y/I(b), 1/m(a) + 1/m(b) + ra.x^2/I(a) + ra.x^2/I(b)]\n",
+       "wrong body", "K: in the terms of body b, ra stands where rb belongs"},
       {"prismatic",
        "  C = [ dot(t, u) ; angle(a) - angle(b) - phi ]\n"
        "  J = [ 0, 1, 0, -1 ; t', cross(ra, t), -t', -cross(rb + u, t) ]\n",
