@@ -27,12 +27,14 @@ Expr vector_that_vanishes(Expr C) {
   return {};
 }
 
-// In space two directions are parallel by two rows. Their angle is never below 0, so it is no better.
+// In space two directions are parallel by two rows. Their angle is never below 0, so it is no better. One of them has
+// to be an axis of a frame.
 std::string parallel(Expr u, Expr v, const Joint& joint) {
   const auto of_frame = [&](Expr e) { return joint.pool->axis_of(e).triad && e->body >= 0; };
   if (!of_frame(u)) std::swap(u, v);
-  if (!of_frame(u)) return "";
-  return "cross(" + spec_text(u, joint) + ", " + spec_text(v, joint) + ") = 0 keep 2";
+  const std::string axis = of_frame(u) ? spec_text(u, joint) : "f.x";
+  return "cross(" + axis + ", " + spec_text(v, joint) + ") = 0 keep 2" +
+         (of_frame(u) ? "" : "` with `frame f on a` in place of `" + spec_text(u, joint));
 }
 
 // An equivalent row that changes its sign at C = 0, if the form of C shows one.
@@ -49,21 +51,13 @@ std::string better_form(Expr C, const Joint& joint) {
       return spec_text(part->args[0], joint) + (e->coefs[0] == e->coefs[1] ? " = pi" : " = 0");
     }
     const bool directions = part->kind == Kind::dot && part->args[0]->unit_length && part->args[1]->unit_length;
-    if (directions && joint.dimension == 2) {
+    if (directions) {
+      if (joint.dimension == 3) return parallel(part->args[0], part->args[1], joint);
       const std::string both = spec_text(part->args[0], joint) + ", " + spec_text(part->args[1], joint);
       return e->coefs[0] == e->coefs[1] ? "angle(" + both + ") = pi" : "angle(" + both + ") = 0";
     }
-    if (directions) return parallel(part->args[0], part->args[1], joint);
   }
   return "";
-}
-
-std::string fix_without_form(Expr C, const Joint& joint) {
-  const bool directions = joint.dimension == 3 && split_coefficient(C).e->kind == Kind::sum;
-  return directions
-             ? "write rows that change their sign at C = 0; two directions are parallel by `cross(f.x, u) = 0 keep "
-               "2`, with f declared by `frame f on a`"
-             : "write the row so that C changes its sign at C = 0";
 }
 
 // True if the row's J is negligible at every pose with C = 0, beside its length elsewhere.
@@ -89,7 +83,7 @@ bool find_vanishing(const Subject& subject, Findings& findings) {
         Level::error, "vanishing", row.row->where,
         row.name +
             ": J vanishes where C = 0: C touches zero without changing its sign, so no impulse enforces it (K is 0)",
-        better.empty() ? fix_without_form(row.C, subject.joint)
+        better.empty() ? "write the row so that C changes its sign at C = 0"
                        : "write `" + better + "`, which changes its sign at zero");
   }
   return found;

@@ -18,7 +18,7 @@ Run explain_command(Line& line);
 Run diff_command(Line& line);
 Run check_command(Line& line);
 
-// Writes through a temporary file, so that nobody reads half of one.
+// Writes through a temporary file, so that nobody reads half of one; a device, a pipe or a link is written in place.
 void write_file(const std::filesystem::path& path, const std::string& content);
 
 void add_specs(Line& line, std::string& folder);  // --specs

@@ -214,14 +214,16 @@ void add_specs(Line& line, std::string& folder) {
 
 void write_file(const fs::path& path, const std::string& content) {
   if (path.has_parent_path()) fs::create_directories(path.parent_path());
-  fs::path temporary = path;
-  temporary += ".new";
+  const fs::file_status status = fs::symlink_status(path);
+  const bool in_place = fs::exists(status) && !fs::is_regular_file(status);
+  fs::path written = path;
+  if (!in_place) written += ".new";
   {
-    std::ofstream out(temporary, std::ios::binary);
+    std::ofstream out(written, std::ios::binary);
     out << content;
-    if (!out.flush()) throw std::runtime_error(fmt::format("cannot write {}", temporary.string()));
+    if (!out.flush()) throw std::runtime_error(fmt::format("cannot write {}", written.string()));
   }
-  fs::rename(temporary, path);
+  if (!in_place) fs::rename(written, path);
 }
 
 void add_jobs(Line& line, int& processes) {

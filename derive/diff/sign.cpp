@@ -95,6 +95,7 @@ std::optional<Rational> rational_near(double k) {
 // The numbers by which the source's C may be that of the spec: 1, -1, and their constant ratio where there is one.
 std::vector<Rational> candidates(const Entry& entry, const Part& part, std::size_t first, std::size_t rows) {
   std::vector<Rational> all = {Rational(1), Rational(-1)};
+  if (!part.rows[first].row) return all;  // the value of a coordinate counts, not its zero alone
   for (const HandItem& item : part.hand->items) {
     if (item.kind != HandItem::Kind::quantity || item.what != "C" || !item.value) continue;
     const Matrix& mine = part.generated.C;

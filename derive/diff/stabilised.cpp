@@ -68,11 +68,12 @@ Matrix without_softness(Entry& entry, const Part& part, const HandItem& item, Ma
   const Expr one = entry.pool().number(1);
   for (std::size_t r = 0; r < part.rows.size(); ++r) {
     const std::size_t at = r * part.rows.size() + r;
+    const Rational square = part.scale[r] * part.scale[r];
     const Expr published = item.value->entries[at],
-               added = difference_of(published, generated.entries[at], entry.joint);
+               added = difference_of(published, square * generated.entries[at], entry.joint);
     if (is_zero(added) || free_symbols(added).empty() || depends_on_masses(added)) continue;
     if (!is_constant_share(added, one, 1, entry.poses())) continue;
-    generated.entries[at] = published;
+    generated.entries[at] = Rational(1) / square * published;
     entry.verdict.remarks.push_back(fmt::format("K agrees in row {}, plus softness on the diagonal: {}",
                                                 name_of_row(part, static_cast<int>(r)),
                                                 in_short(added, entry, "a positive number")));

@@ -53,6 +53,21 @@ std::string words_of(const Order& order, const std::string& what, const std::vec
   return fmt::format("{} stand in the order {}", what, fmt::join(all, ", "));
 }
 
+// The inverse of a square matrix, row by row.
+List inverted(const List& matrix) {
+  const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(matrix.size()))));
+  std::vector<List> rows(n, List(n));
+  for (std::size_t i = 0; i < n * n; ++i) rows[i / n][i % n] = matrix[i];
+  List inverse(n * n);
+  for (std::size_t c = 0; c < n; ++c) {
+    List unit(n);
+    unit[c] = 1;
+    const List column = derive::solved(rows, unit, [](double a, double pivot) { return a / pivot; });
+    for (std::size_t r = 0; r < n; ++r) inverse[r * n + c] = column[r];
+  }
+  return inverse;
+}
+
 class Whole {
  public:
   Whole(const Entry& entry, const Part* part, const std::string& what, const Matrix& published, const Matrix& generated)
@@ -152,23 +167,7 @@ class Whole {
   }
 
   std::optional<Slip> inverse() const {
-    if (what_ != "K") return {};
-    const auto inverted = [&](std::size_t pose) {
-      const auto n = static_cast<std::size_t>(mine_.rows);
-      std::vector<List> rows(n);
-      for (std::size_t r = 0; r < n; ++r)
-        rows[r].assign(generated_[pose].begin() + static_cast<std::ptrdiff_t>(r * n),
-                       generated_[pose].begin() + static_cast<std::ptrdiff_t>((r + 1) * n));
-      List inverse(n * n);
-      for (std::size_t c = 0; c < n; ++c) {
-        List unit(n);
-        unit[c] = 1;
-        const List column = derive::solved(rows, unit, [](double a, double pivot) { return a / pivot; });
-        for (std::size_t r = 0; r < n; ++r) inverse[r * n + c] = column[r];
-      }
-      return inverse;
-    };
-    if (!is(inverted)) return {};
+    if (what_ != "K" || !is([&](std::size_t pose) { return inverted(generated_[pose]); })) return {};
     return Slip{"inverse", "this is K^-1, the inverse of K"};
   }
 
@@ -213,19 +212,6 @@ class Whole {
       for (std::size_t k = 0; k < names.size(); ++k) sample.scalars[names[k]] = after[k];
     }
   }
-  static List inverted_tensor(const List& I) {
-    if (I.size() == 1) return {1 / I[0]};
-    const auto cofactor = [&](std::size_t r, std::size_t c) {
-      const std::size_t i = (r + 1) % 3, j = (r + 2) % 3, k = (c + 1) % 3, l = (c + 2) % 3;
-      return I[3 * i + k] * I[3 * j + l] - I[3 * i + l] * I[3 * j + k];
-    };
-    const double det = I[0] * cofactor(0, 0) + I[1] * cofactor(0, 1) + I[2] * cofactor(0, 2);
-    List inverse;
-    for (std::size_t r = 0; r < 3; ++r)
-      for (std::size_t c = 0; c < 3; ++c) inverse.push_back(cofactor(c, r) / det);
-    return inverse;
-  }
-
   // Of one body: its columns of J, or the terms of its velocities; all of them, those of v or those of w.
   std::optional<Slip> wrong_sign() const {
     const int width = entry_.width(), linear = entry_.joint.dimension;
@@ -258,7 +244,7 @@ class Whole {
         if (const auto m = sample.scalars.find("inv_m_" + body); m != sample.scalars.end()) m->second = 1 / m->second;
     };
     const auto invert_inertia = [&](Sample& sample) {
-      change_inertia(sample, [](const List& I, std::size_t) { return inverted_tensor(I); });
+      change_inertia(sample, [](const List& I, std::size_t) { return inverted(I); });
     };
     if (at_changed(invert_masses)) return Slip{"inverse", "masses m stand where 1/m belongs"};
     if (at_changed(invert_inertia))

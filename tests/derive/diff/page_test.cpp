@@ -162,5 +162,17 @@ TEST_F(Page, IsWrittenWholeOrNotAtAll) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1) << "no other file stays";
 }
 
+// As a device or a pipe stays: a rename would put a file in its place.
+TEST_F(Page, ALinkStaysALink) {
+  const fs::path file = folder_ / "page.html", link = folder_ / "link.html";
+  std::ofstream(file) << "old";
+  fs::create_symlink(file, link);
+  const std::string command = std::string(CDOT) + " diff --specs '" + specs_folder().string() + "' line --html '" +
+                              link.string() + "' >/dev/null 2>&1";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_TRUE(has(content_of(file), "</html>"));
+}
+
 }  // namespace
 }  // namespace cdot::test
