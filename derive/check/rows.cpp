@@ -32,9 +32,10 @@ Expr vector_that_vanishes(Expr C) {
 std::string parallel(Expr u, Expr v, const Joint& joint) {
   const auto of_frame = [&](Expr e) { return joint.pool->axis_of(e).triad && e->body >= 0; };
   if (!of_frame(u)) std::swap(u, v);
-  const std::string axis = of_frame(u) ? spec_text(u, joint) : "f.x";
-  return "cross(" + axis + ", " + spec_text(v, joint) + ") = 0 keep 2" +
-         (of_frame(u) ? "" : "` with `frame f on a` in place of `" + spec_text(u, joint));
+  const std::string other = spec_text(v, joint) + ") = 0 keep 2";
+  if (of_frame(u)) return "cross(" + spec_text(u, joint) + ", " + other;
+  return "cross(f.x, " + other + "` with `frame f on " + (u->body < 0 ? "a" : joint.bodies[std::size_t(u->body)]) +
+         "` in place of `" + spec_text(u, joint);
 }
 
 // An equivalent row that changes its sign at C = 0, if the form of C shows one.

@@ -87,7 +87,7 @@ TEST(Check, ParallelDirectionsAreOfferedAsTwoRows) {
   EXPECT_TRUE(checked(frames + "  cross(fa.x, fb.x) = 0 keep 2\n", nullptr, "spatial").clean());
   said.clear();
   EXPECT_FALSE(checked("  unit na on a\n  unit nb on b\n  pa = pb\n  dot(na, nb) = 1\n", &said, "spatial").clean());
-  EXPECT_TRUE(mentions(said, "write `cross(f.x, na) = 0 keep 2` with `frame f on a` in place of `nb`")) << said;
+  EXPECT_TRUE(mentions(said, "write `cross(f.x, na) = 0 keep 2` with `frame f on b` in place of `nb`")) << said;
   said.clear();
   EXPECT_FALSE(checked("  unit na on a\n  unit nb on b\n  pa = pb\n  dot(na, nb) = 1\n", &said).clean());
   EXPECT_TRUE(mentions(said, "write `angle(na, nb) = 0`")) << said;
