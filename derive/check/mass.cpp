@@ -42,6 +42,7 @@ class MassCheck {
       : subject_(subject), joint_(subject.joint), findings_(findings), names_(subject.joint, Algebra::Route::names) {}
 
   void run() {
+    if (subject_.block.rows.empty()) return;
     const double minors = number_of_choices(width_ * joint_.bodies.size(), subject_.block.rows.size());
     if (minors > most_minors) {
       return add(fmt::format("singular poses of K were not searched: J has {:.0f} minors, more than {:.0f}", minors,
@@ -71,10 +72,12 @@ class MassCheck {
     std::vector<std::vector<std::vector<double>>> seen;
     for (const Sample& sample : subject_.anywhere) seen.push_back(jacobian_at(subject_.block, sample));
     std::map<Monomial, Coefficient> by_monomial;
+    const std::size_t rows = J.size(), width = J[0].size();
+    Minors minors(std::move(J));
     std::vector<std::size_t> columns;
     const auto choose = [&](auto&& self, std::size_t from) -> void {
-      if (columns.size() == J.size()) return add_minor(J, seen, columns, by_monomial);
-      for (std::size_t c = from; c < J[0].size(); ++c) {
+      if (columns.size() == rows) return add_minor(minors, seen, columns, by_monomial);
+      for (std::size_t c = from; c < width; ++c) {
         columns.push_back(c);
         self(self, c + 1);
         columns.pop_back();
@@ -89,9 +92,9 @@ class MassCheck {
     }
   }
 
-  void add_minor(const std::vector<std::vector<ex>>& J, const std::vector<std::vector<std::vector<double>>>& seen,
+  void add_minor(Minors& minors, const std::vector<std::vector<std::vector<double>>>& seen,
                  const std::vector<std::size_t>& columns, std::map<Monomial, Coefficient>& sums) {
-    const ex minor = by_algebra_ ? determinant(J, columns) : ex(1);
+    const ex minor = by_algebra_ ? minors.of(columns) : ex(1);
     if (minor.is_zero()) return;
     Monomial monomial(2 * joint_.bodies.size());
     for (const std::size_t c : columns) {
@@ -220,10 +223,18 @@ class MassCheck {
     return std::all_of(seen.begin(), seen.end(), [&](double x) { return std::fabs(x - seen[0]) <= 1e-9 * seen[0]; });
   }
 
+  // Without algebra, numbers decide; with it, a number that the coefficient equals everywhere.
+  bool is_number(const Coefficient& c) {
+    if (!is_constant(c.seen) || !by_algebra_) return is_constant(c.seen);
+    const std::optional<ex> number = factor_of(c, std::vector<double>(c.seen.size(), 1));
+    return number && names_.vanishes(c.value - *number);
+  }
+
   void describe(Coefficient& c) {
+    c.never_zero = is_number(c);
+    if (c.never_zero) return;
     if (!by_algebra_) {
-      c.never_zero = is_constant(c.seen);
-      if (!c.never_zero) recognise(c);
+      recognise(c);
       return;
     }
     const std::optional<ex> numerator = names_.numerator(c.value, true);

@@ -1,16 +1,28 @@
 // Where K is singular: minors of J, as formulas and as numbers; sums of squares that cannot vanish; and the words.
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "derive/proof/ginac.hpp"
 
 namespace cdot::derive {
 
+// The minors of J, by Laplace's rule, multiplied out unless that is long. Each minor of J's last rows is made once.
+class Minors {
+ public:
+  explicit Minors(std::vector<std::vector<ex>> J) : J_(std::move(J)) {}
+  // Of these columns of as many last rows.
+  ex of(const std::vector<std::size_t>& columns);
+
+ private:
+  std::vector<std::vector<ex>> J_;
+  std::map<std::vector<std::size_t>, ex> made_;
+};
 // The determinant of J's columns as chosen: as many as J has rows.
-ex determinant(const std::vector<std::vector<ex>>& J, const std::vector<std::size_t>& columns);
 double determinant(const std::vector<std::vector<double>>& J, const std::vector<std::size_t>& columns);
 // n over k.
 double number_of_choices(std::size_t n, std::size_t k);

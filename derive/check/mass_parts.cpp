@@ -62,12 +62,20 @@ std::string in_words(const std::vector<Way>& ways) {
   return listed(parts, ", or ");
 }
 
-ex determinant(const std::vector<std::vector<ex>>& J, const std::vector<std::size_t>& columns) {
-  GiNaC::matrix m(static_cast<unsigned>(J.size()), static_cast<unsigned>(J.size()));
-  for (unsigned i = 0; i < J.size(); ++i) {
-    for (unsigned k = 0; k < J.size(); ++k) m(i, k) = J[i][columns[k]];
+ex Minors::of(const std::vector<std::size_t>& columns) {
+  if (columns.empty()) return 1;
+  if (const auto found = made_.find(columns); found != made_.end()) return found->second;
+  const std::vector<ex>& row = J_[J_.size() - columns.size()];
+  ex sum = 0;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const ex& entry = row[columns[k]];
+    if (entry.is_zero()) continue;
+    std::vector<std::size_t> others = columns;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    const ex part = entry * of(others);
+    sum = k % 2 == 0 ? sum + part : sum - part;
   }
-  return m.determinant(GiNaC::determinant_algo::laplace);
+  return made_.emplace(columns, expanded_if_short(sum)).first->second;
 }
 
 double determinant(const std::vector<std::vector<double>>& J, const std::vector<std::size_t>& columns) {

@@ -9,7 +9,9 @@ Algebra::Algebra(const Joint& joint, Route route, int immovable)
 ex Algebra::leaf(const std::string& name, const ex& rate) {
   const auto found = leaves_.find(name);
   if (found != leaves_.end()) return found->second.symbol;
-  return leaves_.emplace(name, Leaf{fresh_symbol(name), rate}).first->second.symbol;
+  const ex symbol = leaves_.emplace(name, Leaf{fresh_symbol(name), rate}).first->second.symbol;
+  in_order_.push_back(symbol);
+  return symbol;
 }
 
 std::vector<ex> Algebra::velocities(int body) {
@@ -50,8 +52,8 @@ EulerParameters<ex> rates_of(const EulerParameters<ex>& e, const ex& w_x, const 
 
 }  // namespace
 
-ex derivative(const ex& e, const ex& symbol) {
-  return is_a<GiNaC::symbol>(symbol) ? e.diff(ex_to<GiNaC::symbol>(symbol)) : 0;
+ex Algebra::derivative(const ex& e, const ex& symbol) {
+  return is_a<GiNaC::symbol>(symbol) ? slopes_.try_emplace(symbol, symbol).first->second.of(e) : 0;
 }
 
 EulerParameters<ex> Algebra::orientation(const std::string& name, int body) {
@@ -83,7 +85,7 @@ ex Algebra::slope(const ex& e, int body, std::size_t k) {
 ex Algebra::rate(const ex& e) {
   ex total = 0;
   for (const auto& [name, leaf] : leaves_) {
-    if (!leaf.rate.is_zero()) total += e.diff(leaf.symbol) * leaf.rate;
+    if (!leaf.rate.is_zero()) total += derivative(e, leaf.symbol) * leaf.rate;
   }
   return total;
 }

@@ -2,6 +2,7 @@
 // from run to run.
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "derive/derivation/derivation.hpp"
 #include "derive/numbers/numeric.hpp"
 #include "derive/proof/ginac_point.hpp"
+#include "derive/proof/ginac_walks.hpp"
 
 namespace cdot::derive {
 
@@ -31,6 +33,8 @@ class Algebra final : public Arithmetic<ex> {
   // v_x, ..., w_z.
   std::vector<ex> coordinates(int body);
   std::vector<ex> velocities(int body);
+  // de/dsymbol. It is zero for the velocity of an immovable body, which is the number 0.
+  ex derivative(const ex& e, const ex& symbol);
   // The derivative of e as the body moves along column k of J at unit rate.
   ex slope(const ex& e, int body, std::size_t k);
   // de/dt along the motion, at constant velocities.
@@ -91,7 +95,9 @@ class Algebra final : public Arithmetic<ex> {
   ex turned(bool cosine, const ex& angle);
   ex symbol_for(const ex& compound);
   std::string difference_at(const ex& e, std::uint64_t seed);
-  Nullity nullity_of(const ex& e) const;
+  struct Point;
+  void complete(Point& point) const;
+  Nullity nullity_of(const ex& e);
 
   // Budgets of one test and of all tests together, in factors of multiplied terms. A test that exceeds its budget
   // halves that of the next one, which is likely to be as expensive.
@@ -116,6 +122,7 @@ class Algebra final : public Arithmetic<ex> {
   Route route_;
   int immovable_;
   std::map<std::string, Leaf> leaves_;
+  std::map<ex, Slope, GiNaC::ex_is_less> slopes_;  // by symbol
   std::vector<Atom> atoms_;
   std::vector<std::vector<ex>> units_;                   // symbols whose squares sum to 1
   GiNaC::exmap known_;                                   // symbols for compounds of which nothing is known
@@ -126,12 +133,20 @@ class Algebra final : public Arithmetic<ex> {
   GiNaC::exmap change_;                                  // of variables, before an expression is tested
   std::vector<std::pair<ex, ex>> meanings_;              // of symbols without a name, as they came up
   std::int64_t allowance_ = most_work, left_for_test_ = most_work, left_in_all_ = most_work_in_all;
+  // Random points at which some test was defined, with a value for all leaves up to these numbers of them. What tests
+  // share is evaluated once at each point.
+  struct Point {
+    PointValues values;
+    std::size_t leaves = 0, units = 0;
+  };
+  std::deque<Point> points_;
+  std::uint64_t drawn_ = 0;  // points so far
+  static constexpr std::size_t most_lost_values = 4000000;
+  std::size_t lost_ = 0;                               // values at points where a test was undefined
+  std::vector<ex> in_order_;                           // the symbols of leaves_, as they came up
   PointValues prints_{1, PointValues::Roots::of_all};  // of every symbol, by when it came up
   Evaluation<ex> evaluation_;
 };
-
-// de/dsymbol. It is zero for the velocity of an immovable body, which is the number 0.
-ex derivative(const ex& e, const ex& symbol);
 
 // e or -e, whichever has a positive first term: one form of expressions with equal zeros.
 Expr with_leading_sign(Expr e);

@@ -33,10 +33,7 @@ Expr converted(const ex& e, Pool& pool) {
 Expr with_leading_sign(Expr e) { return e->kind == Kind::sum && e->coefs[0].sign() < 0 ? -e : e; }
 
 std::vector<ex> Algebra::symbols_in(const ex& e) const {
-  std::set<ex, GiNaC::ex_is_less> found;
-  for (auto node = e.preorder_begin(); node != e.preorder_end(); ++node) {
-    if (is_a<GiNaC::symbol>(*node)) found.insert(*node);
-  }
+  const auto found = symbols_of(e);
   return {found.begin(), found.end()};
 }
 

@@ -29,15 +29,15 @@ Felt felt_by(const std::vector<JacobianEntry>& J, const Joint& joint) {
 GiNaC::exmap on_the_constraint(const Joint& joint, Algebra& names) {
   GiNaC::exmap solved;
   const auto put = [&](const ex& C) {
-    const ex rest = C.subs(solved, GiNaC::subs_options::no_pattern);
+    const ex rest = substituted(C, solved);
     for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
       const auto q = names.coordinates(static_cast<int>(b));
       for (int k = 0; k < joint.dimension; ++k) {
         const ex& x = q[static_cast<std::size_t>(k)];
-        const ex slope = rest.diff(ex_to<GiNaC::symbol>(x));
+        const ex slope = names.derivative(rest, x);
         if (!is_a<numeric>(slope) || slope.is_zero()) continue;
-        const ex value = (x - rest / slope).expand();
-        for (auto& [symbol, earlier] : solved) earlier = earlier.subs(x == value).expand();
+        const ex value = -substituted(rest, {{x, 0}}) / slope;
+        for (auto& [symbol, earlier] : solved) earlier = substituted(earlier, {{x, value}});
         solved[x] = value;
         return;
       }
@@ -61,7 +61,7 @@ class Momentum {
 
   bool vanishes(const ex& e) {
     if (is_zero(e)) return true;
-    if (!is_zero(e.subs(on_constraint_, GiNaC::subs_options::no_pattern))) return false;
+    if (!is_zero(substituted(e, on_constraint_))) return false;
     only_on_constraint_ = true;
     return true;
   }

@@ -52,9 +52,10 @@ class Prover {
     for (std::size_t i = 0; i < block_.rows.size(); ++i) {
       const std::vector<ex> v = velocities(names_);
       for (std::size_t j = 0; j < v.size(); ++j) {
-        const ex slope = derivative(Cdot_[i], v[j]);
+        const ex slope = names_.derivative(Cdot_[i], v[j]);
         for (std::size_t k = 0; k <= j; ++k) {
-          require_zero(law, names_, derivative(slope, v[k]), block_.rows[i], ": Cdot is not linear in the velocities");
+          require_zero(law, names_, names_.derivative(slope, v[k]), block_.rows[i],
+                       ": Cdot is not linear in the velocities");
         }
       }
     }
@@ -82,7 +83,7 @@ class Prover {
         const auto J = entries(raw_, row.J[b]);
         const auto v = raw_.velocities(static_cast<int>(b));
         for (std::size_t k = 0; k < J.size(); ++k) {
-          const ex expected = position ? raw_.slope(source, static_cast<int>(b), k) : derivative(source, v[k]);
+          const ex expected = position ? raw_.slope(source, static_cast<int>(b), k) : raw_.derivative(source, v[k]);
           require_zero(law, raw_, J[k] - expected, row, ", column " + column(b, k) + ": J is not the derivative of C");
         }
       }
@@ -185,7 +186,7 @@ class Prover {
     const auto A = axes_of(e);
     const Triple<ex> J_w = {J[3], J[4], J[5]};
     std::array<ex, 4> slope;
-    for (std::size_t k = 0; k < 4; ++k) slope[k] = derivative(raw_.of(row.C), e[k]);
+    for (std::size_t k = 0; k < 4; ++k) slope[k] = raw_.derivative(raw_.of(row.C), e[k]);
     const ex half = numeric(1, 2), along = raw_.of(time_derivative(row.C, joint_, {.stretched = b}));
     for (std::size_t k = 0; k < 3; ++k) {
       EulerParameters<ex> turn = {0, 0, 0, 0};

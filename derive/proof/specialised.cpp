@@ -29,7 +29,7 @@ class Specialised {
         }
       }
       for (std::size_t j = 0; j <= i; ++j) {
-        const ex K = names_.of(block.K[i][j]).subs(without_mass, GiNaC::subs_options::no_pattern);
+        const ex K = substituted(names_.of(block.K[i][j]), without_mass);
         require_zero(law_, names_, names_.of(variant.K[i][j]) - K, block.rows[i],
                      where + "K is not that of the block without the terms of the body");
       }
@@ -50,7 +50,7 @@ class Specialised {
     }
     for (std::size_t i = 0; i < block.rows.size(); ++i) {
       for (std::size_t j = 0; j <= i; ++j) {
-        const ex K = names_.of(block.K[i][j]).subs(isotropic, GiNaC::subs_options::no_pattern);
+        const ex K = substituted(names_.of(block.K[i][j]), isotropic);
         require_zero(law_, names_, names_.of(substitute(block.K_isotropic[i][j], numbers)) - K, block.rows[i],
                      fmt::format(": K({},{}) of isotropic bodies is not that of the block", i + 1, j + 1));
       }

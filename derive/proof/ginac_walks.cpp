@@ -1,0 +1,156 @@
+#include "derive/proof/ginac_walks.hpp"
+
+#include <cmath>
+
+namespace cdot::derive {
+
+ex Slope::of(const ex& e) {
+  if (e.is_equal(symbol_)) return 1;
+  if (e.nops() == 0) return 0;
+  if (const auto found = done_.find(e); found != done_.end()) return found->second;
+  const ex slope = compound(e);
+  done_.emplace(e, slope);
+  return slope;
+}
+
+ex Slope::compound(const ex& e) {
+  if (is_a<GiNaC::add>(e)) {
+    GiNaC::exvector terms;
+    for (const ex& term : e) terms.push_back(of(term));
+    return GiNaC::add(terms);
+  }
+  if (is_a<GiNaC::mul>(e)) return of_product(e);
+  if (is_a<GiNaC::power>(e) && is_a<numeric>(e.op(1))) {
+    const ex slope = of(e.op(0));
+    return slope.is_zero() ? slope : e.op(1) * pow(e.op(0), e.op(1) - 1) * slope;
+  }
+  return is_a<GiNaC::function>(e) ? of_function(e) : e.diff(ex_to<GiNaC::symbol>(symbol_));
+}
+
+// (x y z)' = x' y z + x y' z + x y z'
+ex Slope::of_product(const ex& e) {
+  const GiNaC::exvector factors(e.begin(), e.end());
+  GiNaC::exvector terms;
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    GiNaC::exvector term = factors;
+    term[i] = of(factors[i]);
+    if (!term[i].is_zero()) terms.push_back(GiNaC::mul(term));
+  }
+  return GiNaC::add(terms);
+}
+
+// GiNaC differentiates f of fresh symbols; the arguments take their places.
+ex Slope::of_function(const ex& e) {
+  GiNaC::exvector symbols, terms;
+  GiNaC::exmap arguments;
+  for (const ex& argument : e) {
+    symbols.push_back(GiNaC::realsymbol());
+    arguments.emplace(symbols.back(), argument);
+  }
+  const ex f = GiNaC::function(ex_to<GiNaC::function>(e).get_serial(), symbols);
+  for (std::size_t i = 0; i < symbols.size(); ++i) {
+    const ex slope = of(e.op(i));
+    if (slope.is_zero()) continue;
+    const ex partial = f.diff(ex_to<GiNaC::symbol>(symbols[i]));
+    terms.push_back(partial.subs(arguments, GiNaC::subs_options::no_pattern) * slope);
+  }
+  return GiNaC::add(terms);
+}
+
+namespace {
+
+// Rebuilds an expression from its leaves, each part once.
+class Rebuilt : public GiNaC::map_function {
+ public:
+  explicit Rebuilt(const GiNaC::exmap& symbols) : symbols_(symbols) {}
+
+  ex operator()(const ex& e) override {
+    if (e.nops() == 0) return leaf(e);
+    if (const auto found = done_.find(e); found != done_.end()) return found->second;
+    const ex rebuilt = made(e.map(*this));
+    done_.emplace(e, rebuilt);
+    return rebuilt;
+  }
+
+ protected:
+  virtual ex made(const ex& e) const { return e; }
+
+ private:
+  ex leaf(const ex& e) const {
+    const auto found = symbols_.find(e);
+    return found == symbols_.end() ? e : found->second;
+  }
+
+  const GiNaC::exmap& symbols_;
+  std::unordered_map<ex, ex> done_;
+};
+
+class InDecimals final : public Rebuilt {
+ public:
+  using Rebuilt::Rebuilt;
+
+ private:
+  ex made(const ex& e) const override { return e.evalf(); }
+};
+
+// Bounds on what multiplying out takes: the terms of the result, and of all parts on all paths to them.
+class Expansion {
+ public:
+  struct Bound {
+    double terms = 1, work = 1;
+  };
+
+  Bound of(const ex& e) {
+    if (e.nops() == 0) return {};
+    if (const auto found = done_.find(e); found != done_.end()) return found->second;
+    const Bound bound = compound(e);
+    done_.emplace(e, bound);
+    return bound;
+  }
+
+ private:
+  Bound compound(const ex& e) {
+    const bool sum = is_a<GiNaC::add>(e), product = is_a<GiNaC::mul>(e);
+    if (is_a<GiNaC::power>(e) && e.op(1).info(GiNaC::info_flags::posint)) {
+      const Bound base = of(e.op(0));
+      const double terms = std::pow(base.terms, ex_to<numeric>(e.op(1)).to_double());
+      return {terms, base.work + terms};
+    }
+    Bound bound{sum ? 0. : 1., 1};
+    for (const ex& part : e) {
+      const Bound of_part = of(part);
+      if (sum) bound.terms += of_part.terms;
+      if (product) bound.terms *= of_part.terms;
+      bound.work += of_part.work;
+    }
+    bound.work += bound.terms;
+    return bound;
+  }
+
+  std::unordered_map<ex, Bound> done_;
+};
+
+}  // namespace
+
+ex expanded_if_short(const ex& e) {
+  constexpr double most_terms = 20000;
+  return Expansion().of(e).work > most_terms ? e : e.expand();
+}
+
+ex substituted(const ex& e, const GiNaC::exmap& symbols) { return Rebuilt(symbols)(e); }
+
+ex in_decimals(const ex& e, const GiNaC::exmap& symbols) { return InDecimals(symbols)(e).evalf(); }
+
+std::set<ex, GiNaC::ex_is_less> symbols_of(const ex& e) {
+  std::set<ex, GiNaC::ex_is_less> symbols;
+  std::set<ex, GiNaC::ex_is_less> seen;
+  const auto visit = [&](auto&& self, const ex& part) -> void {
+    if (is_a<GiNaC::symbol>(part)) symbols.insert(part);
+    if (part.nops() == 0 || !seen.insert(part).second) return;
+    for (const ex& operand : part) self(self, operand);
+  };
+  visit(visit, e);
+  return symbols;
+}
+
+}  // namespace cdot::derive
