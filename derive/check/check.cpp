@@ -54,6 +54,7 @@ CheckReport check(const ReadResult& read) {
     for (const Proved& proved : report.proofs) take_over(proved, report.findings);
     check_rows(subject, report.findings);
     check_undefined(subject, report.findings);
+    check_defaults(subject, report.findings);
     check_mass(subject, report.findings);
   } catch (const NotLinear& e) {
     report.findings.add(Level::error, "linear", joint.rows.front().where, e.what(),

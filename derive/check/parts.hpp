@@ -24,6 +24,7 @@ Span place_of(const Block& coordinate, const Joint& joint);
 void check_rows(const Subject& subject,
                 Findings& findings);                               // vanishing, dependent, without bodies
 void check_undefined(const Subject& subject, Findings& findings);  // 1/0, roots, directions, angles
+void check_defaults(const Subject& subject, Findings& findings);   // defaults with C != 0
 void check_mass(const Subject& subject, Findings& findings);       // where K is singular
 
 }  // namespace cdot::derive

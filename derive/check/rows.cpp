@@ -27,17 +27,6 @@ Expr vector_that_vanishes(Expr C) {
   return {};
 }
 
-// In space two directions are parallel by two rows. Their angle is never below 0, so it is no better. One of them has
-// to be an axis of a frame.
-std::string parallel(Expr u, Expr v, const Joint& joint) {
-  const auto of_frame = [&](Expr e) { return joint.pool->axis_of(e).triad && e->body >= 0; };
-  if (!of_frame(u)) std::swap(u, v);
-  const std::string other = spec_text(v, joint) + ") = 0 keep 2";
-  if (of_frame(u)) return "cross(" + spec_text(u, joint) + ", " + other;
-  return "cross(f.x, " + other + "` with `frame f on " + (u->body < 0 ? "a" : joint.bodies[std::size_t(u->body)]) +
-         "` in place of `" + spec_text(u, joint);
-}
-
 // An equivalent row that changes its sign at C = 0, if the form of C shows one.
 std::string better_form(Expr C, const Joint& joint) {
   if (const Expr u = vector_that_vanishes(C)) return vanishing_vector(u, joint);
@@ -121,9 +110,12 @@ void find_dependent_on_constraint(const Subject& subject, Findings& findings) {
     if (!(weak.rest < negligible)) return;
     row = std::max(row, weak.row);
   }
+  const Expr C = split_coefficient(rows[row].row->C).e;
+  const std::string two = C->vector && C->kind == Kind::cross ? parallel(C->args[0], C->args[1], subject.joint) : "";
   findings.add(Level::error, "dependent", rows[row].row->where,
                rows[row].name + ": where C = 0, and only there, its row of J is a combination of the rows before it",
-               "drop the row, or state its condition in another form");
+               two.empty() ? "drop the row, or state its condition in another form"
+                           : "two of the three rows are independent: write `" + two + "`");
 }
 
 void find_unreachable(const Subject& subject, Findings& findings) {

@@ -58,7 +58,7 @@ class Undefined {
     if (vanishes_on_constraint(u)) {
       return add(Level::error,
                  name_ + ": J is undefined wherever C = 0: " + name + " is zero there and has no direction",
-                 "a vector is zero by one row for each component: write `" + vanishing_vector(u, subject_.joint) + "`");
+                 "write `" + vanishing_vector(u, subject_.joint) + "`: a vector is zero by rows of its components");
     }
     add(Level::note, name_ + ": where " + name + " is zero it has no direction: the kernel takes " +
                          (subject_.joint.dimension == 2 ? "(1, 0)" : "(1, 0, 0)") + " for unit(" + name +

@@ -36,6 +36,7 @@ struct ScalarRow {
   const Row* row = nullptr;  // the statement that it comes from; null for a coordinate
   RowKind kind = RowKind::equality;
   int component = -1;            // of a vector equation; -1 for a scalar one
+  bool of_world = false;         // as its statement
   Expr C;                        // zero for a velocity row
   Expr Cdot;                     // J v + dC/dt, before the velocities are isolated
   Expr C_t;                      // dC/dt at fixed q

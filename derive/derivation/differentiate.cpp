@@ -181,11 +181,13 @@ Block derive_rows(const Joint& joint, int immovable) {
   const std::vector<Expr> axes = world_axes(*joint.pool);
   for (const Row& row : joint.rows) {
     if (!row.C->vector) {
-      block.rows.push_back(derive_row(joint, {row.name, &row, row.kind, -1, {}, {}, {}, {}, {}, {}}, row.C, immovable));
+      block.rows.push_back(derive_row(joint, {row.name, &row, row.kind, -1, row.of_world, {}, {}, {}, {}, {}, {}},
+                                      row.C, immovable));
       continue;
     }
     for (std::size_t k = 0; k < axes.size(); ++k) {
-      ScalarRow part{row.name + "_" + "xyz"[k], &row, row.kind, static_cast<int>(k), {}, {}, {}, {}, {}, {}};
+      ScalarRow part{
+          row.name + "_" + "xyz"[k], &row, row.kind, static_cast<int>(k), row.of_world, {}, {}, {}, {}, {}, {}};
       block.rows.push_back(derive_row(joint, std::move(part), dot(axes[k], row.C), immovable));
     }
   }
@@ -196,7 +198,7 @@ Block derive_coordinate(const Joint& joint, const Coordinate& coordinate, int im
   Block block;
   block.name = coordinate.name;
   block.immovable = immovable;
-  ScalarRow row{coordinate.name, nullptr, RowKind::equality, -1, {}, {}, {}, {}, {}, {}};
+  ScalarRow row{coordinate.name, nullptr, RowKind::equality, -1, coordinate.of_world, {}, {}, {}, {}, {}, {}};
   block.rows.push_back(derive_row(joint, std::move(row), coordinate.value, immovable));
   return finished(joint, std::move(block));
 }

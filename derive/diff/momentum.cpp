@@ -44,7 +44,7 @@ void note_momentum(Entry& entry, const std::vector<std::string>& rows, const cha
 
 // Judged where C = 0: a vector row in world axes rotates with the bodies, so it stays zero only if it was zero.
 void judge_momentum(Entry& entry, const Part& part, const Matrix& J) {
-  if (entry.joint.uses_world || entry.immovable >= 0) return;
+  if (entry.immovable >= 0) return;
   Pool& pool = entry.pool();
   const std::vector<Expr> axes = world_axes(pool);
   const Poses& there = entry.poses_on_constraint();
@@ -57,6 +57,7 @@ void judge_momentum(Entry& entry, const Part& part, const Matrix& J) {
   };
   std::vector<std::string> pushed, spun;  // rows that feel a common translation, rotation
   for (int r = 0; r < J.rows && r < static_cast<int>(part.rows.size()); ++r) {
+    if (part.rows[static_cast<std::size_t>(r)].of_world) continue;
     Expr moved = zero_vector(pool), turned = zero_spin(pool);
     for (int b = 0; b < static_cast<int>(entry.joint.bodies.size()); ++b) {
       const int first = b * entry.width();

@@ -79,6 +79,7 @@ void Elaborator::run(Source& spec) {
 
 void Elaborator::statements(Source& source) {
   for (const StatementAst& s : source.ast.statements) {
+    of_world_ = false;
     switch (s.kind) {
       case StatementAst::Kind::include: include(source, s.include); break;
       case StatementAst::Kind::declare: declare(source, s.declared); break;
@@ -144,6 +145,7 @@ const Value* SourceNames::find(const std::string& name) {
   const auto found = e_.names_.find(source_.prefix + name);
   if (found == e_.names_.end()) return nullptr;
   found->second.used = true;
+  e_.of_world_ |= found->second.of_world;
   return &found->second.value;
 }
 
@@ -156,12 +158,15 @@ int SourceNames::body(const std::string& letter) const {
 void SourceNames::use_body(int body, Span where) { e_.bodies_.emplace(body, e_.in_spec(source_, where)); }
 
 std::vector<std::string> SourceNames::known() const {
-  std::vector<std::string> names = {"time", "world"};
-  for (const auto& [name, entry] : e_.names_) names.push_back(name);
+  std::vector<std::string> names, others = {"time", "world"};
+  for (const auto& [name, entry] : e_.names_) (entry.used ? others : names).push_back(name);
+  names.insert(names.end(), others.begin(), others.end());
   return names;
 }
 
 std::string SourceNames::hint(const std::string& name) const {
+  if (const std::string vector = e_.vector_of_component(name); !vector.empty())
+    return "did you mean " + quote(vector + "." + name.back()) + "?";
   const auto below = source_.declared_anywhere.find(name);
   if (below == source_.declared_anywhere.end()) {
     for (const auto& [other, entry] : e_.names_)

@@ -20,6 +20,7 @@ struct Given {
   Value value;
   std::string text;
   bool taken = false;
+  bool of_world = false;
 };
 
 // One file on its way into the joint: the spec itself, or what it includes.
@@ -43,6 +44,7 @@ struct Entry {
   Span where;        // in the spec; of what came with an include: the include
   bool included = false;
   bool used = false;
+  bool of_world = false;  // fixed in the world, or made of what is
 };
 
 class Elaborator {
@@ -80,7 +82,8 @@ class Elaborator {
   bool is_component(std::string_view ending) const;
   std::string vector_of_component(const std::string& name) const;
   bool name_is_free(Source& source, const Word& word, const std::string& full);
-  void enter(Source& source, const std::string& full, std::string kind, Value value, Span where);
+  void enter(Source& source, const std::string& full, std::string kind, Value value, Span where,
+             bool of_world = false);
   // elaborate_row.cpp
   void row(Source& source, const StatementAst& s);
   std::optional<Value> constraint(Source& source, const StatementAst& s);
@@ -96,6 +99,7 @@ class Elaborator {
   bool arises_in_derivative(Expr e) const;
 
   Value evaluate(Source& source, const Ast& ast);
+  void use_world() { joint_.uses_world = of_world_ = true; }
   // In the spec: at that place; in an include: at the statement that includes it.
   void error(Source& source, Span where, std::string message, std::string fix = {}, std::vector<Span> also = {});
   Span in_spec(const Source& source, Span where) const { return source.include.value_or(where); }
@@ -112,6 +116,7 @@ class Elaborator {
   std::vector<std::shared_ptr<const SourceFile>> included_;
   int include_count_ = 0;
   int row_count_ = 0;
+  bool of_world_ = false;  // the statement has named a quantity of the world so far
 };
 
 // Scope as one source sees them.
@@ -121,7 +126,8 @@ class SourceNames final : public Scope {
   const Value* find(const std::string& name) override;
   int body(const std::string& letter) const override;
   void use_body(int body, Span where) override;
-  void use_world() override { e_.joint_.uses_world = true; }
+  void use_world() override { e_.use_world(); }
+  // Those not yet used come first: a wrong name most likely means one of them.
   std::vector<std::string> known() const override;
   std::string hint(const std::string& name) const override;
 

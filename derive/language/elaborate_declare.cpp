@@ -58,7 +58,7 @@ void Elaborator::declare(Source& source, const DeclaredAst& d) {
     if (!p.axes.empty() && given.e) default_axes(given, p);
     joint_.parameters.push_back(p);
   }
-  enter(source, full, d.kind, value, d.name.where);
+  enter(source, full, d.kind, value, d.name.where, p.kind != ParameterKind::scalar && p.body < 0);
 }
 
 bool Elaborator::resolve_body(Source& source, const DeclaredAst& d, Parameter& p) {
@@ -73,7 +73,7 @@ bool Elaborator::resolve_body(Source& source, const DeclaredAst& d, Parameter& p
     p.body = names.body(word);
   }
   if (word == "world") {
-    joint_.uses_world = true;
+    use_world();
     return true;
   }
   if (p.body < 0) {
@@ -299,7 +299,7 @@ void Elaborator::let(Source& source, const DeclaredAst& d) {
     }
     value.unit = unit;
   }
-  enter(source, full, "let", value, d.name.where);
+  enter(source, full, "let", value, d.name.where, of_world_);
 }
 
 bool Elaborator::name_is_free(Source& source, const Word& word, const std::string& full) {
@@ -346,14 +346,15 @@ std::string Elaborator::vector_of_component(const std::string& name) const {
   return {};
 }
 
-void Elaborator::enter(Source& source, const std::string& full, std::string kind, Value value, Span where) {
+void Elaborator::enter(Source& source, const std::string& full, std::string kind, Value value, Span where,
+                       bool of_world) {
   if (value.type == Type::vector || value.type == Type::point || value.type == Type::frame)
     for (const char* component : {"_x", "_y", "_z"})
       if (const auto taken = names_.find(full + component); is_component(component) && taken != names_.end())
         error(source, where,
               "a component of " + quote(full) + " is called " + quote(full + component) + ", which is another name",
               "choose another name", {taken->second.where});
-  names_[full] = {std::move(value), std::move(kind), in_spec(source, where), source.include.has_value(), false};
+  names_[full] = {std::move(value), std::move(kind), in_spec(source, where), source.include.has_value(), false, of_world};
 }
 
 }  // namespace cdot::derive

@@ -91,7 +91,10 @@ void Elaborator::give_parameters(Source& source, const IncludeAst& item, Source&
     const bool one = d.value->kind == Ast::Kind::name || d.value->kind == Ast::Kind::call ||
                      d.value->kind == Ast::Kind::member || d.value->kind == Ast::Kind::number;
     if (!one) text = "(" + text + ")";
-    const bool is_new = inner.given.emplace(d.name.text, Given{evaluate(source, *d.value), text}).second;
+    of_world_ = false;
+    Given given{evaluate(source, *d.value), text};
+    given.of_world = of_world_;
+    const bool is_new = inner.given.emplace(d.name.text, std::move(given)).second;
     if (!is_new) source.diagnostics.error(d.name.where, quote(d.name.text) + " is given twice", "remove one");
   }
 }
@@ -137,7 +140,8 @@ bool Elaborator::take_given(Source& source, const DeclaredAst& d) {
   if (d.kind == "unit" && !value.e->unit_length) value.e = unit(value.e);
   const std::string full = source.prefix + d.name.text;
   if (arm) enter(source, arm_name(source.prefix, d.name.text), "arm", vector(value.arm, value.unit), d.name.where);
-  if (name_is_free(source, d.name, full)) enter(source, full, d.kind, value, d.name.where);
+  if (name_is_free(source, d.name, full))
+    enter(source, full, d.kind, value, d.name.where, found->second.of_world);
   return true;
 }
 

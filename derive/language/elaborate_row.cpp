@@ -37,6 +37,7 @@ void Elaborator::row(Source& source, const StatementAst& s) {
   row.unit = C->unit.value_or(Unit{});
   row.where = in_spec(source, s.where);
   row.text = written(source, s);
+  row.of_world = of_world_;
   if (source.include) row.from = source.including.back();
   if (s.keep.text.empty()) add_row(source, s, std::move(row));
   else keep(source, s, row);
@@ -183,7 +184,7 @@ void Elaborator::coordinate(Source& source, const StatementAst& s) {
   joint_.uses_time |= depends_on_role(v.e, Role::time);
   const Unit unit = d.unit ? d.unit->unit : v.unit.value_or(Unit{});
   const std::string from = source.include ? source.including.back() : "";
-  joint_.coordinates.push_back({full, v.e, unit, in_spec(source, d.name.where), written(source, s), from, {}});
+  joint_.coordinates.push_back({full, v.e, unit, in_spec(source, d.name.where), written(source, s), from, {}, of_world_});
 }
 
 // A row or the right side of a coordinate as its author wrote it, in one line, with the names that things have here.

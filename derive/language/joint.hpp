@@ -62,6 +62,7 @@ struct Row {
   std::string text;  // as written, for people
   std::string from;  // the included joint that it came from; empty if written here
   Expr kept;         // with `keep`: the cross product that it is a component of
+  bool of_world = false;  // it names a quantity of the world, which takes any impulse: it need not conserve momentum
 };
 
 struct Coordinate {
@@ -72,6 +73,7 @@ struct Coordinate {
   std::string text;
   std::string from;                         // the included joint that it came from; empty if written here
   std::vector<std::string> constrained_by;  // rows that constrain it (derivation/free_coordinates.hpp)
+  bool of_world = false;                    // as of a row
 };
 
 // Folders, namespaces and headers of specs are named so.
@@ -90,7 +92,7 @@ struct Joint {
   std::vector<Coordinate> coordinates;
   std::vector<Coordinate> dropped;         // from an include, but constrained by rows
   std::shared_ptr<const SourceFile> file;  // for messages of later stages
-  bool uses_world = false;  // some parameter is fixed in the world: momentum is not conserved, and need not be
+  bool uses_world = false;  // some quantity is fixed in the world
   bool uses_time = false;
 };
 

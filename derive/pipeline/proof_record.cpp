@@ -25,7 +25,8 @@ void add(const Block& block, std::string& text, std::vector<Expr>& all) {
   const auto take = [&](const std::vector<Expr>& some) { all.insert(all.end(), some.begin(), some.end()); };
   text += fmt::format("block {} {}\n", block.name, block.immovable);
   for (const ScalarRow& row : block.rows) {
-    text += fmt::format("{} {} {}\n", row.name, static_cast<int>(row.kind), row.component);
+    text += fmt::format("{} {} {}{}\n", row.name, static_cast<int>(row.kind), row.component,
+                        row.of_world ? " of the world" : "");
     for (const Expr e : {row.C, row.Cdot, row.C_t, row.gamma, row.gamma_by_entries}) {
       if (e) all.push_back(e);
     }

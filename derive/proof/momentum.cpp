@@ -54,6 +54,12 @@ GiNaC::exmap on_the_constraint(const Joint& joint, Algebra& names) {
   return solved;
 }
 
+// Terms of a row that feel a common motion, and what they feel.
+struct Guilty {
+  std::vector<Expr> terms;
+  Felt felt;
+};
+
 class Momentum {
  public:
   Momentum(const Joint& joint, Algebra& names)
@@ -82,29 +88,31 @@ class Momentum {
   bool proved() const { return proved_; }
 
   // The fewest terms of a row without which a common motion no longer changes it.
-  std::vector<Expr> breaking_terms(const std::vector<Expr>& terms, const std::vector<Felt>& felt_by_term) {
+  Guilty breaking_terms(const std::vector<Expr>& terms, const std::vector<Felt>& felt_by_term) {
     constexpr std::size_t most_terms = 8;
-    if (terms.size() > most_terms) return terms;
     std::vector<unsigned> subsets;
-    for (unsigned s = 1; s < 1u << terms.size(); ++s) subsets.push_back(s);
+    for (unsigned s = 1; terms.size() <= most_terms && s < 1u << terms.size(); ++s) subsets.push_back(s);
     std::stable_sort(subsets.begin(), subsets.end(),
                      [](unsigned a, unsigned b) { return std::popcount(a) < std::popcount(b); });
+    Guilty guilty;
     for (const unsigned subset : subsets) {
-      Felt rest{zero_vector(*joint_.pool), zero_spin(*joint_.pool)};
-      std::vector<Expr> removed;
+      guilty = {{}, none()};
+      Felt rest = none();
       for (std::size_t i = 0; i < terms.size(); ++i) {
-        if (subset >> i & 1) {
-          removed.push_back(terms[i]);
-        } else {
-          rest = {rest.translation + felt_by_term[i].translation, rest.rotation + felt_by_term[i].rotation};
-        }
+        Felt& sum = subset >> i & 1 ? guilty.felt : rest;
+        sum = {sum.translation + felt_by_term[i].translation, sum.rotation + felt_by_term[i].rotation};
+        if (subset >> i & 1) guilty.terms.push_back(terms[i]);
       }
-      if (translation_vanishes(rest) && rotation_vanishes(rest)) return removed;
+      if (translation_vanishes(rest) && rotation_vanishes(rest)) return guilty;
     }
-    return terms;
+    guilty = {terms, none()};
+    for (const Felt& felt : felt_by_term)
+      guilty.felt = {guilty.felt.translation + felt.translation, guilty.felt.rotation + felt.rotation};
+    return guilty;
   }
 
  private:
+  Felt none() const { return {zero_vector(*joint_.pool), zero_spin(*joint_.pool)}; }
   bool is_zero(const ex& e) {
     const Algebra::Zero zero = names_.is_zero(e);
     proved_ = proved_ && zero != Algebra::Zero::shown;
@@ -179,8 +187,17 @@ std::string against_ground(const ScalarRow& row, const Joint& joint) {
          " - v(ground) in place of " + rate;
 }
 
-void fail(Law& law, const Joint& joint, const Block& block, const ScalarRow& row, const Felt& felt, bool rotation,
-          Momentum& momentum) {
+std::string relative_directions(const std::vector<Expr>& guilty, const Joint& joint) {
+  const std::string relative = "use angles and directions of bodies relative to each other, or to the world: ";
+  for (const Expr leaf : leaves_of(guilty)) {
+    if (leaf->role != Role::angle) continue;
+    const std::string angle = "angle(" + joint.bodies[static_cast<std::size_t>(leaf->body)] + ")";
+    return relative + angle + " - angle(world) in place of " + angle;
+  }
+  return relative + "a direction declared `on world`";
+}
+
+void fail(Law& law, const Joint& joint, const Block& block, const ScalarRow& row, bool rotation, Momentum& momentum) {
   Expr written;
   Span where;
   for (const Coordinate& c : joint.coordinates) {
@@ -193,29 +210,30 @@ void fail(Law& law, const Joint& joint, const Block& block, const ScalarRow& row
     const bool velocity = row.kind == RowKind::velocity;
     felt_by_term.push_back(felt_by(isolate_velocities(velocity ? term : time_derivative(term, joint), joint), joint));
   }
-  const std::vector<Expr> guilty = momentum.breaking_terms(terms, felt_by_term);
+  const Guilty guilty = momentum.breaking_terms(terms, felt_by_term);
   law.verdict = Verdict::fails;
   law.row = row.row;
-  law.text = sentence(row, felt, rotation, joint);
+  law.text = sentence(row, guilty.felt, rotation, joint);
   std::vector<std::string> parts;
-  for (const Expr term : guilty) parts.push_back(spec_text(term, joint));
+  for (const Expr term : guilty.terms) parts.push_back(spec_text(term, joint));
   if (terms.size() > 1) law.text += "; the cause is " + listed(parts);
-  law.fix = rotation ? "use angles and directions of bodies relative to each other, or say what is fixed in the world"
-                     : against_ground(row, joint);
-  if (joint.file) law.parts = occurrences(*joint.file, where, spellings(guilty, joint, rotation));
+  law.fix = rotation ? relative_directions(guilty.terms, joint) : against_ground(row, joint);
+  if (joint.file) law.parts = occurrences(*joint.file, where, spellings(guilty.terms, joint, rotation));
 }
 
 }  // namespace
 
+// The world takes any impulse from the rows that name a quantity of it, and from no other.
 void conserves_momentum(Law& law, const Joint& joint, const Block& block, Algebra& names) {
   law.verdict = Verdict::does_not_apply;
-  if (joint.uses_world || block.immovable >= 0) return;
+  if (block.immovable >= 0 || std::ranges::all_of(block.rows, &ScalarRow::of_world)) return;
   Momentum momentum(joint, names);
   for (const ScalarRow& row : block.rows) {
+    if (row.of_world) continue;
     const Felt felt = felt_by(row.J, joint);
-    if (!momentum.translation_vanishes(felt)) return fail(law, joint, block, row, felt, false, momentum);
+    if (!momentum.translation_vanishes(felt)) return fail(law, joint, block, row, false, momentum);
     if (!momentum.turns_with_the_bodies(row, felt) && !momentum.rotation_vanishes(felt))
-      return fail(law, joint, block, row, felt, true, momentum);
+      return fail(law, joint, block, row, true, momentum);
   }
   law.verdict = momentum.proved() ? Verdict::holds : Verdict::shown;
   if (momentum.only_on_constraint()) law.text = "where C = 0";

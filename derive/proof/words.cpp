@@ -4,9 +4,38 @@
 #include <cctype>
 
 #include "derive/derivation/derivation.hpp"
+#include "derive/expression/symbols.hpp"
 
 namespace cdot::derive {
 namespace {
+
+using Spelled = std::map<const Node*, Expr>;
+
+void spell_axes(const std::vector<Expr>& axes, const std::string& name, Spelled& spelled) {
+  for (std::size_t k = 0; k < axes.size(); ++k)
+    if (axes[k]->kind == Kind::symbol)
+      spelled.emplace(&*axes[k], axes[k]->pool->vector_symbol(name + "." + "xyz"[k], Role::given, -1, true));
+}
+
+// The point pa stands for x(a) + ra.
+void spell_points(Expr sum, const Joint& joint, Spelled& spelled) {
+  std::vector<Term> terms = terms_of(sum);
+  const auto factor_of = [&](Expr e) -> Rational* {
+    const auto found = std::ranges::find_if(terms, [&](const Term& t) { return t.e == e; });
+    return found == terms.end() ? nullptr : &found->coef;
+  };
+  std::vector<Term> points;
+  for (const Parameter& p : joint.parameters) {
+    if (p.kind != ParameterKind::point || p.body < 0) continue;
+    Rational *const arm = factor_of(p.symbol), *const centre = factor_of(body_symbols(joint, p.body).x);
+    if (!arm || !centre || *arm != *centre) continue;
+    points.push_back({*arm, joint.pool->vector_symbol(p.name, Role::given)});
+    *arm = *centre = Rational(0);
+  }
+  for (const Term& t : terms)
+    if (!t.coef.is_zero()) points.push_back({t.coef, substitute(t.e, spelled)});
+  spelled.emplace(&*sum, derive::sum(*joint.pool, points, true));
+}
 
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
@@ -14,17 +43,36 @@ bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c =
 
 std::string spec_text(Expr e, const Joint& joint) {
   if (!e->name.empty()) return e->name;
-  std::map<const Node*, Expr> spelled;
+  Spelled spelled;
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
     const BodySymbols body = body_symbols(joint, static_cast<int>(b));
     const std::string& name = joint.bodies[b];
     if (body.theta) spelled.emplace(&*body.theta, joint.pool->symbol("angle(" + name + ")", Role::given));
     spelled.emplace(&*body.x, joint.pool->vector_symbol("x(" + name + ")", Role::given));
   }
-  for (const Parameter& p : joint.parameters)
-    for (std::size_t k = 0; k < p.axes.size(); ++k)
-      spelled.emplace(&*p.axes[k], joint.pool->vector_symbol(p.name + "." + "xyz"[k], Role::given, -1, true));
+  for (const Parameter& p : joint.parameters) spell_axes(p.axes, p.name, spelled);
+  for (std::size_t b = 0; b < joint.bodies.size(); ++b)
+    spell_axes(body_axes(*joint.pool, static_cast<int>(b)), joint.bodies[b], spelled);
+  for (const Expr part : topological(std::span(&e, 1)))
+    if (part->kind == Kind::sum && part->vector && part->name.empty()) spell_points(part, joint, spelled);
   return text(substitute(e, spelled));
+}
+
+std::string parallel(Expr u, Expr v, const Joint& joint) {
+  const auto is_axis = [&](Expr e) { return joint.pool->axis_of(e).triad && e->body >= 0; };
+  const auto may_become_one = [&](Expr e) {
+    return std::ranges::any_of(joint.parameters, [&](const Parameter& p) {
+      return p.kind == ParameterKind::unit && p.symbol == e && p.body >= 0;
+    });
+  };
+  if (!is_axis(u) && (is_axis(v) || may_become_one(v))) std::swap(u, v);
+  const std::string other = spec_text(v, joint) + ") = 0 keep 2";
+  if (is_axis(u)) return "cross(" + spec_text(u, joint) + ", " + other;
+  if (!may_become_one(u)) return "";
+  const std::string& body = joint.bodies[static_cast<std::size_t>(u->body)];
+  std::string f = "f";
+  while (std::ranges::any_of(joint.parameters, [&](const Parameter& p) { return p.name == f; })) f += "f";
+  return "cross(" + f + ".x, " + other + "` with `frame " + f + " on " + body + "` in place of `" + spec_text(u, joint);
 }
 
 std::string vanishing_vector(Expr u, const Joint& joint) {
@@ -34,7 +82,8 @@ std::string vanishing_vector(Expr u, const Joint& joint) {
       if (p.value - q.value == u) return p.name + " = " + q.name;
     }
   }
-  return spec_text(u, joint) + " = 0";
+  const std::string two = u->kind == Kind::cross && u->vector ? parallel(u->args[0], u->args[1], joint) : "";
+  return two.empty() ? spec_text(u, joint) + " = 0" : two;
 }
 
 std::vector<Span> occurrences(const SourceFile& file, Span where, const std::set<std::string>& words) {

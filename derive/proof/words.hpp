@@ -13,7 +13,11 @@ namespace cdot::derive {
 // The expression as its author would write it: its name if it has one, else with angle(a) for theta_a, x(a) for x_a.
 std::string spec_text(Expr e, const Joint& joint);
 
-// The equation u = 0: `pa = pb` if u is pa - pb, else `u = 0`.
+// In space, u parallel to v by two rows: `cross(f.x, v) = 0 keep 2`, if one of them is an axis of a frame, or a
+// direction that may become one (then with the frame to declare). Else empty.
+std::string parallel(Expr u, Expr v, const Joint& joint);
+
+// The equation u = 0: `pa = pb` if u is pa - pb, two rows if it is a cross product in space, else `u = 0`.
 std::string vanishing_vector(Expr u, const Joint& joint);
 
 // The places of these words, as whole words, in a part of the file.

@@ -191,7 +191,7 @@ struct target {
     }
   }
 
-  // The coordinate angle [rad] = angle(a), left free: what effects act on.
+  // The coordinate angle [rad] = angle(a) - angle(world), left free: what effects act on.
   struct angle {
     static constexpr std::string_view name = "angle";
     static constexpr std::string_view unit = "rad";

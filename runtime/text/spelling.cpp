@@ -39,7 +39,7 @@ std::string nearest(std::string_view word, std::span<const std::string> candidat
   for (const std::string& candidate : candidates) {
     if (candidate.size() > longest_word) continue;
     const std::size_t distance = edits(lower, lower_case(candidate));
-    if (distance > most_edits || distance > fewest || (distance == fewest && candidate > best)) continue;
+    if (distance >= fewest) continue;
     best = candidate;
     fewest = distance;
   }

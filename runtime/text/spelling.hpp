@@ -9,7 +9,7 @@
 namespace cdot::text {
 
 // The candidate with the fewest edits of a letter (insert, delete, replace, swap of neighbours), at most `most_edits`;
-// capitals do not count. Of equal candidates the first by the alphabet; empty if none is near.
+// capitals do not count. Of equal candidates the first; empty if none is near.
 std::string nearest(std::string_view word, std::span<const std::string> candidates, std::size_t most_edits);
 
 }  // namespace cdot::text

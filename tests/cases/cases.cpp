@@ -5,13 +5,15 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 #include <stdexcept>
 
 namespace cdot::test {
 namespace {
 
-const std::string case_mark = "--- case ", messages_mark = "--- messages", escaped_mark = " escaped";
+const std::string case_mark = "--- case ", messages_mark = "--- messages", mended_mark = "--- mended",
+                  escaped_mark = " escaped";
 
 std::string bytes_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -91,18 +93,19 @@ std::string text_of(const BrokenInput& c) {
   const bool escapes = needs_escapes(c.input) || needs_escapes(c.messages);
   const auto written = [&](const std::string& text) { return escapes ? escaped(text) : text; };
   return case_mark + c.name + (escapes ? escaped_mark : "") + "\n" + written(c.input) + messages_mark + "\n" +
-         written(c.messages);
+         written(c.messages) + (c.edits.empty() ? "" : mended_mark + "\n" + c.edits);
 }
 
 // Parses the lines of one case after its `--- case` line.
 BrokenInput parse_case(std::string name, const std::vector<std::string>& lines) {
   const bool escapes = name.ends_with(escaped_mark);
   if (escapes) name.erase(name.size() - escaped_mark.size());
-  BrokenInput c{std::move(name), "", ""};
+  BrokenInput c{std::move(name), "", "", ""};
   std::string* part = &c.input;
   for (const std::string& line : lines) {
     if (line == messages_mark + "\n" && part == &c.input) part = &c.messages;
-    else if (line.starts_with("---")) throw std::runtime_error("neither `--- case NAME` nor `--- messages`: " + line);
+    else if (line == mended_mark + "\n" && part == &c.messages) part = &c.edits;
+    else if (line.starts_with("---")) throw std::runtime_error("`--- case NAME`, `--- messages` or `--- mended` belongs here: " + line);
     else *part += line;
   }
   if (escapes) c.input = unescaped(c.input), c.messages = unescaped(c.messages);
@@ -110,6 +113,24 @@ BrokenInput parse_case(std::string name, const std::vector<std::string>& lines) 
 }
 
 }  // namespace
+
+std::string mended(const BrokenInput& c) {
+  std::map<int, std::string> lines;
+  int count = 0;
+  for (const std::string& line : lines_of(c.input)) lines[++count] = line;
+  std::set<int> replaced;
+  for (const std::string& edit : lines_of(c.edits)) {
+    const std::size_t mark = edit.find('>'), dash = edit.find('-');
+    if (mark == edit.npos) throw std::runtime_error("an edit is `2>` and a text: " + edit);
+    const int first = std::stoi(edit), last = dash < mark ? std::stoi(edit.substr(dash + 1)) : first;
+    for (int n = first; n <= last; ++n)
+      if (replaced.insert(n).second) lines[n].clear();
+    if (edit.size() > mark + 2) lines[first] += edit.substr(mark + 1);
+  }
+  std::string text;
+  for (const auto& [n, line] : lines) text += line;
+  return text;
+}
 
 Theme parse_theme(const std::string& text, const std::filesystem::path& file) {
   Theme theme{file, "", {}};

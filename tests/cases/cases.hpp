@@ -10,6 +10,12 @@
 //
 //   --- case ...
 //
+// After the messages may follow the input as their fixes mend it, by lines: `2>` and a text stands for line 2 (several
+// such texts for several lines), `2>` alone removes it, `2-5>` removes four lines.
+//
+//   --- mended
+//   2>  norm(x(a) - x(b)) = 1 [m]
+//
 // Messages count lines from the first line of their case. One empty line before `--- case` belongs to neither case.
 // `--- case NAME escaped` is for bytes that an editor cannot show: there `\xNN` is a byte, `\\` a backslash, and `\` at
 // the end of a line joins the line with the next. With CDOT_UPDATE=1 the test writes the messages.
@@ -25,7 +31,7 @@ namespace cdot::test {
 
 struct BrokenInput {
   std::string name;  // as that of a file: norm_of_body.joint
-  std::string input, messages;
+  std::string input, messages, edits;  // edits: the lines after `--- mended`
 
   friend void PrintTo(const BrokenInput& c, std::ostream* out) { *out << c.name; }  // for googletest
 };
@@ -40,6 +46,9 @@ struct Theme {
 Theme read_theme(const std::filesystem::path& file);
 Theme parse_theme(const std::string& text, const std::filesystem::path& file);
 std::string text_of(const Theme& theme);
+
+// The input with its edits. Throws std::runtime_error if an edit has no line number.
+std::string mended(const BrokenInput& c);
 
 // All *.cases files of a folder, sorted by name; names of cases are unique in the folder.
 std::vector<Theme> themes_in(const std::filesystem::path& folder);
