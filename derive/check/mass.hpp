@@ -1,4 +1,4 @@
-// Where K is singular: minors of J, as formulas and as numbers; sums of squares that cannot vanish; and the words.
+// Where K is regular, and where it is singular: proofs, searches, and the words for both.
 #pragma once
 
 #include <map>
@@ -7,9 +7,16 @@
 #include <utility>
 #include <vector>
 
+#include "derive/check/parts.hpp"
 #include "derive/proof/ginac.hpp"
 
 namespace cdot::derive {
+
+// Powers of inverse masses: m of the first body, its I, m of the second, ...
+using Movement = std::vector<int>;
+
+// The products of inverse masses which alone keep K regular at every pose, by algebra; none if that is too expensive.
+std::vector<Movement> proved_regular(const Subject& subject);
 
 // The minors of J, by Laplace's rule, multiplied out unless that is long. Each minor of J's last rows is made once.
 class Minors {
@@ -22,17 +29,10 @@ class Minors {
   std::vector<std::vector<ex>> J_;
   std::map<std::vector<std::size_t>, ex> made_;
 };
-// The determinant of J's columns as chosen: as many as J has rows.
-double determinant(const std::vector<std::vector<double>>& J, const std::vector<std::size_t>& columns);
 // n over k.
 double number_of_choices(std::size_t n, std::size_t k);
-
 // True for a positive constant plus even powers with positive factors: such a sum is never zero.
 bool is_positive(const ex& expanded, const std::vector<ex>& symbols);
-
-// The place where sums of squares all vanish: "where ratio = 0 and cross(ra, n) = 0". Each sum is given by factors, one
-// of which must vanish; without factors, no closed form is known. Implied conditions are left out.
-std::string where_all_vanish(const std::vector<std::vector<std::string>>& factors);
 
 // The bodies that must be able to move, and to turn.
 struct Way {
@@ -41,5 +41,30 @@ struct Way {
 };
 // "a or b can move, and a or b can turn", if the ways are just that; else one after the other.
 std::string in_words(const std::vector<Way>& ways);
+
+// Some inverse masses are zero: the columns of J that remain.
+struct Freedom {
+  std::string condition;      // "nothing can turn"; empty: everything moves
+  std::vector<bool> allowed;  // as in Movement
+};
+
+// A scalar or vector with a short name, which may vanish where K is singular.
+struct Candidate {
+  Expr e;
+  std::string name;
+};
+// Parameters, entries of J, vectors that J is made of and their products: the shortest names first.
+std::vector<Candidate> candidates_for_zero(const Subject& subject);
+
+// The poses with C = 0 at which K is singular.
+struct Singular {
+  enum class Where { nowhere, everywhere, at_zeros, other_branch, somewhere } where = Where::nowhere;
+  std::vector<std::string> zeros;  // K is singular where one of these is 0
+  bool by_parameters = false;      // no pose of the bodies alone was found there: parameters had to change
+  bool of_poses = false;           // at least one of them depends on the pose
+};
+std::vector<Singular> singular_poses(const Subject& subject, const std::vector<Freedom>& freedoms);
+// Vectors without a direction whose guards in the kernel leave K singular, whatever C is.
+std::vector<std::string> guards_that_make_singular(const Subject& subject, const Freedom& everything);
 
 }  // namespace cdot::derive

@@ -22,31 +22,6 @@ std::string abilities(const Way& way, std::string_view last, std::string_view be
 
 }  // namespace
 
-std::string where_all_vanish(const std::vector<std::vector<std::string>>& factors) {
-  if (factors.empty()) return "at every pose";
-  std::vector<std::set<std::string>> alternatives;
-  std::size_t without_words = 0;
-  for (const std::vector<std::string>& any : factors) {
-    if (any.empty()) ++without_words;
-    if (!any.empty()) alternatives.emplace_back(any.begin(), any.end());
-  }
-  if (alternatives.empty()) return "at some poses, possibly: no closed form was found";
-  std::sort(alternatives.begin(), alternatives.end());
-  alternatives.erase(std::unique(alternatives.begin(), alternatives.end()), alternatives.end());
-  std::vector<std::string> conditions;
-  for (const auto& any : alternatives) {
-    const bool implied = std::any_of(alternatives.begin(), alternatives.end(), [&](const auto& other) {
-      return other != any && std::includes(any.begin(), any.end(), other.begin(), other.end());
-    });
-    if (implied) continue;
-    std::vector<std::string> zeros;
-    for (const std::string& factor : any) zeros.push_back(factor + " = 0");
-    const std::string condition = listed(zeros, " or ");
-    conditions.push_back(zeros.size() > 1 && factors.size() > 1 ? "(" + condition + ")" : condition);
-  }
-  return (without_words > 0 ? "only where " : "where ") + listed(conditions);
-}
-
 std::string in_words(const std::vector<Way>& ways) {
   Way any;
   bool single = true;
@@ -76,29 +51,6 @@ ex Minors::of(const std::vector<std::size_t>& columns) {
     sum = k % 2 == 0 ? sum + part : sum - part;
   }
   return made_.emplace(columns, expanded_if_short(sum)).first->second;
-}
-
-double determinant(const std::vector<std::vector<double>>& J, const std::vector<std::size_t>& columns) {
-  std::vector<std::vector<double>> m;
-  for (const auto& row : J) {
-    m.emplace_back();
-    for (const std::size_t c : columns) m.back().push_back(row[c]);
-  }
-  double product = 1;
-  for (std::size_t k = 0; k < m.size(); ++k) {
-    std::size_t pivot = k;
-    for (std::size_t i = k; i < m.size(); ++i) {
-      if (std::fabs(m[i][k]) > std::fabs(m[pivot][k])) pivot = i;
-    }
-    if (m[pivot][k] == 0) return 0;
-    if (pivot != k) std::swap(m[pivot], m[k]), product = -product;
-    product *= m[k][k];
-    for (std::size_t i = k + 1; i < m.size(); ++i) {
-      const double factor = m[i][k] / m[k][k];
-      for (std::size_t j = k; j < m.size(); ++j) m[i][j] -= factor * m[k][j];
-    }
-  }
-  return product;
 }
 
 bool is_positive(const ex& expanded, const std::vector<ex>& symbols) {

@@ -12,6 +12,7 @@ struct Subject {
   const Block& block;
   const std::vector<Block>& coordinates;
   std::vector<Sample> anywhere, on_constraint;
+  std::size_t by_defaults = 0;  // so many of the poses on the constraint, the first, began with the spec's defaults
 };
 Subject subject_of(const Derivation& derivation);
 
@@ -25,6 +26,7 @@ void check_rows(const Subject& subject,
                 Findings& findings);                               // vanishing, dependent, without bodies
 void check_undefined(const Subject& subject, Findings& findings);  // 1/0, roots, directions, angles
 void check_defaults(const Subject& subject, Findings& findings);   // defaults with C != 0
-void check_mass(const Subject& subject, Findings& findings);       // where K is singular
+// Where K is singular. Silent if the joint has errors: they are the cause, and come first.
+void check_mass(const Subject& subject, Findings& findings);
 
 }  // namespace cdot::derive

@@ -88,6 +88,28 @@ Gradients central_differences(const Equations& equations, const Variables& varia
   return G;
 }
 
+// Gauss-Newton with the shortest step, halved while it does not help.
+template <class Gradient>
+bool descend(const Variables& variables, const Residuals& values, Sample& sample, Gradient gradients) {
+  constexpr double reached = 1e-12, round_off_of_sums = 1e-11;  // of equations that depend on each other
+  double error = largest(values(sample));
+  for (int iteration = 0; iteration < 60 && error > reached; ++iteration) {
+    const std::vector<double> step = shortest_step(gradients(), values(sample));
+    double fraction = 1;
+    for (; fraction > 1e-3; fraction /= 2) {
+      Sample moved = sample;
+      for (std::size_t i = 0; i < step.size(); ++i) variables.move(moved, i, fraction * step[i]);
+      const double moved_error = largest(values(moved));
+      if (!(moved_error < error)) continue;
+      sample = std::move(moved);
+      error = moved_error;
+      break;
+    }
+    if (fraction <= 1e-3) break;
+  }
+  return error <= round_off_of_sums;
+}
+
 }  // namespace
 
 std::vector<double> shortest_step(const Gradients& G, const std::vector<double>& values) {
@@ -122,38 +144,25 @@ std::vector<const Triad*> triads_of(const Joint& joint, const Sample& sample) {
   return triads;
 }
 
-// Gauss-Newton with the shortest step, halved while it does not help.
 bool move_to_zero(const Joint& joint, const std::vector<Expr>& equations, Sample& sample,
                   const std::vector<std::vector<Expr>>& J) {
-  constexpr double reached = 1e-12, round_off_of_sums = 1e-11;  // of equations that depend on each other
   const Variables variables(joint, sample, !J.empty());
   Numbers numbers(sample);
   const auto values = [&](const Sample& there) {
     numbers.move_to(there);
     return numbers.of(equations);
   };
-  const auto gradients = [&] {
+  return descend(variables, values, sample, [&] {
     if (J.empty()) return central_differences(values, variables, sample);
     Gradients G;
     for (const std::vector<Expr>& row : J) G.push_back(values_at(row, sample));
     return G;
-  };
-  double error = largest(values(sample));
-  for (int iteration = 0; iteration < 60 && error > reached; ++iteration) {
-    const std::vector<double> step = shortest_step(gradients(), values(sample));
-    double fraction = 1;
-    for (; fraction > 1e-3; fraction /= 2) {
-      Sample moved = sample;
-      for (std::size_t i = 0; i < step.size(); ++i) variables.move(moved, i, fraction * step[i]);
-      const double moved_error = largest(values(moved));
-      if (!(moved_error < error)) continue;
-      sample = std::move(moved);
-      error = moved_error;
-      break;
-    }
-    if (fraction <= 1e-3) break;
-  }
-  return error <= round_off_of_sums;
+  });
+}
+
+bool move_to_zero(const Joint& joint, const Residuals& residuals, Sample& sample, bool only_bodies) {
+  const Variables variables(joint, sample, only_bodies);
+  return descend(variables, residuals, sample, [&] { return central_differences(residuals, variables, sample); });
 }
 
 }  // namespace cdot::derive

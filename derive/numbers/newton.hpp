@@ -2,6 +2,7 @@
 // satisfy an author's assumptions.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "derive/numbers/numeric.hpp"
@@ -22,5 +23,8 @@ std::vector<const Triad*> triads_of(const Joint& joint, const Sample& sample);
 // fixed in a body; the gradients are then central differences.
 bool move_to_zero(const Joint& joint, const std::vector<Expr>& equations, Sample& sample,
                   const std::vector<std::vector<Expr>>& J = {});
+// The same for any numbers of a sample, by central differences.
+using Residuals = std::function<std::vector<double>(const Sample&)>;
+bool move_to_zero(const Joint& joint, const Residuals& residuals, Sample& sample, bool only_bodies);
 
 }  // namespace cdot::derive

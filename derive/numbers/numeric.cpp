@@ -31,7 +31,7 @@ Triple<double> turned(const EulerParameters<double>& e, const Triple<double>& u)
 
 class Doubles final : public Arithmetic<double> {
  public:
-  explicit Doubles(const Sample& sample) : sample_(&sample) {}
+  explicit Doubles(const Sample& sample, double guard = 0) : sample_(&sample), guard_(guard) {}
   void move_to(const Sample& sample) { sample_ = &sample; }
 
   double number(Rational value) override { return value.value(); }
@@ -60,11 +60,11 @@ class Doubles final : public Arithmetic<double> {
     return plane ? turned(body->theta, *local) : turned(body->e, *local);
   }
 
-  double inverse(const double& x) override { return function_of(Fn::inverse).value(&x); }
+  double inverse(const double& x) override { return std::fabs(x) <= guard_ ? 0 : function_of(Fn::inverse).value(&x); }
 
   Triple<double> direction(const Triple<double>& u) override {
     const double u_len = length(u);
-    if (u_len == 0) return {1, 0, 0};
+    if (u_len <= guard_) return {1, 0, 0};
     return {u[0] / u_len, u[1] / u_len, u[2] / u_len};
   }
 
@@ -92,6 +92,7 @@ class Doubles final : public Arithmetic<double> {
   }
 
   const Sample* sample_;
+  double guard_;
 };
 
 EulerParameters<double> random_orientation(Random& random) {
@@ -117,14 +118,14 @@ bool is_body_axis(const Joint& joint, const Node& leaf) {
 
 struct Numbers::Parts {
   explicit Parts(Values values) : own{{}, std::move(values), {}, {}, {}}, doubles(own), evaluation(doubles) {}
-  explicit Parts(const Sample& sample) : doubles(sample), evaluation(doubles) {}
+  Parts(const Sample& sample, double guard) : doubles(sample, guard), evaluation(doubles) {}
   const Sample own;
   Doubles doubles;
   Evaluation<double> evaluation;
 };
 
 Numbers::Numbers(Values values) : parts_(std::make_unique<Parts>(std::move(values))) {}
-Numbers::Numbers(const Sample& sample) : parts_(std::make_unique<Parts>(sample)) {}
+Numbers::Numbers(const Sample& sample, double guard) : parts_(std::make_unique<Parts>(sample, guard)) {}
 Numbers::~Numbers() = default;
 double Numbers::scalar(Expr e) { return parts_->evaluation.scalar(e); }
 Triple<double> Numbers::vector(Expr e) { return parts_->evaluation.vector(e); }

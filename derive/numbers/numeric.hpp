@@ -233,7 +233,8 @@ Sample random_sample(const Joint& joint, std::span<const Expr> expressions, std:
 class Numbers {
  public:
   explicit Numbers(Values values);
-  explicit Numbers(const Sample& sample);  // which outlives the numbers
+  // The sample outlives the numbers. Numbers up to `guard` count as 0 where a formula divides by them.
+  explicit Numbers(const Sample& sample, double guard = 0);
   ~Numbers();
   double scalar(Expr e);
   Triple<double> vector(Expr e);

@@ -107,6 +107,30 @@ TEST(Check, AbsoluteAnglesDoNotConserveMomentum) {
   EXPECT_TRUE(mentions(said, "angle(a) and angle(b)")) << said;
 }
 
+// A quantity of the world excuses its own row only.
+TEST(Check, MomentumIsTestedRowByRow) {
+  std::string said;
+  EXPECT_FALSE(checked("  unit n on world\n  dot(n, pa - pb) = 0\n  angle(a) + angle(b) = 0\n", &said).clean());
+  EXPECT_TRUE(mentions(said, "angular momentum is not conserved: C2")) << said;
+  EXPECT_TRUE(mentions(said, "angle(a) - angle(world) in place of angle(a)")) << said;
+  EXPECT_TRUE(checked("  point g on world\n  let u = pa - g\n  dot(u, b.x) = 0\n  angle(a) - angle(world) = 0\n").clean());
+  said.clear();
+  EXPECT_FALSE(checked("  dot(a.x, pa - pb) + angle(b) * 1 [m] = 0\n", &said).clean());
+  EXPECT_TRUE(mentions(said, "which changes C by 1 per radian; the cause is angle(b)")) << said;
+}
+
+TEST(Check, DefaultsThatLeaveCAreTold) {
+  std::string said;
+  EXPECT_FALSE(checked("  scalar l [m] = 2 * norm(pa - pb)\n  norm(pa - pb) = l\n", &said).clean());
+  EXPECT_TRUE(mentions(said, "with the default of `l` the row does not hold at the start")) << said;
+  EXPECT_TRUE(mentions(said, "fix: make `norm(pa - pb)` its default")) << said;
+  EXPECT_TRUE(checked("  scalar l [m] = norm(pa - pb)\n  norm(pa - pb) = l\n").clean());
+  EXPECT_TRUE(checked("  scalar l [m] = 2 * norm(pa - pb)\n  norm(pa - pb) <= l\n").clean());
+  said.clear();
+  EXPECT_FALSE(checked("  unit na on a\n  unit nb on b = na\n  pa = pb\n  dot(na, nb) = 0\n", &said, "spatial").clean());
+  EXPECT_TRUE(mentions(said, "C2: with the defaults |C| is 1 at every initial pose")) << said;
+}
+
 TEST(Check, ACoordinateThatARowHoldsIsAnError) {
   std::string said;
   const std::string rows = "  pa = pb\n  angle(b) = angle(a)\n  coordinate turn = angle(b) - angle(a)\n";
@@ -149,16 +173,52 @@ TEST(Check, TellsWhereTheEffectiveMassIsSingular) {
   EXPECT_TRUE(mentions(said, "K is regular at every pose while a or b can move")) << said;
 }
 
+// fa.x and fb.x are parallel where C = 0, so nothing is said of poses at which they are not.
 TEST(Check, TellsWhereTheEffectiveMassIsSingularInSpace) {
   std::string said;
   const std::string frames = "  frame fa on a\n  frame fb on b\n";
   EXPECT_TRUE(checked(frames + "  pa = pb\n  cross(fa.x, fb.x) = 0 keep 2\n", &said, "spatial").clean());
-  EXPECT_TRUE(mentions(said, "while nothing but a can move, K is singular where dot(fa.x, fb.x) = 0")) << said;
+  EXPECT_TRUE(mentions(said, "K is regular at every pose with C = 0 that was tried")) << said;
   EXPECT_TRUE(mentions(said, "while nothing can turn, K is singular at every pose")) << said;
+  EXPECT_FALSE(mentions(said, "dot(fa.x, fb.x)")) << said;
   said.clear();
   EXPECT_TRUE(checked("  norm(pa - pb) = 2 [m]\n", &said, "spatial").clean());
-  EXPECT_TRUE(mentions(said, "K is regular at every pose while a or b can move")) << said;
+  EXPECT_TRUE(mentions(said, "K is regular at every pose while a or b can move\n")) << said;
   EXPECT_TRUE(mentions(said, "the kernel takes (1, 0, 0)")) << said;
+}
+
+TEST(Check, TellsWhereTheEffectiveMassIsSingularOnTheConstraint) {
+  const auto said_of = [](const std::string& rows, const std::string& space) {
+    std::string said;
+    EXPECT_TRUE(checked(rows, &said, space).clean());
+    return said;
+  };
+  const std::string third = "  point pc on c\n  let u = pa - pb\n  let w = pc - pb\n";
+  EXPECT_TRUE(mentions(said_of(third + "  scalar share [1]\n  dot(u, w) / (norm(u) * norm(w)) = share\n", "planar"),
+                       "K is singular where cross(u, w) = 0, which some parameters allow"));
+  const std::string skate = "  unit n on world\n  unit t on a\n  let side = cross(n, t)\n  point g on world\n"
+                            "  pa - pb = 0\n  velocity dot(side, v(pa) - v(g)) = 0\n";
+  EXPECT_TRUE(mentions(said_of(skate, "spatial"), "K is singular where side = 0\n"));
+  EXPECT_TRUE(mentions(said_of("  frame fa on a\n  frame fb on b = fa\n  pa = pb\n  rotation(fa, fb) = 0\n", "spatial"),
+                       "K is singular on a branch of C = 0 to which the defaults do not lead"));
+  EXPECT_TRUE(mentions(said_of("  scalar ratio [1] above 0\n  angle(a) - ratio * angle(b) = 0\n", "planar"),
+                       "K is regular at every pose while a can turn\n"));
+}
+
+// Where two vectors are parallel their cross product has no direction; the kernel takes one that may leave J = 0.
+TEST(Check, NothingIsRegularWhereAGuardMayMakeItSingular) {
+  std::string said;
+  const std::string third = "  point pc on c\n  let u = pa - pb\n  let w = pc - pb\n  scalar phi [rad] = angle(u, w)\n";
+  EXPECT_TRUE(checked(third + "  angle(u, w) = phi\n", &said, "spatial").clean());
+  EXPECT_TRUE(mentions(said, "but may be singular where cross(u, w) = 0")) << said;
+}
+
+// Notes on singular poses of a wrong joint would hide its error.
+TEST(Check, AWrongJointHasNoNotesOnSingularPoses) {
+  std::string said;
+  EXPECT_FALSE(checked("  frame fa on a\n  frame fb on b\n  cross(fa.x, fb.x) = 0\n", &said, "spatial").clean());
+  EXPECT_TRUE(mentions(said, "two of the three rows are independent: write `cross(fa.x, fb.x) = 0 keep 2`")) << said;
+  EXPECT_FALSE(mentions(said, "singular")) << said;
 }
 
 TEST(Check, RowsThatVanishInSpaceAreFound) {

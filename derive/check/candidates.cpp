@@ -1,0 +1,82 @@
+// Quantities with short names that may vanish where K is singular.
+#include <algorithm>
+
+#include "derive/check/mass.hpp"
+#include "derive/proof/words.hpp"
+
+namespace cdot::derive {
+namespace {
+
+constexpr std::size_t most_vectors = 12, longest_name = 60, most_candidates = 60;
+
+// A component along an axis of the world means nothing to a joint.
+bool of_world(Expr e) {
+  return is_world_axis(e) || (e->kind == Kind::cross && std::ranges::any_of(e->args, is_world_axis));
+}
+
+class Candidates {
+ public:
+  explicit Candidates(const Subject& subject) : joint_(subject.joint) {
+    std::vector<Expr> entries;
+    for (const ScalarRow& row : subject.block.rows) {
+      for (const JacobianEntry& entry : row.J) entries.insert(entries.end(), {entry.w, entry.v});
+    }
+    for (const Expr e : leaves_of(entries)) {
+      if (e->role == Role::parameter && !e->vector) add(e);
+    }
+    for (const Expr e : entries) {
+      if (!e->vector || joint_.dimension == 3) add(e);
+    }
+    for (const Expr e : topological(entries)) {
+      if (!e->vector || e->role == Role::position || e->kind == Kind::perp) continue;
+      if (e->kind != Kind::scale && !is_zero(e) && vectors_.size() <= most_vectors && !of_world(e)) add_vector(e);
+    }
+    for (std::size_t i = 0; i < vectors_.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        add(cross(vectors_[k], vectors_[i]));
+        add(dot(vectors_[k], vectors_[i]));
+      }
+    }
+    std::ranges::stable_sort(all_, {}, [](const Candidate& c) { return c.name.size(); });
+    if (all_.size() > most_candidates) all_.resize(most_candidates);
+  }
+
+  std::vector<Candidate> all() { return std::move(all_); }
+
+ private:
+  // Factors of a product vanish one by one; a length vanishes with its vector.
+  void add(Expr e) {
+    e = split_coefficient(e).e;
+    if (e->kind == Kind::product && e->name.empty()) {
+      for (std::size_t i = 0; i < e->args.size(); ++i)
+        if (e->exponents[i] > 0) add(e->args[i]);
+      return;
+    }
+    if (e->kind == Kind::scale && e->name.empty()) return add(e->args[0]), add(e->args[1]);
+    if (e->kind == Kind::norm) return add(e->args[0]);
+    if (e->kind == Kind::number || e->unit_length || is_zero(e)) return;
+    const std::string name = spec_text(e->vector ? e : with_leading_sign(e), joint_);
+    const auto same = [&](const Candidate& c) { return c.e == e || c.name == name; };
+    if (name.size() <= longest_name && std::ranges::none_of(all_, same)) all_.push_back({e, name});
+  }
+
+  // An axis brings the other axes of its frame, which are orthogonal to it.
+  void add_vector(Expr e) {
+    const Pool::Axis axis = joint_.pool->axis_of(e);
+    for (const Expr v : axis.triad ? std::vector<Expr>(axis.triad->begin(), axis.triad->end()) : std::vector<Expr>{e}) {
+      if (std::ranges::find(vectors_, v) != vectors_.end()) continue;
+      vectors_.push_back(v);
+      add(v);
+    }
+  }
+
+  const Joint& joint_;
+  std::vector<Expr> vectors_;
+  std::vector<Candidate> all_;
+};
+
+}  // namespace
+
+std::vector<Candidate> candidates_for_zero(const Subject& subject) { return Candidates(subject).all(); }
+
+}  // namespace cdot::derive
