@@ -38,7 +38,8 @@ class Defaults {
     const auto [least, largest] = std::ranges::minmax(residuals);
     if (measured) tell(row, *measured, largest);
     else if (least > 0 && largest - least < negligible_residual * largest)
-      add(row, fmt::format("with the defaults |C| is {:.3g} at every initial pose", largest), "choose defaults with C = 0");
+      add(row, fmt::format("with the defaults |C| is {:.3g} at every initial pose", largest),
+          "choose defaults with C = 0");
   }
 
  private:
@@ -67,7 +68,8 @@ class Defaults {
   const Parameter* measured_number(Expr C) const {
     for (const Expr leaf : leaves_of(std::span(&C, 1))) {
       for (const Parameter& p : joint_.parameters) {
-        if (p.symbol == leaf && p.kind == ParameterKind::scalar && p.default_value && depends_on_bodies(p.default_value))
+        if (p.symbol == leaf && p.kind == ParameterKind::scalar && p.default_value &&
+            depends_on_bodies(p.default_value))
           return &p;
       }
     }
@@ -77,8 +79,8 @@ class Defaults {
   void tell(const Row& row, const Parameter& p, double residual) {
     const std::optional<std::string> right = solved_for(p, row.C);
     add(row,
-        fmt::format("with the default of `{}` the row does not hold at the start: |C| is {:.3g} at a random pose", p.name,
-                    residual),
+        fmt::format("with the default of `{}` the row does not hold at the start: |C| is {:.3g} at a random pose",
+                    p.name, residual),
         right ? fmt::format("make `{}` its default", *right) : "choose a default with C = 0");
   }
 

@@ -1,5 +1,5 @@
-// Random poses, and poses projected onto C = 0: from random ones, and from starts with the spec's defaults, which lie on
-// the branch that the author means.
+// Random poses, and poses projected onto C = 0: from random ones, and from starts with the spec's defaults, which lie
+// on the branch that the author means.
 #include <cmath>
 
 #include "derive/check/parts.hpp"

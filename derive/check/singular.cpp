@@ -1,5 +1,6 @@
-// Poses with C = 0 at which K is singular, by search: Newton's method moves random poses with C = 0 to where a candidate
-// vanishes as well, or to where the rows of J depend on each other, and the kernel's own numbers decide there.
+// Poses with C = 0 at which K is singular, by search: Newton's method moves random poses with C = 0 to where a
+// candidate vanishes as well, or to where the rows of J depend on each other, and the kernel's own numbers decide
+// there.
 #include <algorithm>
 #include <cmath>
 
@@ -11,9 +12,9 @@
 namespace cdot::derive {
 namespace {
 
-constexpr std::size_t starts = 3;          // with the spec's defaults, and as many others
-constexpr double dependent = 1e-5;         // share of a row that is no combination of the rows before it
-constexpr double guarded = 1e-9;           // a divisor or a length below counts as 0, for which kernels have guards
+constexpr std::size_t starts = 3;   // with the spec's defaults, and as many others
+constexpr double dependent = 1e-5;  // share of a row that is no combination of the rows before it
+constexpr double guarded = 1e-9;    // a divisor or a length below counts as 0, for which kernels have guards
 constexpr std::size_t most_conditions = 2;
 
 double length(const std::vector<double>& row) {
@@ -37,8 +38,10 @@ class Search {
     }
     const auto others = subject.on_constraint.begin() + static_cast<std::ptrdiff_t>(subject.by_defaults);
     by_defaults_ = std::min(starts, subject.by_defaults);
-    poses_.assign(subject.on_constraint.begin(), subject.on_constraint.begin() + static_cast<std::ptrdiff_t>(by_defaults_));
-    poses_.insert(poses_.end(), others, others + std::min<std::ptrdiff_t>(starts, subject.on_constraint.end() - others));
+    poses_.assign(subject.on_constraint.begin(),
+                  subject.on_constraint.begin() + static_cast<std::ptrdiff_t>(by_defaults_));
+    poses_.insert(poses_.end(), others,
+                  others + std::min<std::ptrdiff_t>(starts, subject.on_constraint.end() - others));
     if (!poses_.empty()) numbers_.emplace(poses_[0], guarded);
   }
 
@@ -153,7 +156,8 @@ class Search {
   bool in_range(const Sample& sample) const {
     return std::ranges::all_of(subject_.joint.parameters, [&](const Parameter& p) {
       const auto value = sample.scalars.find(p.name);
-      return value == sample.scalars.end() || (value->second > p.above + dependent && value->second < p.below - dependent);
+      return value == sample.scalars.end() ||
+             (value->second > p.above + dependent && value->second < p.below - dependent);
     });
   }
 
@@ -199,8 +203,8 @@ class Search {
   std::vector<Singular> found_;
   std::vector<Expr> C_;
   std::vector<std::vector<Expr>> J_;
-  std::vector<double> usual_;   // lengths of the rows of J
-  std::vector<Sample> poses_;   // with C = 0
+  std::vector<double> usual_;  // lengths of the rows of J
+  std::vector<Sample> poses_;  // with C = 0
   std::size_t by_defaults_ = 0;
   mutable std::optional<Numbers> numbers_;  // those of the kernel, moved from sample to sample
   std::map<std::size_t, std::vector<Expr>> vanishing_;

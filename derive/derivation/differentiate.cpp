@@ -181,8 +181,8 @@ Block derive_rows(const Joint& joint, int immovable) {
   const std::vector<Expr> axes = world_axes(*joint.pool);
   for (const Row& row : joint.rows) {
     if (!row.C->vector) {
-      block.rows.push_back(derive_row(joint, {row.name, &row, row.kind, -1, row.of_world, {}, {}, {}, {}, {}, {}},
-                                      row.C, immovable));
+      block.rows.push_back(
+          derive_row(joint, {row.name, &row, row.kind, -1, row.of_world, {}, {}, {}, {}, {}, {}}, row.C, immovable));
       continue;
     }
     for (std::size_t k = 0; k < axes.size(); ++k) {

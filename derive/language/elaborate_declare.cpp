@@ -354,7 +354,8 @@ void Elaborator::enter(Source& source, const std::string& full, std::string kind
         error(source, where,
               "a component of " + quote(full) + " is called " + quote(full + component) + ", which is another name",
               "choose another name", {taken->second.where});
-  names_[full] = {std::move(value), std::move(kind), in_spec(source, where), source.include.has_value(), false, of_world};
+  names_[full] = {std::move(value),           std::move(kind), in_spec(source, where),
+                  source.include.has_value(), false,           of_world};
 }
 
 }  // namespace cdot::derive

@@ -140,8 +140,7 @@ bool Elaborator::take_given(Source& source, const DeclaredAst& d) {
   if (d.kind == "unit" && !value.e->unit_length) value.e = unit(value.e);
   const std::string full = source.prefix + d.name.text;
   if (arm) enter(source, arm_name(source.prefix, d.name.text), "arm", vector(value.arm, value.unit), d.name.where);
-  if (name_is_free(source, d.name, full))
-    enter(source, full, d.kind, value, d.name.where, found->second.of_world);
+  if (name_is_free(source, d.name, full)) enter(source, full, d.kind, value, d.name.where, found->second.of_world);
   return true;
 }
 

@@ -184,7 +184,8 @@ void Elaborator::coordinate(Source& source, const StatementAst& s) {
   joint_.uses_time |= depends_on_role(v.e, Role::time);
   const Unit unit = d.unit ? d.unit->unit : v.unit.value_or(Unit{});
   const std::string from = source.include ? source.including.back() : "";
-  joint_.coordinates.push_back({full, v.e, unit, in_spec(source, d.name.where), written(source, s), from, {}, of_world_});
+  joint_.coordinates.push_back(
+      {full, v.e, unit, in_spec(source, d.name.where), written(source, s), from, {}, of_world_});
 }
 
 // A row or the right side of a coordinate as its author wrote it, in one line, with the names that things have here.

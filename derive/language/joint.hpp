@@ -59,9 +59,9 @@ struct Row {
   Expr C;  // lhs - rhs for equality, rhs - lhs for <=, lhs - rhs for >=; velocity rows: the velocity expression
   Unit unit;
   Span where;
-  std::string text;  // as written, for people
-  std::string from;  // the included joint that it came from; empty if written here
-  Expr kept;         // with `keep`: the cross product that it is a component of
+  std::string text;       // as written, for people
+  std::string from;       // the included joint that it came from; empty if written here
+  Expr kept;              // with `keep`: the cross product that it is a component of
   bool of_world = false;  // it names a quantity of the world, which takes any impulse: it need not conserve momentum
 };
 
@@ -92,7 +92,7 @@ struct Joint {
   std::vector<Coordinate> coordinates;
   std::vector<Coordinate> dropped;         // from an include, but constrained by rows
   std::shared_ptr<const SourceFile> file;  // for messages of later stages
-  bool uses_world = false;  // some quantity is fixed in the world
+  bool uses_world = false;                 // some quantity is fixed in the world
   bool uses_time = false;
 };
 

@@ -105,7 +105,8 @@ BrokenInput parse_case(std::string name, const std::vector<std::string>& lines) 
   for (const std::string& line : lines) {
     if (line == messages_mark + "\n" && part == &c.input) part = &c.messages;
     else if (line == mended_mark + "\n" && part == &c.messages) part = &c.edits;
-    else if (line.starts_with("---")) throw std::runtime_error("`--- case NAME`, `--- messages` or `--- mended` belongs here: " + line);
+    else if (line.starts_with("---"))
+      throw std::runtime_error("`--- case NAME`, `--- messages` or `--- mended` belongs here: " + line);
     else *part += line;
   }
   if (escapes) c.input = unescaped(c.input), c.messages = unescaped(c.messages);

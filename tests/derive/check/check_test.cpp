@@ -113,7 +113,9 @@ TEST(Check, MomentumIsTestedRowByRow) {
   EXPECT_FALSE(checked("  unit n on world\n  dot(n, pa - pb) = 0\n  angle(a) + angle(b) = 0\n", &said).clean());
   EXPECT_TRUE(mentions(said, "angular momentum is not conserved: C2")) << said;
   EXPECT_TRUE(mentions(said, "angle(a) - angle(world) in place of angle(a)")) << said;
-  EXPECT_TRUE(checked("  point g on world\n  let u = pa - g\n  dot(u, b.x) = 0\n  angle(a) - angle(world) = 0\n").clean());
+  EXPECT_TRUE(
+      checked("  point g on world\n  let u = pa - g\n  dot(u, b.x) = 0\n  pa = pb\n  angle(a) - angle(world) = 0\n")
+          .clean());
   said.clear();
   EXPECT_FALSE(checked("  dot(a.x, pa - pb) + angle(b) * 1 [m] = 0\n", &said).clean());
   EXPECT_TRUE(mentions(said, "which changes C by 1 per radian; the cause is angle(b)")) << said;
@@ -127,7 +129,8 @@ TEST(Check, DefaultsThatLeaveCAreTold) {
   EXPECT_TRUE(checked("  scalar l [m] = norm(pa - pb)\n  norm(pa - pb) = l\n").clean());
   EXPECT_TRUE(checked("  scalar l [m] = 2 * norm(pa - pb)\n  norm(pa - pb) <= l\n").clean());
   said.clear();
-  EXPECT_FALSE(checked("  unit na on a\n  unit nb on b = na\n  pa = pb\n  dot(na, nb) = 0\n", &said, "spatial").clean());
+  EXPECT_FALSE(
+      checked("  unit na on a\n  unit nb on b = na\n  pa = pb\n  dot(na, nb) = 0\n", &said, "spatial").clean());
   EXPECT_TRUE(mentions(said, "C2: with the defaults |C| is 1 at every initial pose")) << said;
 }
 
@@ -193,24 +196,26 @@ TEST(Check, TellsWhereTheEffectiveMassIsSingularOnTheConstraint) {
     EXPECT_TRUE(checked(rows, &said, space).clean());
     return said;
   };
-  const std::string third = "  point pc on c\n  let u = pa - pb\n  let w = pc - pb\n";
-  EXPECT_TRUE(mentions(said_of(third + "  scalar share [1]\n  dot(u, w) / (norm(u) * norm(w)) = share\n", "planar"),
-                       "K is singular where cross(u, w) = 0, which some parameters allow"));
-  const std::string skate = "  unit n on world\n  unit t on a\n  let side = cross(n, t)\n  point g on world\n"
-                            "  pa - pb = 0\n  velocity dot(side, v(pa) - v(g)) = 0\n";
+  const std::string third = "  point pc on c\n  let u = pa - pb\n  let s = pc - pb\n";
+  EXPECT_TRUE(mentions(said_of(third + "  scalar share [1]\n  dot(u, s) / (norm(u) * norm(s)) = share\n", "planar"),
+                       "K is singular where cross(u, s) = 0, which some parameters allow"));
+  const std::string skate =
+      "  unit n on world\n  unit t on a\n  let side = cross(n, t)\n  point g on world\n"
+      "  pa - pb = 0\n  velocity dot(side, v(pa) - v(g)) = 0\n";
   EXPECT_TRUE(mentions(said_of(skate, "spatial"), "K is singular where side = 0\n"));
   EXPECT_TRUE(mentions(said_of("  frame fa on a\n  frame fb on b = fa\n  pa = pb\n  rotation(fa, fb) = 0\n", "spatial"),
                        "K is singular on a branch of C = 0 to which the defaults do not lead"));
-  EXPECT_TRUE(mentions(said_of("  scalar ratio [1] above 0\n  angle(a) - ratio * angle(b) = 0\n", "planar"),
-                       "K is regular at every pose while a can turn\n"));
+  const std::string scaled = "  pa = pb\n  ratio * (angle(a) - angle(b)) = 0\n";
+  EXPECT_TRUE(mentions(said_of("  scalar ratio [1]\n" + scaled, "planar"), "K is singular where ratio = 0\n"));
+  EXPECT_FALSE(mentions(said_of("  scalar ratio [1] above 0\n" + scaled, "planar"), "ratio = 0"));
 }
 
 // Where two vectors are parallel their cross product has no direction; the kernel takes one that may leave J = 0.
 TEST(Check, NothingIsRegularWhereAGuardMayMakeItSingular) {
   std::string said;
-  const std::string third = "  point pc on c\n  let u = pa - pb\n  let w = pc - pb\n  scalar phi [rad] = angle(u, w)\n";
-  EXPECT_TRUE(checked(third + "  angle(u, w) = phi\n", &said, "spatial").clean());
-  EXPECT_TRUE(mentions(said, "but may be singular where cross(u, w) = 0")) << said;
+  const std::string third = "  point pc on c\n  let u = pa - pb\n  let s = pc - pb\n  scalar phi [rad] = angle(u, s)\n";
+  EXPECT_TRUE(checked(third + "  angle(u, s) = phi\n", &said, "spatial").clean());
+  EXPECT_TRUE(mentions(said, "but may be singular where cross(u, s) = 0")) << said;
 }
 
 // Notes on singular poses of a wrong joint would hide its error.
