@@ -144,7 +144,7 @@ void introduce(Lecture& lecture) {
 
 Explanation explain(const Derivation& derivation, Form form) {
   const Joint& joint = derivation.joint;
-  Lecture lecture(joint);
+  Lecture lecture(derivation);
   const Part rows = rows_part(lecture, derivation.rows);
   std::vector<Part> coordinates;
   for (const Block& block : derivation.coordinates) coordinates.push_back(coordinate_part(lecture, block));
@@ -156,6 +156,7 @@ Explanation explain(const Derivation& derivation, Form form) {
     all.push_back(&coordinates[i]);
   }
   state_limits(lecture, all);
+  introduce_shared(lecture);
   return std::move(lecture.out);
 }
 

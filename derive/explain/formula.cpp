@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "derive/expression/functions.hpp"
+#include "derive/expression/shared.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -165,6 +166,8 @@ std::string world_axis(Expr axis) {
 }
 
 Notation::Notation(const Joint& joint) {
+  for (const Parameter& p : joint.parameters) taken_.push_back(p.name);
+  for (const Let& let : joint.lets) taken_.push_back(let.name);
   for (const Parameter& p : joint.parameters) {
     if (p.kind != ParameterKind::point || p.body < 0) continue;
     points_.push_back({p.name, body_symbols(joint, p.body).x, p.symbol, p.value});
@@ -173,7 +176,26 @@ Notation::Notation(const Joint& joint) {
 
 bool Notation::has_name(Expr e) { return !e->name.empty() && (e->named_by_let || e->name.ends_with("_dot")); }
 
-Formula Notation::of(Expr e) const { return has_name(e) && !is_zero(e) ? leaf(e) : written(e); }
+void Notation::share(std::span<const Expr> roots) {
+  shared_ = shared_parts(roots, &has_name);
+  int number = 0;
+  for (const Expr e : shared_) {
+    std::string name;
+    do name = "s" + std::to_string(++number);
+    while (std::find(taken_.begin(), taken_.end(), name) != taken_.end());
+    names_of_shared_.emplace(&*e, name);
+  }
+}
+
+std::string Notation::shared_name(Expr e) const {
+  const auto found = names_of_shared_.find(&*e);
+  return found == names_of_shared_.end() ? "" : found->second;
+}
+
+Formula Notation::of(Expr e) const {
+  if (const std::string name = shared_name(e); !name.empty()) return leaf(e, name);
+  return has_name(e) && !is_zero(e) ? leaf(e) : written(e);
+}
 Formula Notation::definition(Expr e) const { return written(e); }
 
 Formula Notation::written(Expr e) const {

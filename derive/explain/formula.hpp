@@ -99,6 +99,11 @@ class Notation {
   };
   PointTerms points_among(Expr sum) const;
 
+  // Gives names to what recurs in these expressions, if they are long.
+  void share(std::span<const Expr> roots);
+  const std::vector<Expr>& shared() const { return shared_; }  // operands before users
+  std::string shared_name(Expr e) const;                       // empty: it has none
+
   static bool has_name(Expr e);  // given by the author, or a rate of such a thing
 
  private:
@@ -110,6 +115,9 @@ class Notation {
   Formula scale_of(Expr e) const;
 
   std::vector<Point> points_;
+  std::vector<std::string> taken_;
+  std::vector<Expr> shared_;
+  std::map<const Node*, std::string> names_of_shared_;
 };
 
 }  // namespace cdot::derive

@@ -7,6 +7,7 @@
 #include "derive/explain/symbols.hpp"
 #include "derive/expression/components.hpp"
 #include "derive/expression/functions.hpp"
+#include "derive/expression/shared.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -16,6 +17,13 @@ using text::Json;
 class Infix {
  public:
   explicit Infix(const Joint& joint) : symbols_(joint) {}
+
+  // Names of their own for what recurs in these expressions, if they are long.
+  void share(const std::vector<Expr>& scalars) {
+    std::vector<Expr> roots;
+    for (const Expr e : scalars) roots.push_back(components_.of(e));
+    for (const Expr e : shared_parts(roots, [](Expr e) { return !e->name.empty(); })) shared_.insert(&*e);
+  }
 
   std::string of(Expr scalar) { return print(components_.of(scalar), Level::sum); }
 
@@ -29,10 +37,11 @@ class Infix {
 
   std::string print(Expr e, Level level) {
     if (e->kind == Kind::symbol) return symbols_.name(e);
-    if (e->name.empty() || e->kind == Kind::number) return inline_text(e, level);
+    const bool shared = shared_.contains(&*e);
+    if ((e->name.empty() && !shared) || e->kind == Kind::number) return inline_text(e, level);
     if (const auto found = names_.find(&*e); found != names_.end()) return found->second;
     const std::string definition = inline_text(e, Level::sum);
-    std::string name = symbols_.reserve(e->name);
+    std::string name = symbols_.reserve(shared ? "s" + std::to_string(++serial_) : e->name);
     names_.emplace(&*e, name);
     intermediates_.push_back({{"name", name}, {"definition", definition}});
     return name;
@@ -104,6 +113,8 @@ class Infix {
   ExplainedSymbols symbols_;
   Components components_;
   std::map<const Node*, std::string> names_;
+  std::set<const Node*> shared_;  // looked up only
+  int serial_ = 0;                // of their names
   std::set<std::string> guarded_;
   Json intermediates_ = Json::array(), guards_ = Json::array();
 };
@@ -130,6 +141,14 @@ std::vector<std::string> columns(const Joint& joint) {
   return names;
 }
 
+void add_expressions(const Block& block, std::vector<Expr>& all) {
+  for (const ScalarRow& row : block.rows) {
+    all.insert(all.end(), {row.C, row.Cdot, row.C_t, row.gamma});
+    for (const Expr entry : columns_of(row.J)) all.push_back(entry);
+  }
+  for (const auto& K : block.K) all.insert(all.end(), K.begin(), K.end());
+}
+
 void add_block(Json& out, Infix& infix, const Block& block) {
   for (const char* key : {"C", "Cdot", "C_t", "J", "K", "gamma"}) out[key] = Json::array();
   for (std::size_t i = 0; i < block.rows.size(); ++i) {
@@ -152,6 +171,10 @@ void add_block(Json& out, Infix& infix, const Block& block) {
 std::string explanation_json(const Derivation& derivation) {
   const Joint& joint = derivation.joint;
   Infix infix(joint);
+  std::vector<Expr> expressions;
+  add_expressions(derivation.rows, expressions);
+  for (const Block& block : derivation.coordinates) add_expressions(block, expressions);
+  infix.share(expressions);
   Json rows, coordinates = Json::array();
   rows["rows"] = Json::array();
   for (const ScalarRow& row : derivation.rows.rows) {

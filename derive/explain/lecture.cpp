@@ -1,6 +1,7 @@
 // Grouping scalar rows into the author's statements, and the names of what is derived from them.
 #include "derive/explain/lecture.hpp"
 
+#include <set>
 #include <utility>
 
 namespace cdot::derive {
@@ -35,6 +36,79 @@ Statement scalar_statement(const Notation& notation, const ScalarRow& row, std::
 }
 
 }  // namespace
+
+Lecture::Lecture(const Derivation& derivation)
+    : joint(derivation.joint), notation(derivation.joint), rates(derivation.joint, notation) {
+  std::vector<Expr> all;
+  const auto add = [&](const Block& block) {
+    for (const ScalarRow& row : block.rows) {
+      all.insert(all.end(), {row.C, row.Cdot, row.C_t, row.gamma});
+      for (const JacobianEntry& entry : row.J) all.insert(all.end(), {entry.v, entry.w});
+    }
+    for (const auto& K : block.K) all.insert(all.end(), K.begin(), K.end());
+  };
+  add(derivation.rows);
+  for (const Block& block : derivation.coordinates) add(block);
+  notation.share(all);
+}
+
+namespace {
+
+// The leaves of f, in order.
+void collect_leaves(const Formula& f, std::vector<Expr>& leaves) {
+  if (f.shape == Shape::leaf && f.leaf) leaves.push_back(f.leaf);
+  for (const Formula& arg : f.args) collect_leaves(arg, leaves);
+}
+
+class Introduction {
+ public:
+  explicit Introduction(const Notation& notation) : notation_(notation) {}
+
+  // Definitions of names in f that have not been given, each after those that it needs.
+  void introduce(const Formula& f, std::vector<Chain>& chains) {
+    std::vector<Expr> leaves;
+    collect_leaves(f, leaves);
+    for (const Expr e : leaves) {
+      const std::string name = notation_.shared_name(e);
+      if (name.empty() || !introduced_.insert(name).second) continue;
+      Formula definition = notation_.definition(e);
+      introduce(definition, chains);
+      chains.push_back({leaf(e, name), {{std::move(definition), ""}}});
+    }
+  }
+
+ private:
+  const Notation& notation_;
+  std::set<std::string> introduced_;
+};
+
+}  // namespace
+
+void introduce_shared(Lecture& lecture) {
+  Introduction introduction(lecture.notation);
+  if (lecture.notation.shared().empty()) return;
+  for (Step& step : lecture.out.steps) {
+    std::vector<Chain> chains;
+    for (const Item& item : step.items) {
+      for (const Formula& f : item.words.formulas) introduction.introduce(f, chains);
+      introduction.introduce(item.chain.left, chains);
+      for (const Link& link : item.chain.links) introduction.introduce(link.formula, chains);
+    }
+    if (chains.empty()) continue;
+    Step whole{step.heading, {}};
+    whole.say("Names for what recurs:");
+    for (Chain& chain : chains) whole.show(std::move(chain));
+    whole.items.insert(whole.items.end(), step.items.begin(), step.items.end());
+    step = std::move(whole);
+  }
+}
+
+std::vector<Chain> shared_chains(const Lecture& lecture) {
+  std::vector<Chain> chains;
+  for (const Expr e : lecture.notation.shared())
+    chains.push_back({lecture.notation.of(e), {{lecture.notation.definition(e), ""}}});
+  return chains;
+}
 
 Step& Lecture::section(std::string heading) {
   out.steps.push_back({std::move(heading), {}});

@@ -26,7 +26,7 @@ struct Part {
 };
 
 struct Lecture {
-  explicit Lecture(const Joint& j) : joint(j), notation(j), rates(j, notation) {}
+  explicit Lecture(const Derivation& derivation);
 
   const Joint& joint;
   Notation notation;
@@ -57,5 +57,9 @@ void summarise_mass(const Lecture& lecture, const Part& part, std::vector<Chain>
 void multiply_mass(Lecture& lecture, const Part& part, Step& step);
 void differentiate_again(Lecture& lecture, const Part& part, Step& step);
 void state_limits(Lecture& lecture, const std::vector<const Part*>& parts);
+// Names for what recurs, before the first step that contains them.
+void introduce_shared(Lecture& lecture);
+// The same as chains, for a summary.
+std::vector<Chain> shared_chains(const Lecture& lecture);
 
 }  // namespace cdot::derive

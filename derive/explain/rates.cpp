@@ -17,9 +17,14 @@ std::vector<Chain> Rates::differentiate(Expr e, Formula left) {
   return std::exchange(chains_, {});
 }
 
-Formula Rates::inserted(Expr e) {
+std::optional<Formula> Rates::inserted(Expr e) {
   const bool before = std::exchange(insert_, true);
-  Formula f = by_rules(e);
+  std::optional<Formula> f;
+  insertions_ = 0;
+  try {
+    f = by_rules(e);
+  } catch (const TooLong&) {
+  }
   insert_ = before;
   return f;
 }
@@ -32,8 +37,8 @@ Chain Rates::chain(Expr e, Formula left) {
   for (const std::string& r : rules_) rules += (rules.empty() ? "" : "; ") + r;
   if (rules.empty()) rules = rate == number(0) ? "nothing in it moves" : "term by term";
   result.links.push_back({rate, rules});
-  const Formula all = inserted(e);
-  if (all != rate) result.links.push_back({all, "the rates above inserted"});
+  const std::optional<Formula> all = inserted(e);
+  if (all && *all != rate) result.links.push_back({*all, "the rates above inserted"});
   rules_ = outer;
   return result;
 }
@@ -67,6 +72,7 @@ Formula Rates::by_rules(Expr e) {
 
 Rates::Written Rates::rate(Expr e) {
   if (is_zero(time_derivative(e, joint_))) return {};
+  if (insert_ && ++insertions_ > most_insertions) throw TooLong{};
   if (!insert_ && Notation::has_name(e)) return by_name(e, e->name);
   if (!insert_ && e->kind == Kind::symbol && e->role == Role::body_vector) return by_name(e, e->symbol);
   return RateRules(*this, joint_).of(e);

@@ -17,8 +17,8 @@ class Rates {
   // names it needs that no earlier call has introduced.
   std::vector<Chain> differentiate(Expr e, Formula left);
 
-  // d e/dt with all names inserted: a form in which only v and w move.
-  Formula inserted(Expr e);
+  // d e/dt with all names inserted: a form in which only v and w move. Nothing if that is long.
+  std::optional<Formula> inserted(Expr e);
 
   // The algebra of the rules: a formula as they write it, none where it is zero.
   struct Written {
@@ -71,7 +71,10 @@ class Rates {
 
   const Joint& joint_;
   const Notation& notation_;
+  static constexpr int most_insertions = 150;
+  struct TooLong {};
   bool insert_ = false;
+  int insertions_ = 0;
   std::set<std::string> introduced_;
   std::vector<std::string> rules_;
   std::vector<Chain> chains_;

@@ -7,6 +7,8 @@
 namespace cdot::derive {
 namespace {
 
+constexpr double most_terms = 500;  // of a gamma that is multiplied out
+
 void head(Step& step, const Part& part, const Statement& s) {
   if (part.statements.size() > 1) step.say("Row `" + s.name + "`:");
 }
@@ -49,7 +51,12 @@ Formula isolated(const Lecture& lecture, const ScalarRow& row) {
 void isolate_scalar(Lecture& lecture, const Part& part, const Statement& s, Step& step) {
   const ScalarRow& row = part.block.rows[s.first];
   const bool at_velocity_level = s.kind == RowKind::velocity;
-  const Formula Cdot = at_velocity_level ? lecture.notation.definition(s.C) : lecture.rates.inserted(s.C);
+  const std::optional<Formula> inserted = at_velocity_level ? std::nullopt : lecture.rates.inserted(s.C);
+  if (!at_velocity_level && !inserted) {
+    step.say("With all rates inserted there are too many terms to list. Through the names, each velocity collects:");
+    return step.show({label("Cdot", s, row.Cdot), {{isolated(lecture, row), ""}}});
+  }
+  const Formula Cdot = at_velocity_level ? lecture.notation.definition(s.C) : *inserted;
   const std::vector<VelocityTerm> terms = isolate(Cdot, lecture.joint);
   for (const VelocityTerm& term : terms) {
     if (term.identity.empty()) continue;
@@ -101,6 +108,18 @@ void isolate_rows_together(Lecture& lecture, const Statement& s, Step& step) {
   }
   if (!is_zero(s.C_t)) terms.push_back({false, lecture.notation.of(s.C_t)});
   step.show({label("Cdot", s, s.Cdot), {{sum(std::move(terms)), turning_by_skew(lecture.joint.dimension)}}});
+}
+
+// The terms of e with products multiplied out; names are not opened.
+double terms_if_expanded(Expr e) {
+  if (e->kind != Kind::sum && e->kind != Kind::product && e->kind != Kind::scale) return 1;
+  double terms = e->kind == Kind::sum ? 0 : 1;
+  for (std::size_t i = 0; i < e->args.size() && terms < most_terms; ++i) {
+    const bool opened = !Notation::has_name(e->args[i]) && (e->kind != Kind::product || e->exponents[i] == 1);
+    const double of_part = opened ? terms_if_expanded(e->args[i]) : 1;
+    terms = e->kind == Kind::sum ? terms + of_part : terms * of_part;
+  }
+  return terms;
 }
 
 // Products multiplied out, so that equal terms add up.
@@ -248,7 +267,8 @@ void differentiate_again(Lecture& lecture, const Part& part, Step& step) {
     head(step, part, s);
     const Expr gamma = -time_derivative(s.Cdot, lecture.joint);
     const Formula name = label("gamma", s, gamma);
-    const Formula simplified = lecture.notation.definition(expanded(gamma));
+    const Formula simplified =
+        lecture.notation.definition(terms_if_expanded(gamma) < most_terms ? expanded(gamma) : gamma);
     if (simplified == number(0)) {
       step.show({name, {{simplified, "J does not change"}}});
       continue;

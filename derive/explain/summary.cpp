@@ -61,12 +61,13 @@ std::vector<Chain> summarise(const Lecture& lecture, const Part& part) {
 }  // namespace
 
 std::vector<std::vector<Chain>> summarise(const Derivation& derivation) {
-  const Lecture lecture(derivation.joint);
+  const Lecture lecture(derivation);
   std::vector<std::vector<Chain>> all = {summarise(lecture, rows_part(lecture, derivation.rows))};
   std::vector<Chain> names;
   for (const Let& let : derivation.joint.lets) {
     names.push_back(equation(leaf(let.value, let.name), lecture.notation.definition(let.value)));
   }
+  for (Chain& chain : shared_chains(lecture)) names.push_back(std::move(chain));
   all[0].insert(all[0].begin(), names.begin(), names.end());
   for (const Block& block : derivation.coordinates) all.push_back(summarise(lecture, coordinate_part(lecture, block)));
   return all;

@@ -1,0 +1,13 @@
+// Parts of large expressions that deserve a name. Written out, what is shared is repeated for each path that leads to
+// it: nested names without names for their slopes double a formula each time.
+#pragma once
+
+#include "derive/expression/expr.hpp"
+
+namespace cdot::derive {
+
+// The parts that occur more than once, operands before users, such that these names shorten `roots`; none while all
+// roots together are short. `named`: has a name already.
+std::vector<Expr> shared_parts(std::span<const Expr> roots, bool (*named)(Expr));
+
+}  // namespace cdot::derive
