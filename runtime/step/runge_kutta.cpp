@@ -14,6 +14,7 @@
 #include "runtime/step/collocation.hpp"
 #include "runtime/step/events.hpp"
 #include "runtime/step/rank_loss.hpp"
+#include "runtime/step/weighted_sum.hpp"
 
 namespace cdot {
 namespace {
@@ -41,13 +42,11 @@ template <class S>
 void combine(Flow<S>& flow, const ExactNumber<typename S::Scalar>* weights, int count, typename S::Scalar h) {
   using T = typename S::Scalar;
   const size_t n = flow.start.size();
-  std::fill(flow.now.begin(), flow.now.end(), T(0));
-  for (int j = 0; j < count; ++j) {
-    if (weights[j] == 0) continue;
-    const T weight = T(weights[j]), *rates = flow.rates.data() + static_cast<size_t>(j) * n;
-    for (size_t k = 0; k < n; ++k) flow.now[k] += weight * rates[k];
-  }
-  for (size_t k = 0; k < n; ++k) flow.now[k] = flow.start[k] + h * flow.now[k];
+  WeightedSum<T, T> sum;
+  for (int j = 0; j < count; ++j) sum.add(T(weights[j]), flow.rates.data() + static_cast<size_t>(j) * n);
+  const T* const start = flow.start.data();
+  T* const now = flow.now.data();
+  sum.each(n, [&](size_t k, T rate) { now[k] = start[k] + h * rate; });
 }
 
 // The largest of an embedded estimate, number by number in units of unit(k).
@@ -55,22 +54,15 @@ template <class S, class F>
 double largest_error(const Flow<S>& flow, const RungeKuttaOf<S>& method, int estimate, typename S::Scalar h, F unit) {
   const size_t n = flow.now.size();
   const size_t of_bodies = n - flow.work.size();
-  double weights[most_stages];
-  const typename S::Scalar* rates[most_stages];
-  int terms = 0;
-  for (int j = 0; j <= method.stages; ++j) {
-    if (method.error[estimate][j] == 0) continue;
-    weights[terms] = method.error[estimate][j];
-    rates[terms++] = flow.rates.data() + static_cast<size_t>(j) * n;
-  }
-  if (terms == 0) return 0;
+  WeightedSum<double, typename S::Scalar> sum;
+  for (int j = 0; j <= method.stages; ++j)
+    sum.add(method.error[estimate][j], flow.rates.data() + static_cast<size_t>(j) * n);
   double worst = 0;
-  for (size_t k = 0; k < of_bodies; ++k) {
-    double sum = 0;
-    for (int j = 0; j < terms; ++j) sum += weights[j] * double(rates[j][k]);
-    const double error = std::abs(double(h) * sum) / unit(k);
+  if (sum.empty()) return worst;
+  sum.each(of_bodies, [&](size_t k, double rate) {
+    const double error = std::abs(double(h) * rate) / unit(k);
     if (!(error <= worst)) worst = error;
-  }
+  });
   return worst;
 }
 
