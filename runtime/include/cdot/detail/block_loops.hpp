@@ -256,6 +256,7 @@ struct BlockLoops {
     Block::apply(as<Jacobian>(batch.jacobian.data(), slot), m, lambda, moved);
     for (int r = 0; r < rows; ++r) batch.correction[slot * rows + r] += lambda[r];
     for (int k = 0; k < bodies; ++k) {
+      if (S::immovable(m[k])) continue;  // infinite impulses would move it by NaN, for good
       const size_t i = static_cast<size_t>(body[k]);
       all.pose[i] = S::moved(all.pose[i], moved[k]);
       all.displacement[i] = S::sum(all.displacement[i], moved[k], T(1));
