@@ -35,14 +35,15 @@ struct ScalarRow {
   std::string name;          // "C1", "C1_x", or the author's name
   const Row* row = nullptr;  // the statement that it comes from; null for a coordinate
   RowKind kind = RowKind::equality;
-  int component = -1;            // of a vector equation; -1 for a scalar one
-  bool of_world = false;         // as its statement
-  Expr C;                        // zero for a velocity row
-  Expr Cdot;                     // J v + dC/dt, before the velocities are isolated
-  Expr C_t;                      // dC/dt at fixed q
-  Expr gamma;                    // -Jdot v - d/dt(dC/dt); empty where a body is immovable
-  Expr gamma_by_entries;         // the same, entry of J by entry
-  std::vector<JacobianEntry> J;  // one per body
+  int component = -1;             // of a vector equation; -1 for a scalar one
+  bool of_world = false;          // as its statement
+  Expr C;                         // zero for a velocity row
+  Expr Cdot;                      // J v + dC/dt, before the velocities are isolated
+  Expr C_t;                       // dC/dt at fixed q
+  Expr gamma;                     // -Jdot v - d/dt(dC/dt); empty where a body is immovable
+  Expr gamma_by_entries;          // the same, entry of J by entry
+  std::vector<JacobianEntry> J;   // one per body
+  std::vector<Expr> gradients{};  // vectors that J repeats, by names of their own (gradient.hpp)
 };
 
 std::vector<std::vector<Expr>> columns_of(std::span<const ScalarRow> rows);  // row by row
@@ -102,7 +103,9 @@ Expr collected(Expr e);
 std::vector<std::vector<Expr>> effective_mass(const Joint& joint, const std::vector<ScalarRow>& rows,
                                               int immovable = -1, bool isotropic = false);
 
-// The coefficients of the velocities in an expression that is linear in them: transposition, node by node.
+// The coefficients of the velocities in an expression that is linear in them: transposition, node by node. As it finds
+// them, and collected.
+std::vector<JacobianEntry> factors_of_velocities(Expr Cdot, const Joint& joint);
 std::vector<JacobianEntry> isolate_velocities(Expr Cdot, const Joint& joint);
 
 Derivation derive(Joint joint);

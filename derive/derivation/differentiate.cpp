@@ -4,6 +4,7 @@
 
 #include "derive/derivation/derivation.hpp"
 #include "derive/derivation/free_coordinates.hpp"
+#include "derive/derivation/gradient.hpp"
 #include "derive/expression/symbols.hpp"
 
 namespace cdot::derive {
@@ -75,7 +76,9 @@ ScalarRow derive_row(const Joint& joint, ScalarRow row, Expr expression, int imm
     row.Cdot = substitute(row.Cdot, {{&*body.v, zero_vector(pool)}, {&*body.w, zero_spin(pool)}}, KeepNames::no);
   }
   row.C_t = substitute(row.Cdot, at_rest, KeepNames::no);
-  row.J = isolate_velocities(row.Cdot, joint);
+  row.J = factors_of_velocities(row.Cdot, joint);
+  name_gradients(joint, row);
+  for (JacobianEntry& entry : row.J) entry.w = collected(entry.w);
   if (immovable < 0) {
     row.gamma = -time_derivative(row.Cdot, joint);
     row.gamma_by_entries = gamma_by_entries(joint, row);

@@ -114,13 +114,19 @@ Expr collected(Expr e) {
   return sum(*e->pool, terms, e->vector);
 }
 
-std::vector<JacobianEntry> isolate_velocities(Expr Cdot, const Joint& joint) {
+std::vector<JacobianEntry> factors_of_velocities(Expr Cdot, const Joint& joint) {
   const Transposition transposed(Cdot);
   std::vector<JacobianEntry> J;
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
     const BodySymbols body = body_symbols(joint, static_cast<int>(b));
-    J.push_back({transposed.coefficient(body.v), collected(transposed.coefficient(body.w))});
+    J.push_back({transposed.coefficient(body.v), transposed.coefficient(body.w)});
   }
+  return J;
+}
+
+std::vector<JacobianEntry> isolate_velocities(Expr Cdot, const Joint& joint) {
+  std::vector<JacobianEntry> J = factors_of_velocities(Cdot, joint);
+  for (JacobianEntry& entry : J) entry.w = collected(entry.w);
   return J;
 }
 

@@ -65,6 +65,9 @@ void isolate_scalar(Lecture& lecture, const Part& part, const Statement& s, Step
         term.body < 0 ? number(0) : multiplied(term.coefficient, term.body, term.spin, lecture.joint, lecture.notation);
     step.show({written, {{result, term.identity}}});
   }
+  for (const Expr n : row.gradients) {
+    step.show({leaf(n), {{lecture.notation.definition(n), "the gradient, which several terms share"}}});
+  }
   for (std::size_t b = 0; b < row.J.size(); ++b) {
     collect(lecture, terms, row.J[b].v, static_cast<int>(b), false, step);
     collect(lecture, terms, row.J[b].w, static_cast<int>(b), true, step);

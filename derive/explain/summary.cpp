@@ -44,6 +44,9 @@ std::vector<Chain> summarise(const Lecture& lecture, const Part& part) {
     const Formula left =
         part.block.name.empty() ? label(velocity ? "Cdot" : "C", s, s.C) : leaf(s.C, "coordinate " + s.name);
     summary.push_back(equation(left, lecture.notation.definition(s.C), note_of(s.kind)));
+    for (const Expr n : part.block.rows[s.first].gradients) {
+      summary.push_back(equation(leaf(n), lecture.notation.definition(n)));
+    }
     const Formula row = row_of_J(s);
     J.insert(J.end(), row.args.begin(), row.args.end());
   }

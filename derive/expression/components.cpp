@@ -42,6 +42,37 @@ std::vector<Expr> leaf_components(Expr v) {
   return components;
 }
 
+// Sums of vectors, component by component.
+class Sums {
+ public:
+  explicit Sums(Pool& pool) : pool_(pool), terms_(static_cast<std::size_t>(pool.dimension())) {}
+  void add(Rational coef, const std::vector<Expr>& components) {
+    for (std::size_t k = 0; k < components.size(); ++k) terms_[k].push_back({coef, components[k]});
+  }
+  std::vector<Expr> total() const {
+    std::vector<Expr> sums;
+    for (const std::vector<Term>& terms : terms_) sums.push_back(sum(pool_, terms, false));
+    return sums;
+  }
+
+ private:
+  Pool& pool_;
+  std::vector<std::vector<Term>> terms_;
+};
+
+std::vector<Expr> scaled_by(Expr s, std::vector<Expr> u) {
+  for (Expr& component : u) component = s * component;
+  return u;
+}
+
+// "n_x"; with an ending "n_in_b_x".
+void name_components(const std::vector<Expr>& components, const std::string& name, const std::string& ending, Expr of) {
+  if (name.empty()) return;
+  for (std::size_t k = 0; k < components.size(); ++k) {
+    of->pool->name(components[k], name + ending + "_" + "xyz"[k], of -> named_by_let);
+  }
+}
+
 }  // namespace
 
 std::string spoken_name(Expr e) {
@@ -78,12 +109,7 @@ std::vector<Expr> Components::of_vector(Expr v) {
   assert(v->vector);
   if (const auto found = vectors_.find(&*v); found != vectors_.end()) return found->second;
   const std::vector<Expr> components = vector_rule(v);
-  const std::string name = spoken_name(v);
-  if (!name.empty() && v->kind != Kind::symbol) {
-    for (std::size_t k = 0; k < components.size(); ++k) {
-      v->pool->name(components[k], name + "_" + "xyz"[k], v -> named_by_let);
-    }
-  }
+  if (v->kind != Kind::symbol) name_components(components, spoken_name(v), "", v);
   vectors_.emplace(&*v, components);
   return components;
 }
@@ -92,13 +118,16 @@ Expr Components::scalar_rule(Expr e) {
   switch (e->kind) {
     case Kind::number:
     case Kind::symbol: return e;
-    case Kind::dot: return inner_product(of_vector(e->args[0]), of_vector(e->args[1]));
+    case Kind::dot:
+      if (const Expr local = local_product(e)) return local;
+      return inner_product(of_vector(e->args[0]), of_vector(e->args[1]));
     case Kind::cross: {
+      if (const Expr local = local_product(e)) return local;
       const auto u = of_vector(e->args[0]), v = of_vector(e->args[1]);
       return u[0] * v[1] - u[1] * v[0];
     }
     case Kind::norm: {
-      const auto u = of_vector(e->args[0]);
+      const auto u = is_turned(e->args[0]) ? local_components(e->args[0]) : of_vector(e->args[0]);
       return call(Fn::sqrt, inner_product(u, u));
     }
     case Kind::twist: return of(twist_as_atan2(e));
@@ -125,25 +154,10 @@ Expr Components::scalar_rule(Expr e) {
 }
 
 std::vector<Expr> Components::vector_rule(Expr v) {
-  Pool& pool = *v->pool;
   switch (v->kind) {
     case Kind::symbol: return leaf_components(v);
-    case Kind::sum: {
-      std::vector<std::vector<Term>> terms(static_cast<std::size_t>(pool.dimension()));
-      for (std::size_t i = 0; i < v->args.size(); ++i) {
-        const auto part = of_vector(v->args[i]);
-        for (std::size_t k = 0; k < part.size(); ++k) terms[k].push_back({v->coefs[i], part[k]});
-      }
-      std::vector<Expr> sums;
-      for (const std::vector<Term>& t : terms) sums.push_back(sum(pool, t, false));
-      return sums;
-    }
-    case Kind::scale: {
-      const Expr s = of(v->args[0]);
-      std::vector<Expr> u = of_vector(v->args[1]);
-      for (Expr& component : u) component = s * component;
-      return u;
-    }
+    case Kind::sum: return sum_rule(v);
+    case Kind::scale: return scaled_by(of(v->args[0]), of_vector(v->args[1]));
     case Kind::perp: {
       const auto u = of_vector(v->args[0]);
       return {-u[1], u[0]};
@@ -167,6 +181,79 @@ std::vector<Expr> Components::vector_rule(Expr v) {
   }
   assert(false && "not a vector");
   return {};
+}
+
+// A sum of scaled vectors of the body is turned as one, with what else is cheap to know in the body's axes.
+std::vector<Expr> Components::sum_rule(Expr v) {
+  Sums world(*v->pool), local(*v->pool);
+  int turned = 0;
+  bool scaled = false;
+  for (const Term& term : terms_of(v)) {
+    const bool turns = is_turned(term.e);
+    turned += turns ? 1 : 0;
+    scaled = scaled || (turns && term.e->kind == Kind::scale);
+  }
+  const bool together = scaled && turned > 1;
+  for (const Term& term : terms_of(v)) {
+    if (together && is_turned(term.e)) local.add(term.coef, local_components(term.e));
+    else world.add(term.coef, of_vector(term.e));
+  }
+  if (!together) return world.total();
+  const std::vector<Expr> l = local.total();
+  name_components(l, spoken_name(v), "_in_" + axes_->name, v);
+  std::vector<Expr> rotated;
+  for (const std::vector<Expr>& row : axes_->A) rotated.push_back(inner_product(row, l));
+  world.add(1, rotated);
+  return world.total();
+}
+
+std::vector<Expr> Components::fixed_components(Expr v) {
+  if (axes_ == nullptr) return {};
+  if (v->kind == Kind::perp) {
+    const std::vector<Expr> u = fixed_components(v->args[0]);
+    return u.empty() ? u : std::vector<Expr>{-u[1], u[0]};
+  }
+  if (v->kind == Kind::scale) {
+    const std::vector<Expr> u = fixed_components(v->args[1]);
+    return u.empty() ? u : scaled_by(of(v->args[0]), u);
+  }
+  const auto found = axes_->fixed.find(&*v);
+  return found == axes_->fixed.end() ? std::vector<Expr>() : found->second;
+}
+
+bool Components::is_turned(Expr v) {
+  if (!fixed_components(v).empty()) return true;
+  return v->kind == Kind::sum && std::ranges::any_of(v->args, [&](Expr e) { return !fixed_components(e).empty(); });
+}
+
+// A' v, where the parts of v that are fixed in the body need no rotation.
+std::vector<Expr> Components::local_components(Expr v) {
+  if (const std::vector<Expr> fixed = fixed_components(v); !fixed.empty()) return fixed;
+  if (const auto found = locals_.find(&*v); found != locals_.end()) return found->second;
+  Sums local(*v->pool), world(*v->pool);
+  for (const Term& term : terms_of(v)) {
+    const std::vector<Expr> fixed = fixed_components(term.e);
+    if (fixed.empty()) world.add(term.coef, of_vector(term.e));
+    else local.add(term.coef, fixed);
+  }
+  const std::vector<Expr> w = world.total();
+  std::vector<Expr> rotated(w.size(), v->pool->number(0));
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    for (std::size_t i = 0; i < w.size(); ++i) rotated[k] = rotated[k] + axes_->A[i][k] * w[i];
+  }
+  local.add(1, rotated);
+  const std::vector<Expr> result = local.total();
+  name_components(result, spoken_name(v), "_in_" + axes_->name, v);
+  return locals_[&*v] = result;
+}
+
+Expr Components::local_product(Expr product) {
+  const Expr u = product->args[0], v = product->args[1];
+  if (is_component_axis(u) || is_component_axis(v)) return {};
+  const bool with_fixed = fixed_components(u).empty() != fixed_components(v).empty();
+  if (!with_fixed && !(u == v && is_turned(u))) return {};
+  const std::vector<Expr> a = local_components(u), b = local_components(v);
+  return product->kind == Kind::dot ? inner_product(a, b) : a[0] * b[1] - a[1] * b[0];
 }
 
 // n = u/|u|, and the world's x axis where u vanishes.

@@ -67,7 +67,7 @@ class BlockPlanner {
         const std::string suffix = joint_.bodies[b] + (rows() > 1 ? "_" + std::to_string(i + 1) : "");
         const std::vector<Expr> entries = columns_of(block_.rows[i].J[b]);
         for (std::size_t k = 0; k < width_; ++k) {
-          row.push_back(store(components.of(entries[k]), column_name(k, suffix)));
+          row.push_back(store(entries[k], components.of(entries[k]), column_name(k, suffix)));
         }
       }
       J_.push_back(std::move(row));
@@ -81,8 +81,8 @@ class BlockPlanner {
     return "w" + suffix + (linear == 2 ? "" : std::string("_") + "xyz"[k - linear]);
   }
 
-  StoredEntry store(Expr entry, const std::string& column) {
-    const Term term = split_coefficient(entry);
+  StoredEntry store(Expr entry, Expr components, const std::string& column) {
+    const Term term = split_coefficient(components);
     if (is_one(term.e)) return {term.coef, {}};
     StoredEntry stored{term.coef, {}};
     const bool plain_factors =
@@ -90,7 +90,7 @@ class BlockPlanner {
         std::all_of(term.e->args.begin(), term.e->args.end(), [](Expr f) { return simple(f); }) &&
         std::all_of(term.e->exponents.begin(), term.e->exponents.end(), [](int k) { return k == 1; });
     if (!plain_factors) {
-      stored.fields.push_back(field(term.e, column));
+      stored.fields.push_back(field(term.e, column, (Rational(1) / term.coef) * entry));
       return stored;
     }
     for (const Expr factor : term.e->args) stored.fields.push_back(field(factor, column));
@@ -99,14 +99,14 @@ class BlockPlanner {
 
   static bool simple(Expr e) { return e->kind == Kind::symbol || !e->name.empty(); }
 
-  int field(Expr e, const std::string& column) {
+  int field(Expr e, const std::string& column, Expr entry = {}) {
     for (std::size_t i = 0; i < out_.fields.size(); ++i) {
       if (out_.fields[i].value == e) return static_cast<int>(i);
     }
     std::string name = !e->name.empty() ? e->name : e->kind == Kind::symbol ? e->symbol : column;
     const auto taken = [&](const Field& f) { return f.name == name; };
     while (std::any_of(out_.fields.begin(), out_.fields.end(), taken)) name += "_";
-    out_.fields.push_back({name, e, pool_.symbol("J." + name, Role::given)});
+    out_.fields.push_back({name, e, entry ? entry : e, pool_.symbol("J." + name, Role::given)});
     return static_cast<int>(out_.fields.size()) - 1;
   }
 
@@ -119,13 +119,31 @@ class BlockPlanner {
   }
 
   void add_position_and_jacobian() {
-    std::vector<NamedExpr> outputs;
-    for (std::size_t i = 0; i < rows(); ++i) {
-      outputs.push_back({element("C", i), pose_.of(block_.rows[i].C)});
+    add("position", "C", position(pose_));
+    add("jacobian", "C and J", position_and_jacobian(pose_));
+    const bool of_surface = std::any_of(block_.rows.begin(), block_.rows.end(),
+                                        [](const ScalarRow& row) { return !row.gradients.empty(); });
+    for (std::size_t b = 0; of_surface && b < bodies(); ++b) {
+      PoseInputs carried(joint_, static_cast<int>(b));
+      function("position").other.push_back(assemble(position(carried)));
+      function("jacobian").other.push_back(assemble(position_and_jacobian(carried)));
     }
-    add("position", "C", outputs);
-    for (const Field& f : out_.fields) outputs.push_back({"J." + f.name, pose_.of(f.value)});
-    add("jacobian", "C and J", outputs);
+  }
+
+  std::vector<NamedExpr> position(PoseInputs& pose) const {
+    std::vector<NamedExpr> outputs;
+    for (std::size_t i = 0; i < rows(); ++i) outputs.push_back({element("C", i), pose.of(block_.rows[i].C)});
+    return outputs;
+  }
+
+  std::vector<NamedExpr> position_and_jacobian(PoseInputs& pose) const {
+    std::vector<NamedExpr> outputs = position(pose);
+    for (const Field& f : out_.fields) outputs.push_back({"J." + f.name, pose.of(&pose == &pose_ ? f.value : f.entry)});
+    return outputs;
+  }
+
+  KernelFunction& function(const std::string& name) {
+    return *std::ranges::find(out_.functions, name, &KernelFunction::name);
   }
 
   // K in the simplified form of the derivation, from stored numbers of J. If that form needs other numbers, K falls
@@ -154,6 +172,26 @@ class BlockPlanner {
     const std::string summary = "K = J M^-1 J^T, lower triangle, from J";
     add("effective_mass", summary, plain);
     if (complete) add_other_way(simplified);
+    if (rows() == 1 && joint_.dimension == 3 && !isotropic_)
+      add_other_way({{triangle_element("K", 0, 0), folded_mass()}});
+  }
+
+  // K of one row, each product of two components of w once.
+  Expr folded_mass() const {
+    Expr K = pool_.number(0);
+    for (std::size_t b = 0; b < bodies(); ++b) {
+      if (static_cast<int>(b) == block_.immovable) continue;
+      const Expr inv_I = body_symbols(joint_, static_cast<int>(b)).inv_I;
+      for (std::size_t k = 0; k < 3; ++k) K = K + stored(0, 6 * b + k) * weighted(0, 6 * b + k);
+      // w' I w = x (I_xx x + 2 (I_xy y + I_xz z)) + y (I_yy y + 2 I_yz z) + I_zz z^2
+      const auto w = [&](std::size_t k) { return stored(0, 6 * b + 3 + k); };
+      for (std::size_t k = 0; k < 3; ++k) {
+        Expr beside = pool_.number(0);
+        for (std::size_t l = k + 1; l < 3; ++l) beside = beside + tensor_component(inv_I, k, l) * w(l);
+        K = K + w(k) * (tensor_component(inv_I, k, k) * w(k) + Rational(2) * beside);
+      }
+    }
+    return K;
   }
 
   Expr plain_effective_mass(std::size_t i, std::size_t j) const {
@@ -308,7 +346,9 @@ class BlockPlanner {
   }
 
   // An alternative for the function added last; taken unless it is more expensive.
-  void add_other_way(const std::vector<NamedExpr>& outputs) { out_.functions.back().other = {assemble(outputs)}; }
+  void add_other_way(const std::vector<NamedExpr>& outputs) {
+    out_.functions.back().other.push_back(assemble(outputs));
+  }
 
   const Joint& joint_;
   Pool& pool_;
@@ -329,17 +369,6 @@ KernelBlock plan_block(const Joint& joint, const Block& block, const std::string
   return out;
 }
 
-void simplify_functions(KernelBlock& block) {
-  for (KernelFunction& f : block.functions) {
-    f.program = simplify(f.program);
-    for (const Program& way : std::exchange(f.other, {})) {
-      Program other = simplify(way);
-      if (count(other).total() <= count(f.program).total()) f.program = std::move(other);
-    }
-  }
-  for (KernelBlock& variant : block.variants) simplify_functions(variant);
-}
-
 }  // namespace
 
 Kernel plan(const Derivation& derivation) {
@@ -355,13 +384,6 @@ Kernel plan(const Derivation& derivation) {
       kernel.defaults.push_back(plan_default(joint, static_cast<int>(i)));
     }
   }
-  return kernel;
-}
-
-Kernel simplified(Kernel kernel) {
-  simplify_functions(kernel.rows);
-  for (KernelBlock& coordinate : kernel.coordinates) simplify_functions(coordinate);
-  for (DefaultValue& value : kernel.defaults) value.program = simplify(value.program);
   return kernel;
 }
 

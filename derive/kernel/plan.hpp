@@ -2,10 +2,12 @@
 // becomes text.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "derive/derivation/derivation.hpp"
+#include "derive/expression/components.hpp"
 #include "derive/program/program.hpp"
 
 namespace cdot::derive {
@@ -14,6 +16,7 @@ namespace cdot::derive {
 struct Field {
   std::string name;
   Expr value;   // computed by `jacobian`, in components
+  Expr entry;   // the same over vectors, where it is a whole entry of J
   Expr symbol;  // how later functions refer to it
 };
 
@@ -55,13 +58,17 @@ Kernel simplified(Kernel kernel);
 // + xz l_z. Kernels, ledger and hand derivations share it, so all are counted alike.
 class PoseInputs {
  public:
-  explicit PoseInputs(const Joint& joint);
+  // Products with vectors that are fixed in `in_axes_of` are taken in the axes of this body
+  // (expression/components.hpp).
+  explicit PoseInputs(const Joint& joint, int in_axes_of = -1);
   Expr of(Expr scalar);  // any scalar expression of the joint
 
  private:
   void rotate(const Joint& joint, const Parameter& parameter);
+  void fix(const Joint& joint, int body);
 
   std::map<const Node*, Expr> rotated_;
+  std::optional<LocalAxes> axes_;
 };
 
 // The default of a parameter that has one, in its own frame.

@@ -25,7 +25,7 @@ std::vector<Expr> local_symbols(const Joint& joint, const Parameter& parameter) 
   return symbols;
 }
 
-PoseInputs::PoseInputs(const Joint& joint) {
+PoseInputs::PoseInputs(const Joint& joint, int in_axes_of) {
   for (const Parameter& parameter : joint.parameters) {
     if (parameter.kind != ParameterKind::scalar && parameter.symbol) rotate(joint, parameter);
   }
@@ -38,6 +38,27 @@ PoseInputs::PoseInputs(const Joint& joint) {
       const std::vector<Expr> world = components.of_vector(axes[k]);
       for (std::size_t i = 0; i < world.size(); ++i) rotated_.emplace(&*world[i], A[i][k]);
     }
+  }
+  if (in_axes_of >= 0) fix(joint, in_axes_of);
+}
+
+void PoseInputs::fix(const Joint& joint, int body) {
+  Pool& pool = *joint.pool;
+  const std::size_t n = static_cast<std::size_t>(joint.dimension);
+  axes_ = {body, joint.bodies[static_cast<std::size_t>(body)], rotation_matrix(joint, body), {}};
+  for (const Parameter& parameter : joint.parameters) {
+    if (parameter.kind == ParameterKind::scalar || parameter.body != body) continue;
+    const std::vector<Expr> local = local_symbols(joint, parameter);
+    const std::vector<Expr> leaves = parameter.axes.empty() ? std::vector{parameter.symbol} : parameter.axes;
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+      const auto first = local.begin() + static_cast<std::ptrdiff_t>(i * n);
+      axes_->fixed[&*leaves[i]] = {first, first + static_cast<std::ptrdiff_t>(n)};
+    }
+  }
+  const std::vector<Expr> own = body_axes(pool, body);
+  for (std::size_t i = 0; i < n && own[i]->kind == Kind::symbol; ++i) {
+    std::vector<Expr>& components = axes_->fixed[&*own[i]];
+    for (std::size_t k = 0; k < n; ++k) components.push_back(pool.number(i == k ? 1 : 0));
   }
 }
 
@@ -62,7 +83,7 @@ void PoseInputs::rotate(const Joint& joint, const Parameter& parameter) {
 }
 
 Expr PoseInputs::of(Expr scalar) {
-  Components components;
+  Components components(axes_ ? &*axes_ : nullptr);
   return substitute(components.of(scalar), rotated_);
 }
 

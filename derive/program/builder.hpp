@@ -29,7 +29,7 @@ class ProgramBuilder {
   int sum(Summands terms, std::string name = {});
   int product(std::vector<int> args, std::vector<int> exponents, std::string name = {});
   int function(Fn fn, std::vector<int> args, std::string name = {});
-  int input(const Operation& op);
+  int leaf(const Operation& op);  // an input or a factor
   // The same operation with other operands.
   int rebuild(const Operation& op, std::vector<int> args);
 

@@ -90,7 +90,9 @@ class StatementPrinter {
 
   std::string input_text(int op) const { return at(op).kind == OpKind::input ? expression(op, in_sum) : ""; }
 
-  bool is_atom(const Operation& op) const { return op.kind == OpKind::number || op.kind == OpKind::input; }
+  bool is_atom(const Operation& op) const {
+    return op.kind == OpKind::number || op.kind == OpKind::factor || op.kind == OpKind::input;
+  }
   // -x and 2 x of one operand are written where they are used.
   static bool is_scaling(const Operation& op) { return op.kind == OpKind::sum && op.args.size() == 1; }
 
@@ -153,7 +155,8 @@ class StatementPrinter {
     const Operation& o = at(op);
     if (!variable_[index(op)].empty()) return variable_[index(op)];
     switch (o.kind) {
-      case OpKind::number: return number(o.value);
+      case OpKind::number:
+      case OpKind::factor: return number(o.value);
       case OpKind::input: {
         const auto found = printing_.inputs.find(o.input);
         return found == printing_.inputs.end() ? o.input : found->second;

@@ -91,7 +91,7 @@ int ProgramBuilder::number(Rational value) {
   return intern(std::move(op));
 }
 
-int ProgramBuilder::input(const Operation& op) { return intern(op); }
+int ProgramBuilder::leaf(const Operation& op) { return intern(op); }
 
 Rational ProgramBuilder::pull_coefficient(int& arg) const {
   const Operation& op = at(arg);
@@ -179,7 +179,8 @@ int ProgramBuilder::function(Fn fn, std::vector<int> args, std::string name) {
 int ProgramBuilder::rebuild(const Operation& op, std::vector<int> args) {
   switch (op.kind) {
     case OpKind::number: return number(op.value);
-    case OpKind::input: return input(op);
+    case OpKind::factor:
+    case OpKind::input: return leaf(op);
     case OpKind::sum: return sum({std::move(args), op.coefs}, op.name);
     case OpKind::product: return product(std::move(args), op.exponents, op.name);
     case OpKind::function: return function(op.fn, std::move(args), op.name);

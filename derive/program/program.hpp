@@ -9,12 +9,19 @@
 
 namespace cdot::derive {
 
-enum class OpKind { number, input, sum, product, function };
+enum class OpKind {
+  number,  // moves into coefficients
+  factor,  // a number that stays a factor of products, to be shared and taken out as any other
+  input,
+  sum,
+  product,
+  function
+};
 
 // Operands come before their users. Sums and products have any number of operands.
 struct Operation {
   OpKind kind = OpKind::number;
-  Rational value;            // number
+  Rational value;            // number, factor
   std::string input;         // input: the symbol's name
   bool is_position = false;  // input: a coordinate of a centre of mass (large, so differences come first)
   Fn fn{};                   // function

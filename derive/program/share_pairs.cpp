@@ -36,9 +36,11 @@ void add_term_pairs(const Program& program, const Operation& op, Pairs& pairs) {
 void add_factor_pairs(const Program&, const Operation& op, Pairs& pairs) {
   if (op.kind != OpKind::product) return;
   for (std::size_t i = 0; i < op.args.size(); ++i) {
-    if (op.exponents[i] > 1) pairs.push_back({op.args[i], op.args[i], Rational(1)});
+    // x^4 = (x^2)^2 has the pair x x twice, x^2 y^2 = (x y)^2 the pair x y.
+    for (int k = op.exponents[i]; k > 1; k -= 2) pairs.push_back({op.args[i], op.args[i], Rational(1)});
     for (std::size_t j = i + 1; j < op.args.size(); ++j) {
-      pairs.push_back({std::min(op.args[i], op.args[j]), std::max(op.args[i], op.args[j]), Rational(1)});
+      const Pair pair{std::min(op.args[i], op.args[j]), std::max(op.args[i], op.args[j]), Rational(1)};
+      pairs.insert(pairs.end(), static_cast<std::size_t>(std::min(op.exponents[i], op.exponents[j])), pair);
     }
   }
 }
@@ -58,10 +60,13 @@ std::optional<Pair> most_frequent(const Program& program, PairFinder add_pairs) 
     const Pair& p = pairs[i];
     return std::tuple(p.x, p.y, p.ratio.num(), p.ratio.den(), i);
   });
+  const auto rank = [&](std::size_t i) {  // of equals, numbers last: they can be taken out later
+    return std::pair(program.at(pairs[i].x).kind == OpKind::factor || program.at(pairs[i].y).kind == OpKind::factor, i);
+  };
   std::size_t best = 0, best_count = 1;
   for (std::size_t i = 0, count = 0; i < alike.size(); ++i) {
     count = i > 0 && pairs[alike[i]] == pairs[alike[i - 1]] ? count + 1 : 1;
-    if (count > best_count || (count > 1 && count == best_count && alike[i] < best))
+    if (count > best_count || (count > 1 && count == best_count && rank(alike[i]) < rank(best)))
       best_count = count, best = alike[i];
   }
   return best_count > 1 ? std::optional(pairs[best]) : std::nullopt;

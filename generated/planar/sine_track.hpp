@@ -8,16 +8,9 @@
 // s_x = f_x · u
 // s_y = -(u × f_x)
 // C = s_y - amplitude sin(k s_x)
-// J = [ (perp(f_x) - amplitude k cos(k s_x) f_x)'
-//     | ra × (perp(f_x) - amplitude k cos(k s_x) f_x)
-//     | (amplitude k cos(k s_x) f_x - perp(f_x))'
-//     | amplitude k cos(k s_x) (u × f_x) + rb × (amplitude k cos(k s_x) f_x - perp(f_x)) - s_x ]
-//       (columns v_a | w_a | v_b | w_b)
-// K = inv_m_a |perp(f_x) - amplitude k cos(k s_x) f_x|^2
-//     + inv_m_b |amplitude k cos(k s_x) f_x - perp(f_x)|^2
-//     + inv_I_a (ra × (perp(f_x) - amplitude k cos(k s_x) f_x))^2
-//     + inv_I_b (amplitude k cos(k s_x) (u × f_x) + rb × (amplitude k cos(k s_x) f_x - perp(f_x))
-//         - s_x)^2
+// n = amplitude k cos(k s_x) f_x - perp(f_x)
+// J = [ -n' | -(ra × n) | n' | (rb + u) × n ]                     (columns v_a | w_a | v_b | w_b)
+// K = inv_m_a (n · n) + inv_m_b (n · n) + inv_I_a (ra × n)^2 + inv_I_b ((rb + u) × n)^2
 //
 // coordinate slide = f_x · u
 // J_slide = [ f_x' | ra × f_x | -f_x' | s_y - rb × f_x ]          (columns v_a | w_a | v_b | w_b)
@@ -59,10 +52,10 @@ struct sine_track {
 
   template <class T>
   struct Jacobian {
-    T va_x, va_y, wa, vb_x, vb_y, wb;
+    T n_x, n_y, ra_x_n, rb_u_x_n;
   };
 
-  // C: 16 +, 18 *, 1 call
+  // C: 14 +, 14 *, 1 call
   template <class T>
   static void position(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1]) {
     using std::sin;
@@ -70,18 +63,16 @@ struct sine_track {
     const Pose<T>& b = q[1];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T f_x_x = b.c * p.f_x - b.s * p.f_y;
-    const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T u_x_f_x = u_x * f_x_y - u_y * f_x_x;
-    const T s_x = u_x * f_x_x + u_y * f_x_y;
+    const T C1_1 = a.x - b.x + ra_x;
+    const T C1_2 = a.y - b.y + ra_y;
+    const T u_in_b_x = b.c * C1_1 - p.pb_x + b.s * C1_2;
+    const T u_in_b_y = b.c * C1_2 - p.pb_y - b.s * C1_1;
+    const T u_x_f_x = p.f_y * u_in_b_x - p.f_x * u_in_b_y;
+    const T s_x = p.f_x * u_in_b_x + p.f_y * u_in_b_y;
     C[0] = -u_x_f_x - p.amplitude * sin(p.k * s_x);
   }
 
-  // C and J: 24 +, 27 *, 2 call
+  // C and J: 20 +, 26 *, 2 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -91,25 +82,23 @@ struct sine_track {
     const Pose<T>& b = q[1];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T f_x_x = b.c * p.f_x - b.s * p.f_y;
-    const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T u_x_f_x = u_x * f_x_y - u_y * f_x_x;
-    const T s_x = u_x * f_x_x + u_y * f_x_y;
+    const T rb_u_x = a.x - b.x + ra_x;
+    const T rb_u_y = a.y - b.y + ra_y;
+    const T u_in_b_x = b.c * rb_u_x - p.pb_x + b.s * rb_u_y;
+    const T u_in_b_y = b.c * rb_u_y - p.pb_y - b.s * rb_u_x;
+    const T u_x_f_x = p.f_y * u_in_b_x - p.f_x * u_in_b_y;
+    const T s_x = p.f_x * u_in_b_x + p.f_y * u_in_b_y;
     const T C1_1 = p.k * s_x;
-    const T va_x_1 = cos(C1_1) * p.amplitude * p.k;
-    const T va_x_2 = f_x_y + va_x_1 * f_x_x;
-    const T va_y_1 = f_x_x - va_x_1 * f_x_y;
+    const T n_x_1 = cos(C1_1) * p.amplitude * p.k;
+    const T n_in_b_x = p.f_y + n_x_1 * p.f_x;
+    const T n_in_b_y = n_x_1 * p.f_y - p.f_x;
+    const T n_x = b.c * n_in_b_x - b.s * n_in_b_y;
+    const T n_y = b.c * n_in_b_y + b.s * n_in_b_x;
     C[0] = -u_x_f_x - p.amplitude * sin(C1_1);
-    J.va_x = -va_x_2;
-    J.va_y = va_y_1;
-    J.wa = va_y_1 * ra_x + va_x_2 * ra_y;
-    J.vb_x = va_x_2;
-    J.vb_y = -va_y_1;
-    J.wb = va_x_1 * u_x_f_x - s_x - va_y_1 * rb_x - va_x_2 * rb_y;
+    J.n_x = n_x;
+    J.n_y = n_y;
+    J.ra_x_n = ra_x * n_y - ra_y * n_x;
+    J.rb_u_x_n = rb_u_x * n_y - rb_u_y * n_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 4 +, 7 *
@@ -117,8 +106,8 @@ struct sine_track {
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
-    K[0] = ma.I * J.wa * J.wa + mb.I * J.wb * J.wb + (J.va_x * J.va_x + J.va_y * J.va_y) *
-        (ma.m + mb.m);
+    const T dot_n_n = J.n_x * J.n_x + J.n_y * J.n_y;
+    K[0] = ma.I * J.ra_x_n * J.ra_x_n + mb.I * J.rb_u_x_n * J.rb_u_x_n + dot_n_n * (ma.m + mb.m);
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -133,13 +122,12 @@ struct sine_track {
     lambda[0] = F[0] * rhs[0];
   }
 
-  // J v: 5 +, 6 *
+  // J v: 5 +, 4 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
     const Velocity<T>& vb = v[1];
-    Jv[0] = J.va_x * va.x + J.va_y * va.y + J.vb_x * vb.x + J.vb_y * vb.y + J.wa * va.w + J.wb *
-        vb.w;
+    Jv[0] = J.rb_u_x_n * vb.w - J.ra_x_n * va.w + J.n_x * (vb.x - va.x) + J.n_y * (vb.y - va.y);
   }
 
   // v += M^-1 J^T lambda: 6 +, 10 *
@@ -152,29 +140,29 @@ struct sine_track {
     const InverseMass<T>& mb = m[1];
     const T v1_1 = ma.m * lambda[0];
     const T v2_1 = lambda[0] * mb.m;
-    v[0].x = va.x + v1_1 * J.va_x;
-    v[0].y = va.y + v1_1 * J.va_y;
-    v[0].w = va.w + ma.I * J.wa * lambda[0];
-    v[1].x = vb.x + v2_1 * J.vb_x;
-    v[1].y = vb.y + v2_1 * J.vb_y;
-    v[1].w = vb.w + mb.I * J.wb * lambda[0];
+    v[0].x = va.x - v1_1 * J.n_x;
+    v[0].y = va.y - v1_1 * J.n_y;
+    v[0].w = va.w - ma.I * J.ra_x_n * lambda[0];
+    v[1].x = vb.x + v2_1 * J.n_x;
+    v[1].y = vb.y + v2_1 * J.n_y;
+    v[1].w = vb.w + mb.I * J.rb_u_x_n * lambda[0];
   }
 
-  // J with its zeros: v_x, v_y, w of each body: nothing
+  // J with its zeros: v_x, v_y, w of each body: 3 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][6]) {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][0] = J.va_x;
-    D[0][1] = J.va_y;
-    D[0][2] = J.wa;
-    D[0][3] = J.vb_x;
-    D[0][4] = J.vb_y;
-    D[0][5] = J.wb;
+    D[0][0] = -J.n_x;
+    D[0][1] = -J.n_y;
+    D[0][2] = -J.ra_x_n;
+    D[0][3] = J.n_x;
+    D[0][4] = J.n_y;
+    D[0][5] = J.rb_u_x_n;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 6 *
+  // (M^-1 J^T)^T, laid out like dense: 3 +, 6 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][6]) {
@@ -183,12 +171,12 @@ struct sine_track {
     }
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
-    D[0][0] = ma.m * J.va_x;
-    D[0][1] = ma.m * J.va_y;
-    D[0][2] = ma.I * J.wa;
-    D[0][3] = mb.m * J.vb_x;
-    D[0][4] = mb.m * J.vb_y;
-    D[0][5] = mb.I * J.wb;
+    D[0][0] = -ma.m * J.n_x;
+    D[0][1] = -ma.m * J.n_y;
+    D[0][2] = -ma.I * J.ra_x_n;
+    D[0][3] = mb.m * J.n_x;
+    D[0][4] = mb.m * J.n_y;
+    D[0][5] = mb.I * J.rb_u_x_n;
   }
 
   // -Jdot v - d/dt(dC/dt): 34 +, 46 *, 2 call
@@ -235,7 +223,7 @@ struct sine_track {
     C_t[0] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, angle of each body: 50 +, 66 *, 2 call
+  // d(J^T lambda)/dq: x, y, angle of each body: 46 +, 65 *, 2 call
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
       T (&H)[6][6]) {
@@ -268,62 +256,60 @@ struct sine_track {
     const T H1_1_3 = H1_5 * ra_x_f_x;
     const T H1_1_4 = cos(H1_1);
     const T H1_2_2 = H1_3 * H1_1_4;
-    const T H1_3_2 = H1_2_2 * f_x_y;
     const T u_x_f_x = u_x * f_x_y - u_y * f_x_x;
     const T rb_x_f_x = f_x_y * rb_x - f_x_x * rb_y;
-    const T H1_4_2 = -u_x_f_x - rb_x_f_x;
-    const T H1_5_2 = H1_3_2 - lambda[0] * f_x_x + H1_5 * H1_4_2;
+    const T H1_3_2 = -u_x_f_x - rb_x_f_x;
+    const T H1_4_2 = H1_2_2 * f_x_y - lambda[0] * f_x_x + H1_5 * H1_3_2;
     const T H2_1 = f_x_y * H1_4;
     const T H2_2 = H2_1 * f_x_y;
     const T H2_1_2 = H2_1 * ra_x_f_x;
-    const T H2_1_3 = H1_2_2 * f_x_x;
-    const T H2_2_2 = H2_1 * H1_4_2 - H2_1_3 - lambda[0] * f_x_y;
+    const T H2_1_3 = H2_1 * H1_3_2 - H1_2_2 * f_x_x - lambda[0] * f_x_y;
     const T H3_1 = H1_4 * ra_x_f_x;
     const T H3_2 = H1_2 * H1_1_4;
-    const T H3_3 = f_x_x - H3_2 * f_x_y;
-    const T H3_4 = -f_x_y - H3_2 * f_x_x;
+    const T n_x = f_x_y + H3_2 * f_x_x;
+    const T n_y = H3_2 * f_x_y - f_x_x;
+    const T dot_ra_n = n_y * ra_y + n_x * ra_x;
     const T dot_ra_f_x = ra_x * f_x_x + ra_y * f_x_y;
-    const T H6_1 = H1_4 * H1_4_2 - lambda[0];
-    const T H6_2 = H1_3_2 + H6_1 * f_x_x;
-    const T H6_1_2 = H6_1 * f_x_y - H2_1_3;
+    const T rb_u_x_f_x = rb_u_x * f_x_y - rb_u_y * f_x_x;
+    const T H6_1 = lambda[0] * n_y - H1_5 * rb_u_x_f_x;
+    const T H6_1_2 = -H2_1 * rb_u_x_f_x - lambda[0] * n_x;
     const T dot_rb_u_f_x = rb_u_x * f_x_x + rb_u_y * f_x_y;
     H[0][0] = H1_6;
     H[0][1] = H1_1_2;
     H[0][2] = H1_1_3;
     H[0][3] = -H1_6;
     H[0][4] = -H1_1_2;
-    H[0][5] = H1_5_2;
+    H[0][5] = H1_4_2;
     H[1][0] = H1_1_2;
     H[1][1] = H2_2;
     H[1][2] = H2_1_2;
     H[1][3] = H[0][4];
     H[1][4] = -H2_2;
-    H[1][5] = H2_2_2;
+    H[1][5] = H2_1_3;
     H[2][0] = H1_1_3;
     H[2][1] = H2_1_2;
-    H[2][2] = H3_1 * ra_x_f_x - lambda[0] * (H3_3 * ra_y + H3_4 * ra_x);
+    H[2][2] = H3_1 * ra_x_f_x + lambda[0] * dot_ra_n;
     H[2][3] = -H1_1_3;
     H[2][4] = -H2_1_2;
-    H[2][5] = H3_1 * H1_4_2 - H1_2_2 * dot_ra_f_x - lambda[0] * ra_x_f_x;
+    H[2][5] = H3_1 * H1_3_2 - H1_2_2 * dot_ra_f_x - lambda[0] * ra_x_f_x;
     H[3][0] = H[0][3];
     H[3][1] = H[0][4];
     H[3][2] = H[2][3];
     H[3][3] = H1_6;
     H[3][4] = H1_1_2;
-    H[3][5] = -H1_5_2;
+    H[3][5] = -H1_4_2;
     H[4][0] = H[0][4];
     H[4][1] = H[1][4];
     H[4][2] = H[2][4];
     H[4][3] = H1_1_2;
     H[4][4] = H2_2;
-    H[4][5] = -H2_2_2;
-    H[5][0] = H6_2;
+    H[4][5] = -H2_1_3;
+    H[5][0] = H6_1;
     H[5][1] = H6_1_2;
-    H[5][2] = ra_x * H6_1_2 - ra_y * H6_2;
-    H[5][3] = -H6_2;
+    H[5][2] = ra_x * H6_1_2 - ra_y * H6_1;
+    H[5][3] = -H6_1;
     H[5][4] = -H6_1_2;
-    H[5][5] = H1_2_2 * dot_rb_u_f_x - H6_1 * u_x_f_x - rb_x * H6_1_2 + rb_y * H6_2 + lambda[0] *
-        (H3_3 * rb_y + H3_4 * rb_x + rb_x_f_x);
+    H[5][5] = H1_2_2 * dot_rb_u_f_x + rb_u_x_f_x * (H1_4 * rb_u_x_f_x + lambda[0]);
   }
 
   // The default of parameter `index`, from the initial pose and the parameters before it.
@@ -555,10 +541,10 @@ struct sine_track::a_immovable : sine_track {
 
   template <class T>
   struct Jacobian {
-    T vb_x, vb_y, wb;
+    T n_x, n_y, rb_u_x_n;
   };
 
-  // C and J: 21 +, 25 *, 2 call
+  // C and J: 19 +, 24 *, 2 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -568,36 +554,37 @@ struct sine_track::a_immovable : sine_track {
     const Pose<T>& b = q[1];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T f_x_x = b.c * p.f_x - b.s * p.f_y;
-    const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T u_x_f_x = u_x * f_x_y - u_y * f_x_x;
-    const T s_x = u_x * f_x_x + u_y * f_x_y;
+    const T rb_u_x = a.x - b.x + ra_x;
+    const T rb_u_y = a.y - b.y + ra_y;
+    const T u_in_b_x = b.c * rb_u_x - p.pb_x + b.s * rb_u_y;
+    const T u_in_b_y = b.c * rb_u_y - p.pb_y - b.s * rb_u_x;
+    const T u_x_f_x = p.f_y * u_in_b_x - p.f_x * u_in_b_y;
+    const T s_x = p.f_x * u_in_b_x + p.f_y * u_in_b_y;
     const T C1_1 = p.k * s_x;
-    const T vb_x_1 = cos(C1_1) * p.amplitude * p.k;
-    const T vb_x_2 = f_x_y + vb_x_1 * f_x_x;
-    const T vb_y_1 = vb_x_1 * f_x_y - f_x_x;
+    const T n_x_1 = cos(C1_1) * p.amplitude * p.k;
+    const T n_in_b_x = p.f_y + n_x_1 * p.f_x;
+    const T n_in_b_y = n_x_1 * p.f_y - p.f_x;
+    const T n_x = b.c * n_in_b_x - b.s * n_in_b_y;
+    const T n_y = b.c * n_in_b_y + b.s * n_in_b_x;
     C[0] = -u_x_f_x - p.amplitude * sin(C1_1);
-    J.vb_x = vb_x_2;
-    J.vb_y = vb_y_1;
-    J.wb = vb_x_1 * u_x_f_x - s_x + vb_y_1 * rb_x - vb_x_2 * rb_y;
+    J.n_x = n_x;
+    J.n_y = n_y;
+    J.rb_u_x_n = rb_u_x * n_y - rb_u_y * n_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 2 +, 5 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = mb.m * (J.vb_x * J.vb_x + J.vb_y * J.vb_y) + mb.I * J.wb * J.wb;
+    const T dot_n_n = J.n_x * J.n_x + J.n_y * J.n_y;
+    K[0] = mb.m * dot_n_n + mb.I * J.rb_u_x_n * J.rb_u_x_n;
   }
 
   // J v: 2 +, 3 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& vb = v[1];
-    Jv[0] = J.vb_x * vb.x + J.vb_y * vb.y + J.wb * vb.w;
+    Jv[0] = J.n_x * vb.x + J.n_y * vb.y + J.rb_u_x_n * vb.w;
   }
 
   // v += M^-1 J^T lambda: 3 +, 5 *
@@ -607,9 +594,9 @@ struct sine_track::a_immovable : sine_track {
     const Velocity<T> vb = v[1];
     const InverseMass<T>& mb = m[1];
     const T v2_1 = mb.m * lambda[0];
-    v[1].x = vb.x + v2_1 * J.vb_x;
-    v[1].y = vb.y + v2_1 * J.vb_y;
-    v[1].w = vb.w + mb.I * J.wb * lambda[0];
+    v[1].x = vb.x + v2_1 * J.n_x;
+    v[1].y = vb.y + v2_1 * J.n_y;
+    v[1].w = vb.w + mb.I * J.rb_u_x_n * lambda[0];
   }
 
   // J with its zeros: v_x, v_y, w of each body: nothing
@@ -618,9 +605,9 @@ struct sine_track::a_immovable : sine_track {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][3] = J.vb_x;
-    D[0][4] = J.vb_y;
-    D[0][5] = J.wb;
+    D[0][3] = J.n_x;
+    D[0][4] = J.n_y;
+    D[0][5] = J.rb_u_x_n;
   }
 
   // (M^-1 J^T)^T, laid out like dense: 3 *
@@ -631,9 +618,9 @@ struct sine_track::a_immovable : sine_track {
       for (T& entry : row) entry = T(0);
     }
     const InverseMass<T>& mb = m[1];
-    D[0][3] = mb.m * J.vb_x;
-    D[0][4] = mb.m * J.vb_y;
-    D[0][5] = mb.I * J.wb;
+    D[0][3] = mb.m * J.n_x;
+    D[0][4] = mb.m * J.n_y;
+    D[0][5] = mb.I * J.rb_u_x_n;
   }
 };
 
@@ -643,10 +630,10 @@ struct sine_track::b_immovable : sine_track {
 
   template <class T>
   struct Jacobian {
-    T va_x, va_y, wa;
+    T n_x, n_y, ra_x_n;
   };
 
-  // C and J: 20 +, 24 *, 2 call
+  // C and J: 19 +, 24 *, 2 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -656,36 +643,37 @@ struct sine_track::b_immovable : sine_track {
     const Pose<T>& b = q[1];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T f_x_x = b.c * p.f_x - b.s * p.f_y;
-    const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T u_x_f_x = u_x * f_x_y - u_y * f_x_x;
-    const T s_x = u_x * f_x_x + u_y * f_x_y;
-    const T C1_1 = p.k * s_x;
-    const T va_x_1 = cos(C1_1) * p.amplitude * p.k;
-    const T va_x_2 = f_x_y + va_x_1 * f_x_x;
-    const T va_y_1 = f_x_x - va_x_1 * f_x_y;
-    C[0] = -u_x_f_x - p.amplitude * sin(C1_1);
-    J.va_x = -va_x_2;
-    J.va_y = va_y_1;
-    J.wa = va_y_1 * ra_x + va_x_2 * ra_y;
+    const T C1_1 = a.x - b.x + ra_x;
+    const T C1_2 = a.y - b.y + ra_y;
+    const T u_in_b_x = b.c * C1_1 - p.pb_x + b.s * C1_2;
+    const T u_in_b_y = b.c * C1_2 - p.pb_y - b.s * C1_1;
+    const T u_x_f_x = p.f_y * u_in_b_x - p.f_x * u_in_b_y;
+    const T s_x = p.f_x * u_in_b_x + p.f_y * u_in_b_y;
+    const T C1_3 = p.k * s_x;
+    const T n_x_1 = cos(C1_3) * p.amplitude * p.k;
+    const T n_in_b_x = p.f_y + n_x_1 * p.f_x;
+    const T n_in_b_y = n_x_1 * p.f_y - p.f_x;
+    const T n_x = b.c * n_in_b_x - b.s * n_in_b_y;
+    const T n_y = b.c * n_in_b_y + b.s * n_in_b_x;
+    C[0] = -u_x_f_x - p.amplitude * sin(C1_3);
+    J.n_x = n_x;
+    J.n_y = n_y;
+    J.ra_x_n = ra_x * n_y - ra_y * n_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 2 +, 5 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = ma.m * (J.va_x * J.va_x + J.va_y * J.va_y) + ma.I * J.wa * J.wa;
+    const T dot_n_n = J.n_x * J.n_x + J.n_y * J.n_y;
+    K[0] = ma.m * dot_n_n + ma.I * J.ra_x_n * J.ra_x_n;
   }
 
-  // J v: 2 +, 3 *
+  // J v: 3 +, 3 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.va_x * va.x + J.va_y * va.y + J.wa * va.w;
+    Jv[0] = -J.n_x * va.x - J.n_y * va.y - J.ra_x_n * va.w;
   }
 
   // v += M^-1 J^T lambda: 3 +, 5 *
@@ -695,23 +683,23 @@ struct sine_track::b_immovable : sine_track {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[0];
-    v[0].x = va.x + v1_1 * J.va_x;
-    v[0].y = va.y + v1_1 * J.va_y;
-    v[0].w = va.w + ma.I * J.wa * lambda[0];
+    v[0].x = va.x - v1_1 * J.n_x;
+    v[0].y = va.y - v1_1 * J.n_y;
+    v[0].w = va.w - ma.I * J.ra_x_n * lambda[0];
   }
 
-  // J with its zeros: v_x, v_y, w of each body: nothing
+  // J with its zeros: v_x, v_y, w of each body: 3 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][6]) {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][0] = J.va_x;
-    D[0][1] = J.va_y;
-    D[0][2] = J.wa;
+    D[0][0] = -J.n_x;
+    D[0][1] = -J.n_y;
+    D[0][2] = -J.ra_x_n;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 3 *
+  // (M^-1 J^T)^T, laid out like dense: 3 +, 3 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][6]) {
@@ -719,9 +707,9 @@ struct sine_track::b_immovable : sine_track {
       for (T& entry : row) entry = T(0);
     }
     const InverseMass<T>& ma = m[0];
-    D[0][0] = ma.m * J.va_x;
-    D[0][1] = ma.m * J.va_y;
-    D[0][2] = ma.I * J.wa;
+    D[0][0] = -ma.m * J.n_x;
+    D[0][1] = -ma.m * J.n_y;
+    D[0][2] = -ma.I * J.ra_x_n;
   }
 };
 

@@ -718,7 +718,7 @@ struct fixed {
     D[5][11] = J.wb_6_x * b.xz + J.wb_6_y * b.yz + J.wb_6_z * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 72 +, 144 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 84 +, 104 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[6][14]) {
     for (auto& row : D) {
@@ -726,84 +726,92 @@ struct fixed {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T D1_1 = J.ra_y * a.e3;
-    const T D1_2 = J.ra_z * a.e2;
-    const T D1_1_2 = J.ra_y * a.e2;
-    const T D1_2_2 = J.ra_z * a.e3;
-    const T D1_1_3 = J.ra_y * a.e1;
-    const T D1_2_3 = J.ra_z * a.e0;
-    const T D1_1_4 = J.ra_y * a.e0;
-    const T D1_2_4 = J.ra_z * a.e1;
-    const T D1_1_5 = J.rb_y * b.e3;
-    const T D1_2_5 = J.rb_z * b.e2;
-    const T D1_1_6 = J.rb_y * b.e2;
-    const T D1_2_6 = J.rb_z * b.e3;
-    const T D1_1_7 = J.rb_y * b.e1;
-    const T D1_2_7 = J.rb_z * b.e0;
-    const T D1_1_8 = J.rb_y * b.e0;
-    const T D1_2_8 = J.rb_z * b.e1;
-    const T D2_1 = J.ra_x * a.e3;
-    const T D2_1_2 = J.ra_x * a.e2;
-    const T D2_1_3 = J.ra_x * a.e1;
-    const T D2_1_4 = J.ra_x * a.e0;
-    const T D2_1_5 = J.rb_x * b.e3;
-    const T D2_1_6 = J.rb_x * b.e2;
-    const T D2_1_7 = J.rb_x * b.e1;
-    const T D2_1_8 = J.rb_x * b.e0;
+    const T D1_1 = a.e3 * T(2);
+    const T D1_2 = D1_1 * J.ra_y;
+    const T D1_3 = a.e2 * T(2);
+    const T D1_4 = D1_3 * J.ra_z;
+    const T D1_1_2 = D1_3 * J.ra_y;
+    const T D1_2_2 = D1_1 * J.ra_z;
+    const T D1_1_3 = T(2) * a.e1;
+    const T D1_2_3 = D1_1_3 * J.ra_y;
+    const T D1_3_2 = T(2) * a.e0;
+    const T D1_4_2 = D1_3_2 * J.ra_z;
+    const T D1_1_4 = D1_3_2 * J.ra_y;
+    const T D1_2_4 = D1_1_3 * J.ra_z;
+    const T D1_1_5 = T(2) * b.e3;
+    const T D1_2_5 = D1_1_5 * J.rb_y;
+    const T D1_3_3 = T(2) * b.e2;
+    const T D1_4_3 = D1_3_3 * J.rb_z;
+    const T D1_1_6 = D1_3_3 * J.rb_y;
+    const T D1_2_6 = D1_1_5 * J.rb_z;
+    const T D1_1_7 = T(2) * b.e1;
+    const T D1_2_7 = D1_1_7 * J.rb_y;
+    const T D1_3_4 = T(2) * b.e0;
+    const T D1_4_4 = D1_3_4 * J.rb_z;
+    const T D1_1_8 = D1_3_4 * J.rb_y;
+    const T D1_2_8 = D1_1_7 * J.rb_z;
+    const T D2_1 = D1_1 * J.ra_x;
+    const T D2_1_2 = D1_3 * J.ra_x;
+    const T D2_1_3 = D1_1_3 * J.ra_x;
+    const T D2_1_4 = D1_3_2 * J.ra_x;
+    const T D2_1_5 = D1_1_5 * J.rb_x;
+    const T D2_1_6 = D1_3_3 * J.rb_x;
+    const T D2_1_7 = D1_1_7 * J.rb_x;
+    const T D2_1_8 = D1_3_4 * J.rb_x;
     D[0][0] = T(1);
-    D[0][3] = T(2) * (D1_1 - D1_2);
-    D[0][4] = T(2) * (D1_1_2 + D1_2_2);
-    D[0][5] = T(2) * (D1_2_3 - D1_1_3);
-    D[0][6] = T(-2) * (D1_1_4 + D1_2_4);
+    D[0][3] = D1_2 - D1_4;
+    D[0][4] = D1_1_2 + D1_2_2;
+    D[0][5] = D1_4_2 - D1_2_3;
+    D[0][6] = -D1_1_4 - D1_2_4;
     D[0][7] = T(-1);
-    D[0][10] = T(2) * (D1_2_5 - D1_1_5);
-    D[0][11] = T(-2) * (D1_1_6 + D1_2_6);
-    D[0][12] = T(2) * (D1_1_7 - D1_2_7);
-    D[0][13] = T(2) * (D1_1_8 + D1_2_8);
+    D[0][10] = D1_4_3 - D1_2_5;
+    D[0][11] = -D1_1_6 - D1_2_6;
+    D[0][12] = D1_2_7 - D1_4_4;
+    D[0][13] = D1_1_8 + D1_2_8;
     D[1][1] = T(1);
-    D[1][3] = T(2) * (D1_2_4 - D2_1);
-    D[1][4] = T(-2) * (D2_1_2 + D1_2_3);
-    D[1][5] = T(2) * (D2_1_3 + D1_2_2);
-    D[1][6] = T(2) * (D2_1_4 - D1_2);
+    D[1][3] = D1_2_4 - D2_1;
+    D[1][4] = -D2_1_2 - D1_4_2;
+    D[1][5] = D2_1_3 + D1_2_2;
+    D[1][6] = D2_1_4 - D1_4;
     D[1][8] = T(-1);
-    D[1][10] = T(2) * (D2_1_5 - D1_2_8);
-    D[1][11] = T(2) * (D2_1_6 + D1_2_7);
-    D[1][12] = T(-2) * (D2_1_7 + D1_2_6);
-    D[1][13] = T(2) * (D1_2_5 - D2_1_8);
+    D[1][10] = D2_1_5 - D1_2_8;
+    D[1][11] = D2_1_6 + D1_4_4;
+    D[1][12] = -D2_1_7 - D1_2_6;
+    D[1][13] = D1_4_3 - D2_1_8;
     D[2][2] = T(1);
-    D[2][3] = T(2) * (D2_1_2 - D1_1_3);
-    D[2][4] = T(2) * (D1_1_4 - D2_1);
-    D[2][5] = T(-2) * (D2_1_4 + D1_1);
-    D[2][6] = T(2) * (D2_1_3 + D1_1_2);
+    D[2][3] = D2_1_2 - D1_2_3;
+    D[2][4] = D1_1_4 - D2_1;
+    D[2][5] = -D2_1_4 - D1_2;
+    D[2][6] = D2_1_3 + D1_1_2;
     D[2][9] = T(-1);
-    D[2][10] = T(2) * (D1_1_7 - D2_1_6);
-    D[2][11] = T(2) * (D2_1_5 - D1_1_8);
-    D[2][12] = T(2) * (D2_1_8 + D1_1_5);
-    D[2][13] = T(-2) * (D2_1_7 + D1_1_6);
-    D[3][3] = T(-2) * (J.wa_4_x * a.e1 + J.wa_4_y * a.e2 + J.wa_4_z * a.e3);
-    D[3][4] = T(2) * (J.wa_4_x * a.e0 + J.wa_4_y * a.e3 - J.wa_4_z * a.e2);
-    D[3][5] = T(2) * (J.wa_4_y * a.e0 - J.wa_4_x * a.e3 + J.wa_4_z * a.e1);
-    D[3][6] = T(2) * (J.wa_4_x * a.e2 - J.wa_4_y * a.e1 + J.wa_4_z * a.e0);
-    D[3][10] = T(-2) * (J.wb_4_x * b.e1 + J.wb_4_y * b.e2 + J.wb_4_z * b.e3);
-    D[3][11] = T(2) * (J.wb_4_x * b.e0 + J.wb_4_y * b.e3 - J.wb_4_z * b.e2);
-    D[3][12] = T(2) * (J.wb_4_y * b.e0 - J.wb_4_x * b.e3 + J.wb_4_z * b.e1);
-    D[3][13] = T(2) * (J.wb_4_x * b.e2 - J.wb_4_y * b.e1 + J.wb_4_z * b.e0);
-    D[4][3] = T(-2) * (J.wa_5_x * a.e1 + J.wa_5_y * a.e2 + J.wa_5_z * a.e3);
-    D[4][4] = T(2) * (J.wa_5_x * a.e0 + J.wa_5_y * a.e3 - J.wa_5_z * a.e2);
-    D[4][5] = T(2) * (J.wa_5_y * a.e0 - J.wa_5_x * a.e3 + J.wa_5_z * a.e1);
-    D[4][6] = T(2) * (J.wa_5_x * a.e2 - J.wa_5_y * a.e1 + J.wa_5_z * a.e0);
-    D[4][10] = T(-2) * (J.wb_5_x * b.e1 + J.wb_5_y * b.e2 + J.wb_5_z * b.e3);
-    D[4][11] = T(2) * (J.wb_5_x * b.e0 + J.wb_5_y * b.e3 - J.wb_5_z * b.e2);
-    D[4][12] = T(2) * (J.wb_5_y * b.e0 - J.wb_5_x * b.e3 + J.wb_5_z * b.e1);
-    D[4][13] = T(2) * (J.wb_5_x * b.e2 - J.wb_5_y * b.e1 + J.wb_5_z * b.e0);
-    D[5][3] = T(-2) * (J.wa_6_x * a.e1 + J.wa_6_y * a.e2 + J.wa_6_z * a.e3);
-    D[5][4] = T(2) * (J.wa_6_x * a.e0 + J.wa_6_y * a.e3 - J.wa_6_z * a.e2);
-    D[5][5] = T(2) * (J.wa_6_y * a.e0 - J.wa_6_x * a.e3 + J.wa_6_z * a.e1);
-    D[5][6] = T(2) * (J.wa_6_x * a.e2 - J.wa_6_y * a.e1 + J.wa_6_z * a.e0);
-    D[5][10] = T(-2) * (J.wb_6_x * b.e1 + J.wb_6_y * b.e2 + J.wb_6_z * b.e3);
-    D[5][11] = T(2) * (J.wb_6_x * b.e0 + J.wb_6_y * b.e3 - J.wb_6_z * b.e2);
-    D[5][12] = T(2) * (J.wb_6_y * b.e0 - J.wb_6_x * b.e3 + J.wb_6_z * b.e1);
-    D[5][13] = T(2) * (J.wb_6_x * b.e2 - J.wb_6_y * b.e1 + J.wb_6_z * b.e0);
+    D[2][10] = D1_2_7 - D2_1_6;
+    D[2][11] = D2_1_5 - D1_1_8;
+    D[2][12] = D2_1_8 + D1_2_5;
+    D[2][13] = -D2_1_7 - D1_1_6;
+    D[3][3] = -D1_1_3 * J.wa_4_x - D1_3 * J.wa_4_y - D1_1 * J.wa_4_z;
+    D[3][4] = D1_3_2 * J.wa_4_x + D1_1 * J.wa_4_y - D1_3 * J.wa_4_z;
+    D[3][5] = D1_3_2 * J.wa_4_y - D1_1 * J.wa_4_x + D1_1_3 * J.wa_4_z;
+    D[3][6] = D1_3 * J.wa_4_x - D1_1_3 * J.wa_4_y + D1_3_2 * J.wa_4_z;
+    D[3][10] = -D1_1_7 * J.wb_4_x - D1_3_3 * J.wb_4_y - D1_1_5 * J.wb_4_z;
+    D[3][11] = D1_3_4 * J.wb_4_x + D1_1_5 * J.wb_4_y - D1_3_3 * J.wb_4_z;
+    D[3][12] = D1_3_4 * J.wb_4_y - D1_1_5 * J.wb_4_x + D1_1_7 * J.wb_4_z;
+    D[3][13] = D1_3_3 * J.wb_4_x - D1_1_7 * J.wb_4_y + D1_3_4 * J.wb_4_z;
+    D[4][3] = -D1_1_3 * J.wa_5_x - D1_3 * J.wa_5_y - D1_1 * J.wa_5_z;
+    D[4][4] = D1_3_2 * J.wa_5_x + D1_1 * J.wa_5_y - D1_3 * J.wa_5_z;
+    D[4][5] = D1_3_2 * J.wa_5_y - D1_1 * J.wa_5_x + D1_1_3 * J.wa_5_z;
+    D[4][6] = D1_3 * J.wa_5_x - D1_1_3 * J.wa_5_y + D1_3_2 * J.wa_5_z;
+    D[4][10] = -D1_1_7 * J.wb_5_x - D1_3_3 * J.wb_5_y - D1_1_5 * J.wb_5_z;
+    D[4][11] = D1_3_4 * J.wb_5_x + D1_1_5 * J.wb_5_y - D1_3_3 * J.wb_5_z;
+    D[4][12] = D1_3_4 * J.wb_5_y - D1_1_5 * J.wb_5_x + D1_1_7 * J.wb_5_z;
+    D[4][13] = D1_3_3 * J.wb_5_x - D1_1_7 * J.wb_5_y + D1_3_4 * J.wb_5_z;
+    D[5][3] = -D1_1_3 * J.wa_6_x - D1_3 * J.wa_6_y - D1_1 * J.wa_6_z;
+    D[5][4] = D1_3_2 * J.wa_6_x + D1_1 * J.wa_6_y - D1_3 * J.wa_6_z;
+    D[5][5] = D1_3_2 * J.wa_6_y - D1_1 * J.wa_6_x + D1_1_3 * J.wa_6_z;
+    D[5][6] = D1_3 * J.wa_6_x - D1_1_3 * J.wa_6_y + D1_3_2 * J.wa_6_z;
+    D[5][10] = -D1_1_7 * J.wb_6_x - D1_3_3 * J.wb_6_y - D1_1_5 * J.wb_6_z;
+    D[5][11] = D1_3_4 * J.wb_6_x + D1_1_5 * J.wb_6_y - D1_3_3 * J.wb_6_z;
+    D[5][12] = D1_3_4 * J.wb_6_y - D1_1_5 * J.wb_6_x + D1_1_7 * J.wb_6_z;
+    D[5][13] = D1_3_3 * J.wb_6_x - D1_1_7 * J.wb_6_y + D1_3_4 * J.wb_6_z;
   }
 
   // -Jdot v - d/dt(dC/dt): 144 +, 204 *
@@ -908,7 +916,7 @@ struct fixed {
     C_t[5] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 195 +, 336 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 205 +, 301 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[6],
       T (&H)[12][12]) {
@@ -922,13 +930,13 @@ struct fixed {
     const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
     const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
     const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T H4_1 = lambda[5] * fb_z_x - lambda[3] * fb_z_z;
+    const T H4_1 = T(0.5) * (lambda[5] * fb_z_x - lambda[3] * fb_z_z);
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
     const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T H4_2 = lambda[5] * fb_y_x - lambda[3] * fb_y_z;
+    const T H4_2 = T(0.5) * (lambda[5] * fb_y_x - lambda[3] * fb_y_z);
     const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
     const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
@@ -936,134 +944,121 @@ struct fixed {
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
     const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T H4_3 = lambda[5] * fb_x_x - lambda[3] * fb_x_z;
-    const T H4_4 = fa_z_y * H4_1 + fa_y_y * H4_2 - T(2) *
-        (lambda[1] * ra_y - T(0.5) * fa_x_y * H4_3);
+    const T H4_3 = T(0.5) * (lambda[5] * fb_x_x - lambda[3] * fb_x_z);
+    const T H4_4 = fa_z_y * H4_1 + fa_y_y * H4_2 - lambda[1] * ra_y + fa_x_y * H4_3;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T H4_5 = lambda[4] * fb_z_x - lambda[3] * fb_z_y;
+    const T H4_5 = T(0.5) * (lambda[4] * fb_z_x - lambda[3] * fb_z_y);
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T H4_6 = lambda[4] * fb_y_x - lambda[3] * fb_y_y;
+    const T H4_6 = T(0.5) * (lambda[4] * fb_y_x - lambda[3] * fb_y_y);
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T H4_7 = lambda[4] * fb_x_x - lambda[3] * fb_x_y;
-    const T H4_8 = fa_z_z * H4_5 + fa_y_z * H4_6 + T(2) *
-        (lambda[2] * ra_z + T(0.5) * fa_x_z * H4_7);
+    const T H4_7 = T(0.5) * (lambda[4] * fb_x_x - lambda[3] * fb_x_y);
+    const T H4_8 = fa_z_z * H4_5 + fa_y_z * H4_6 + lambda[2] * ra_z + fa_x_z * H4_7;
     const T H4_1_2 = fa_z_y * fb_z_z + fa_x_y * fb_x_z + fa_y_y * fb_y_z;
     const T H4_2_2 = fa_z_z * fb_z_y + fa_x_z * fb_x_y + fa_y_z * fb_y_y;
-    const T H4_3_2 = T(0.5) * lambda[3] * (H4_1_2 - H4_2_2);
-    const T H4_1_3 = lambda[4] * fa_x_y;
-    const T H4_2_3 = lambda[5] * fa_x_z;
-    const T H4_3_3 = H4_1_3 + H4_2_3;
-    const T H4_4_2 = lambda[4] * fa_y_y;
-    const T H4_5_2 = lambda[5] * fa_y_z;
-    const T H4_6_2 = H4_4_2 + H4_5_2;
-    const T H4_7_2 = lambda[4] * fa_z_y;
-    const T H4_8_2 = lambda[5] * fa_z_z;
-    const T H4_9 = H4_7_2 + H4_8_2;
-    const T H4_10 = fa_z_z * fb_z_x + fa_x_z * fb_x_x + fa_y_z * fb_y_x;
+    const T H4_3_2 = lambda[3] * T(0.5) * (H4_1_2 - H4_2_2);
+    const T H4_1_3 = T(0.5) * lambda[4];
+    const T H4_2_3 = H4_1_3 * fa_x_y;
+    const T H4_3_3 = lambda[5] * T(0.5);
+    const T H4_4_2 = H4_3_3 * fa_x_z;
+    const T H4_5_2 = H4_2_3 + H4_4_2;
+    const T H4_6_2 = H4_1_3 * fa_y_y;
+    const T H4_7_2 = H4_3_3 * fa_y_z;
+    const T H4_8_2 = H4_6_2 + H4_7_2;
+    const T H4_9 = H4_1_3 * fa_z_y;
+    const T H4_10 = H4_3_3 * fa_z_z;
+    const T H4_11 = H4_9 + H4_10;
+    const T H4_12 = fa_z_z * fb_z_x + fa_x_z * fb_x_x + fa_y_z * fb_y_x;
+    const T H4_13 = T(0.5) * H4_12;
     const T H4_1_4 = fa_z_y * fb_z_x + fa_x_y * fb_x_x + fa_y_y * fb_y_x;
-    const T H5_1 = lambda[5] * fb_x_y - lambda[4] * fb_x_z;
-    const T H5_2 = lambda[5] * fb_y_y - lambda[4] * fb_y_z;
-    const T H5_3 = lambda[5] * fb_z_y - lambda[4] * fb_z_z;
-    const T H5_1_2 = fa_z_x * H5_3 + fa_y_x * H5_2 + T(2) *
-        (lambda[0] * ra_x + T(0.5) * fa_x_x * H5_1);
-    const T H5_1_3 = lambda[3] * fa_x_x;
-    const T H5_2_2 = H5_1_3 + H4_2_3;
-    const T H5_3_2 = lambda[3] * fa_y_x;
-    const T H5_4 = H5_3_2 + H4_5_2;
-    const T H5_5 = lambda[3] * fa_z_x;
-    const T H5_6 = H5_5 + H4_8_2;
+    const T H5_1 = T(0.5) * (lambda[5] * fb_x_y - lambda[4] * fb_x_z);
+    const T H5_2 = T(0.5) * (lambda[5] * fb_y_y - lambda[4] * fb_y_z);
+    const T H5_3 = T(0.5) * (lambda[5] * fb_z_y - lambda[4] * fb_z_z);
+    const T H5_1_2 = fa_z_x * H5_3 + fa_y_x * H5_2 + lambda[0] * ra_x + fa_x_x * H5_1;
+    const T H5_1_3 = lambda[3] * T(0.5);
+    const T H5_2_2 = H5_1_3 * fa_x_x;
+    const T H5_3_2 = H5_2_2 + H4_4_2;
+    const T H5_4 = H5_1_3 * fa_y_x;
+    const T H5_5 = H5_4 + H4_7_2;
+    const T H5_6 = H5_1_3 * fa_z_x;
+    const T H5_7 = H5_6 + H4_10;
     const T H5_1_4 = fa_z_x * fb_z_z + fa_x_x * fb_x_z + fa_y_x * fb_y_z;
-    const T H5_2_3 = T(0.5) * lambda[4] * (H4_10 - H5_1_4);
+    const T H5_2_3 = T(0.5) * lambda[4] * (H4_12 - H5_1_4);
     const T H5_1_5 = fa_z_x * fb_z_y + fa_x_x * fb_x_y + fa_y_x * fb_y_y;
-    const T H6_1 = H5_1_3 + H4_1_3;
-    const T H6_2 = H5_3_2 + H4_4_2;
-    const T H6_3 = H5_5 + H4_7_2;
-    const T H6_1_2 = T(0.5) * lambda[5] * (H5_1_5 - H4_1_4);
-    const T H10_1 = lambda[4] * fb_x_y;
-    const T H10_2 = lambda[5] * fb_x_z;
+    const T H6_1 = H5_2_2 + H4_2_3;
+    const T H6_2 = H5_4 + H4_6_2;
+    const T H6_3 = H5_6 + H4_9;
+    const T H6_1_2 = T(0.5) * H5_1_4;
+    const T H6_1_3 = lambda[5] * T(0.5) * (H5_1_5 - H4_1_4);
+    const T H10_1 = H4_1_3 * fb_x_y;
+    const T H10_2 = H4_3_3 * fb_x_z;
     const T H10_3 = H10_1 + H10_2;
-    const T H10_4 = lambda[4] * fb_y_y;
-    const T H10_5 = lambda[5] * fb_y_z;
+    const T H10_4 = H4_1_3 * fb_y_y;
+    const T H10_5 = H4_3_3 * fb_y_z;
     const T H10_6 = H10_4 + H10_5;
-    const T H10_7 = lambda[4] * fb_z_y;
-    const T H10_8 = lambda[5] * fb_z_z;
+    const T H10_7 = H4_1_3 * fb_z_y;
+    const T H10_8 = H4_3_3 * fb_z_z;
     const T H10_9 = H10_7 + H10_8;
-    const T H10_1_2 = lambda[3] * fa_z_z - lambda[5] * fa_z_x;
-    const T H10_2_2 = lambda[3] * fa_y_z - lambda[5] * fa_y_x;
+    const T H10_1_2 = T(0.5) * (lambda[3] * fa_z_z - lambda[5] * fa_z_x);
+    const T H10_2_2 = T(0.5) * (lambda[3] * fa_y_z - lambda[5] * fa_y_x);
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T H10_3_2 = lambda[3] * fa_x_z - lambda[5] * fa_x_x;
-    const T H10_4_2 = fb_z_y * H10_1_2 + fb_y_y * H10_2_2 + T(2) *
-        (lambda[1] * rb_y + T(0.5) * fb_x_y * H10_3_2);
-    const T H10_5_2 = lambda[3] * fa_z_y - lambda[4] * fa_z_x;
-    const T H10_6_2 = lambda[3] * fa_y_y - lambda[4] * fa_y_x;
+    const T H10_3_2 = T(0.5) * (lambda[3] * fa_x_z - lambda[5] * fa_x_x);
+    const T H10_4_2 = fb_z_y * H10_1_2 + fb_y_y * H10_2_2 + lambda[1] * rb_y + fb_x_y * H10_3_2;
+    const T H10_5_2 = T(0.5) * (lambda[3] * fa_z_y - lambda[4] * fa_z_x);
+    const T H10_6_2 = T(0.5) * (lambda[3] * fa_y_y - lambda[4] * fa_y_x);
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T H10_7_2 = lambda[3] * fa_x_y - lambda[4] * fa_x_x;
-    const T H10_8_2 = fb_z_z * H10_5_2 + fb_y_z * H10_6_2 - T(2) *
-        (lambda[2] * rb_z - T(0.5) * fb_x_z * H10_7_2);
-    const T H11_1 = lambda[3] * fb_x_x;
+    const T H10_7_2 = T(0.5) * (lambda[3] * fa_x_y - lambda[4] * fa_x_x);
+    const T H10_8_2 = fb_z_z * H10_5_2 + fb_y_z * H10_6_2 - lambda[2] * rb_z + fb_x_z * H10_7_2;
+    const T H11_1 = H5_1_3 * fb_x_x;
     const T H11_2 = H11_1 + H10_2;
-    const T H11_3 = lambda[3] * fb_y_x;
+    const T H11_3 = H5_1_3 * fb_y_x;
     const T H11_4 = H11_3 + H10_5;
-    const T H11_5 = lambda[3] * fb_z_x;
+    const T H11_5 = H5_1_3 * fb_z_x;
     const T H11_6 = H11_5 + H10_8;
-    const T H11_1_2 = lambda[4] * fa_x_z - lambda[5] * fa_x_y;
-    const T H11_2_2 = lambda[4] * fa_y_z - lambda[5] * fa_y_y;
-    const T H11_3_2 = lambda[4] * fa_z_z - lambda[5] * fa_z_y;
-    const T H11_1_3 = fb_z_x * H11_3_2 + fb_y_x * H11_2_2 - T(2) *
-        (lambda[0] * rb_x - T(0.5) * fb_x_x * H11_1_2);
+    const T H11_1_2 = T(0.5) * (lambda[4] * fa_x_z - lambda[5] * fa_x_y);
+    const T H11_2_2 = T(0.5) * (lambda[4] * fa_y_z - lambda[5] * fa_y_y);
+    const T H11_3_2 = T(0.5) * (lambda[4] * fa_z_z - lambda[5] * fa_z_y);
+    const T H11_1_3 = fb_z_x * H11_3_2 + fb_y_x * H11_2_2 - lambda[0] * rb_x + fb_x_x * H11_1_2;
     const T H12_1 = H11_1 + H10_1;
     const T H12_2 = H11_3 + H10_4;
     const T H12_3 = H11_5 + H10_7;
-    H[3][3] = T(0.5) * (H4_4 - H4_8);
-    H[3][4] = lambda[1] * ra_x - T(0.5) * fa_x_x * H4_3 - T(0.5) * fa_y_x * H4_2 - T(0.5) *
-        fa_z_x * H4_1;
-    H[3][5] = lambda[2] * ra_x + T(0.5) * fa_x_x * H4_7 + T(0.5) * fa_y_x * H4_6 + T(0.5) *
-        fa_z_x * H4_5;
+    H[3][3] = H4_4 - H4_8;
+    H[3][4] = lambda[1] * ra_x - fa_x_x * H4_3 - fa_y_x * H4_2 - fa_z_x * H4_1;
+    H[3][5] = lambda[2] * ra_x + fa_x_x * H4_7 + fa_y_x * H4_6 + fa_z_x * H4_5;
     H[3][9] = H4_3_2;
-    H[3][10] = T(0.5) * (fb_x_z * H4_3_3 + fb_y_z * H4_6_2 + fb_z_z * H4_9 + lambda[3] * H4_10);
-    H[3][11] = T(-0.5) * (fb_x_y * H4_3_3 + fb_y_y * H4_6_2 + fb_z_y * H4_9 + lambda[3] * H4_1_4);
-    H[4][3] = lambda[0] * ra_y + T(0.5) * fa_x_y * H5_1 + T(0.5) * fa_y_y * H5_2 + T(0.5) *
-        fa_z_y * H5_3;
-    H[4][4] = T(-0.5) * (H5_1_2 + H4_8);
-    H[4][5] = lambda[2] * ra_y + T(0.5) * fa_x_y * H4_7 + T(0.5) * fa_y_y * H4_6 + T(0.5) *
-        fa_z_y * H4_5;
-    H[4][9] = T(-0.5) * (fb_x_z * H5_2_2 + fb_y_z * H5_4 + fb_z_z * H5_6 + lambda[4] * H4_2_2);
+    H[3][10] = fb_x_z * H4_5_2 + fb_y_z * H4_8_2 + fb_z_z * H4_11 + lambda[3] * H4_13;
+    H[3][11] = -fb_x_y * H4_5_2 - fb_y_y * H4_8_2 - fb_z_y * H4_11 - lambda[3] * T(0.5) * H4_1_4;
+    H[4][3] = lambda[0] * ra_y + fa_x_y * H5_1 + fa_y_y * H5_2 + fa_z_y * H5_3;
+    H[4][4] = -H5_1_2 - H4_8;
+    H[4][5] = lambda[2] * ra_y + fa_x_y * H4_7 + fa_y_y * H4_6 + fa_z_y * H4_5;
+    H[4][9] = -fb_x_z * H5_3_2 - fb_y_z * H5_5 - fb_z_z * H5_7 - T(0.5) * lambda[4] * H4_2_2;
     H[4][10] = H5_2_3;
-    H[4][11] = T(0.5) * (fb_x_x * H5_2_2 + fb_y_x * H5_4 + fb_z_x * H5_6 + lambda[4] * H5_1_5);
-    H[5][3] = lambda[0] * ra_z + T(0.5) * fa_x_z * H5_1 + T(0.5) * fa_y_z * H5_2 + T(0.5) *
-        fa_z_z * H5_3;
-    H[5][4] = lambda[1] * ra_z - T(0.5) * fa_x_z * H4_3 - T(0.5) * fa_y_z * H4_2 - T(0.5) *
-        fa_z_z * H4_1;
-    H[5][5] = T(0.5) * (H4_4 - H5_1_2);
-    H[5][9] = T(0.5) * (fb_x_y * H6_1 + fb_y_y * H6_2 + fb_z_y * H6_3 + lambda[5] * H4_1_2);
-    H[5][10] = T(-0.5) * (fb_x_x * H6_1 + fb_y_x * H6_2 + fb_z_x * H6_3 + lambda[5] * H5_1_4);
-    H[5][11] = H6_1_2;
+    H[4][11] = fb_x_x * H5_3_2 + fb_y_x * H5_5 + fb_z_x * H5_7 + T(0.5) * lambda[4] * H5_1_5;
+    H[5][3] = lambda[0] * ra_z + fa_x_z * H5_1 + fa_y_z * H5_2 + fa_z_z * H5_3;
+    H[5][4] = lambda[1] * ra_z - fa_x_z * H4_3 - fa_y_z * H4_2 - fa_z_z * H4_1;
+    H[5][5] = H4_4 - H5_1_2;
+    H[5][9] = fb_x_y * H6_1 + fb_y_y * H6_2 + fb_z_y * H6_3 + lambda[5] * T(0.5) * H4_1_2;
+    H[5][10] = -fb_x_x * H6_1 - fb_y_x * H6_2 - fb_z_x * H6_3 - lambda[5] * H6_1_2;
+    H[5][11] = H6_1_3;
     H[9][3] = H4_3_2;
-    H[9][4] = T(-0.5) * (fa_x_z * H10_3 + fa_y_z * H10_6 + fa_z_z * H10_9 + lambda[3] * H5_1_4);
-    H[9][5] = T(0.5) * (fa_x_y * H10_3 + fa_y_y * H10_6 + fa_z_y * H10_9 + lambda[3] * H5_1_5);
-    H[9][9] = T(0.5) * (H10_4_2 - H10_8_2);
-    H[9][10] = T(-0.5) * fb_x_x * H10_3_2 - lambda[1] * rb_x - T(0.5) * fb_y_x * H10_2_2 - T(0.5) *
-        fb_z_x * H10_1_2;
-    H[9][11] = T(0.5) * fb_x_x * H10_7_2 - lambda[2] * rb_x + T(0.5) * fb_y_x * H10_6_2 + T(0.5) *
-        fb_z_x * H10_5_2;
-    H[10][3] = T(0.5) * (fa_x_z * H11_2 + fa_y_z * H11_4 + fa_z_z * H11_6 + lambda[4] * H4_1_2);
+    H[9][4] = -fa_x_z * H10_3 - fa_y_z * H10_6 - fa_z_z * H10_9 - lambda[3] * H6_1_2;
+    H[9][5] = fa_x_y * H10_3 + fa_y_y * H10_6 + fa_z_y * H10_9 + lambda[3] * T(0.5) * H5_1_5;
+    H[9][9] = H10_4_2 - H10_8_2;
+    H[9][10] = -lambda[1] * rb_x - fb_x_x * H10_3_2 - fb_y_x * H10_2_2 - fb_z_x * H10_1_2;
+    H[9][11] = fb_x_x * H10_7_2 - lambda[2] * rb_x + fb_y_x * H10_6_2 + fb_z_x * H10_5_2;
+    H[10][3] = fa_x_z * H11_2 + fa_y_z * H11_4 + fa_z_z * H11_6 + T(0.5) * lambda[4] * H4_1_2;
     H[10][4] = H5_2_3;
-    H[10][5] = T(-0.5) * (fa_x_x * H11_2 + fa_y_x * H11_4 + fa_z_x * H11_6 + lambda[4] * H4_1_4);
-    H[10][9] = T(0.5) * fb_x_y * H11_1_2 - lambda[0] * rb_y + T(0.5) * fb_y_y * H11_2_2 + T(0.5) *
-        fb_z_y * H11_3_2;
-    H[10][10] = T(-0.5) * (H11_1_3 + H10_8_2);
-    H[10][11] = T(0.5) * fb_x_y * H10_7_2 - lambda[2] * rb_y + T(0.5) * fb_y_y * H10_6_2 + T(0.5) *
-        fb_z_y * H10_5_2;
-    H[11][3] = T(-0.5) * (fa_x_y * H12_1 + fa_y_y * H12_2 + fa_z_y * H12_3 + lambda[5] * H4_2_2);
-    H[11][4] = T(0.5) * (fa_x_x * H12_1 + fa_y_x * H12_2 + fa_z_x * H12_3 + lambda[5] * H4_10);
-    H[11][5] = H6_1_2;
-    H[11][9] = T(0.5) * fb_x_z * H11_1_2 - lambda[0] * rb_z + T(0.5) * fb_y_z * H11_2_2 + T(0.5) *
-        fb_z_z * H11_3_2;
-    H[11][10] = T(-0.5) * fb_x_z * H10_3_2 - lambda[1] * rb_z - T(0.5) * fb_y_z * H10_2_2 -
-        T(0.5) * fb_z_z * H10_1_2;
-    H[11][11] = T(0.5) * (H10_4_2 - H11_1_3);
+    H[10][5] = -fa_x_x * H11_2 - fa_y_x * H11_4 - fa_z_x * H11_6 - T(0.5) * lambda[4] * H4_1_4;
+    H[10][9] = fb_x_y * H11_1_2 - lambda[0] * rb_y + fb_y_y * H11_2_2 + fb_z_y * H11_3_2;
+    H[10][10] = -H11_1_3 - H10_8_2;
+    H[10][11] = fb_x_y * H10_7_2 - lambda[2] * rb_y + fb_y_y * H10_6_2 + fb_z_y * H10_5_2;
+    H[11][3] = -fa_x_y * H12_1 - fa_y_y * H12_2 - fa_z_y * H12_3 - lambda[5] * T(0.5) * H4_2_2;
+    H[11][4] = fa_x_x * H12_1 + fa_y_x * H12_2 + fa_z_x * H12_3 + lambda[5] * H4_13;
+    H[11][5] = H6_1_3;
+    H[11][9] = fb_x_z * H11_1_2 - lambda[0] * rb_z + fb_y_z * H11_2_2 + fb_z_z * H11_3_2;
+    H[11][10] = -lambda[1] * rb_z - fb_x_z * H10_3_2 - fb_y_z * H10_2_2 - fb_z_z * H10_1_2;
+    H[11][11] = H10_4_2 - H11_1_3;
   }
 
   // The default of parameter `index`, from the initial pose and the parameters before it.

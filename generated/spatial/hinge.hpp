@@ -560,7 +560,7 @@ struct hinge {
     D[4][11] = -J.fa_z_x_fb_x_x * b.xz - J.fa_z_x_fb_x_y * b.yz - J.fa_z_x_fb_x_z * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 56 +, 112 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 64 +, 80 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[5][14]) {
     for (auto& row : D) {
@@ -568,76 +568,84 @@ struct hinge {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T D1_1 = J.ra_y * a.e3;
-    const T D1_2 = J.ra_z * a.e2;
-    const T D1_1_2 = J.ra_y * a.e2;
-    const T D1_2_2 = J.ra_z * a.e3;
-    const T D1_1_3 = J.ra_y * a.e1;
-    const T D1_2_3 = J.ra_z * a.e0;
-    const T D1_1_4 = J.ra_y * a.e0;
-    const T D1_2_4 = J.ra_z * a.e1;
-    const T D1_1_5 = J.rb_y * b.e3;
-    const T D1_2_5 = J.rb_z * b.e2;
-    const T D1_1_6 = J.rb_y * b.e2;
-    const T D1_2_6 = J.rb_z * b.e3;
-    const T D1_1_7 = J.rb_y * b.e1;
-    const T D1_2_7 = J.rb_z * b.e0;
-    const T D1_1_8 = J.rb_y * b.e0;
-    const T D1_2_8 = J.rb_z * b.e1;
-    const T D2_1 = J.ra_x * a.e3;
-    const T D2_1_2 = J.ra_x * a.e2;
-    const T D2_1_3 = J.ra_x * a.e1;
-    const T D2_1_4 = J.ra_x * a.e0;
-    const T D2_1_5 = J.rb_x * b.e3;
-    const T D2_1_6 = J.rb_x * b.e2;
-    const T D2_1_7 = J.rb_x * b.e1;
-    const T D2_1_8 = J.rb_x * b.e0;
+    const T D1_1 = a.e3 * T(2);
+    const T D1_2 = D1_1 * J.ra_y;
+    const T D1_3 = a.e2 * T(2);
+    const T D1_4 = D1_3 * J.ra_z;
+    const T D1_1_2 = D1_3 * J.ra_y;
+    const T D1_2_2 = D1_1 * J.ra_z;
+    const T D1_1_3 = T(2) * a.e1;
+    const T D1_2_3 = D1_1_3 * J.ra_y;
+    const T D1_3_2 = T(2) * a.e0;
+    const T D1_4_2 = D1_3_2 * J.ra_z;
+    const T D1_1_4 = D1_3_2 * J.ra_y;
+    const T D1_2_4 = D1_1_3 * J.ra_z;
+    const T D1_1_5 = T(2) * b.e3;
+    const T D1_2_5 = D1_1_5 * J.rb_y;
+    const T D1_3_3 = T(2) * b.e2;
+    const T D1_4_3 = D1_3_3 * J.rb_z;
+    const T D1_1_6 = D1_3_3 * J.rb_y;
+    const T D1_2_6 = D1_1_5 * J.rb_z;
+    const T D1_1_7 = T(2) * b.e1;
+    const T D1_2_7 = D1_1_7 * J.rb_y;
+    const T D1_3_4 = T(2) * b.e0;
+    const T D1_4_4 = D1_3_4 * J.rb_z;
+    const T D1_1_8 = D1_3_4 * J.rb_y;
+    const T D1_2_8 = D1_1_7 * J.rb_z;
+    const T D2_1 = D1_1 * J.ra_x;
+    const T D2_1_2 = D1_3 * J.ra_x;
+    const T D2_1_3 = D1_1_3 * J.ra_x;
+    const T D2_1_4 = D1_3_2 * J.ra_x;
+    const T D2_1_5 = D1_1_5 * J.rb_x;
+    const T D2_1_6 = D1_3_3 * J.rb_x;
+    const T D2_1_7 = D1_1_7 * J.rb_x;
+    const T D2_1_8 = D1_3_4 * J.rb_x;
     D[0][0] = T(1);
-    D[0][3] = T(2) * (D1_1 - D1_2);
-    D[0][4] = T(2) * (D1_1_2 + D1_2_2);
-    D[0][5] = T(2) * (D1_2_3 - D1_1_3);
-    D[0][6] = T(-2) * (D1_1_4 + D1_2_4);
+    D[0][3] = D1_2 - D1_4;
+    D[0][4] = D1_1_2 + D1_2_2;
+    D[0][5] = D1_4_2 - D1_2_3;
+    D[0][6] = -D1_1_4 - D1_2_4;
     D[0][7] = T(-1);
-    D[0][10] = T(2) * (D1_2_5 - D1_1_5);
-    D[0][11] = T(-2) * (D1_1_6 + D1_2_6);
-    D[0][12] = T(2) * (D1_1_7 - D1_2_7);
-    D[0][13] = T(2) * (D1_1_8 + D1_2_8);
+    D[0][10] = D1_4_3 - D1_2_5;
+    D[0][11] = -D1_1_6 - D1_2_6;
+    D[0][12] = D1_2_7 - D1_4_4;
+    D[0][13] = D1_1_8 + D1_2_8;
     D[1][1] = T(1);
-    D[1][3] = T(2) * (D1_2_4 - D2_1);
-    D[1][4] = T(-2) * (D2_1_2 + D1_2_3);
-    D[1][5] = T(2) * (D2_1_3 + D1_2_2);
-    D[1][6] = T(2) * (D2_1_4 - D1_2);
+    D[1][3] = D1_2_4 - D2_1;
+    D[1][4] = -D2_1_2 - D1_4_2;
+    D[1][5] = D2_1_3 + D1_2_2;
+    D[1][6] = D2_1_4 - D1_4;
     D[1][8] = T(-1);
-    D[1][10] = T(2) * (D2_1_5 - D1_2_8);
-    D[1][11] = T(2) * (D2_1_6 + D1_2_7);
-    D[1][12] = T(-2) * (D2_1_7 + D1_2_6);
-    D[1][13] = T(2) * (D1_2_5 - D2_1_8);
+    D[1][10] = D2_1_5 - D1_2_8;
+    D[1][11] = D2_1_6 + D1_4_4;
+    D[1][12] = -D2_1_7 - D1_2_6;
+    D[1][13] = D1_4_3 - D2_1_8;
     D[2][2] = T(1);
-    D[2][3] = T(2) * (D2_1_2 - D1_1_3);
-    D[2][4] = T(2) * (D1_1_4 - D2_1);
-    D[2][5] = T(-2) * (D2_1_4 + D1_1);
-    D[2][6] = T(2) * (D2_1_3 + D1_1_2);
+    D[2][3] = D2_1_2 - D1_2_3;
+    D[2][4] = D1_1_4 - D2_1;
+    D[2][5] = -D2_1_4 - D1_2;
+    D[2][6] = D2_1_3 + D1_1_2;
     D[2][9] = T(-1);
-    D[2][10] = T(2) * (D1_1_7 - D2_1_6);
-    D[2][11] = T(2) * (D2_1_5 - D1_1_8);
-    D[2][12] = T(2) * (D2_1_8 + D1_1_5);
-    D[2][13] = T(-2) * (D2_1_7 + D1_1_6);
-    D[3][3] = T(-2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
-    D[3][4] = T(2) * (J.fa_y_x_fb_x_x * a.e0 + J.fa_y_x_fb_x_y * a.e3 - J.fa_y_x_fb_x_z * a.e2);
-    D[3][5] = T(2) * (J.fa_y_x_fb_x_y * a.e0 - J.fa_y_x_fb_x_x * a.e3 + J.fa_y_x_fb_x_z * a.e1);
-    D[3][6] = T(2) * (J.fa_y_x_fb_x_x * a.e2 - J.fa_y_x_fb_x_y * a.e1 + J.fa_y_x_fb_x_z * a.e0);
-    D[3][10] = T(2) * (J.fa_y_x_fb_x_x * b.e1 + J.fa_y_x_fb_x_y * b.e2 + J.fa_y_x_fb_x_z * b.e3);
-    D[3][11] = T(2) * (J.fa_y_x_fb_x_z * b.e2 - J.fa_y_x_fb_x_x * b.e0 - J.fa_y_x_fb_x_y * b.e3);
-    D[3][12] = T(2) * (J.fa_y_x_fb_x_x * b.e3 - J.fa_y_x_fb_x_y * b.e0 - J.fa_y_x_fb_x_z * b.e1);
-    D[3][13] = T(2) * (J.fa_y_x_fb_x_y * b.e1 - J.fa_y_x_fb_x_x * b.e2 - J.fa_y_x_fb_x_z * b.e0);
-    D[4][3] = T(-2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
-    D[4][4] = T(2) * (J.fa_z_x_fb_x_x * a.e0 + J.fa_z_x_fb_x_y * a.e3 - J.fa_z_x_fb_x_z * a.e2);
-    D[4][5] = T(2) * (J.fa_z_x_fb_x_y * a.e0 - J.fa_z_x_fb_x_x * a.e3 + J.fa_z_x_fb_x_z * a.e1);
-    D[4][6] = T(2) * (J.fa_z_x_fb_x_x * a.e2 - J.fa_z_x_fb_x_y * a.e1 + J.fa_z_x_fb_x_z * a.e0);
-    D[4][10] = T(2) * (J.fa_z_x_fb_x_x * b.e1 + J.fa_z_x_fb_x_y * b.e2 + J.fa_z_x_fb_x_z * b.e3);
-    D[4][11] = T(2) * (J.fa_z_x_fb_x_z * b.e2 - J.fa_z_x_fb_x_x * b.e0 - J.fa_z_x_fb_x_y * b.e3);
-    D[4][12] = T(2) * (J.fa_z_x_fb_x_x * b.e3 - J.fa_z_x_fb_x_y * b.e0 - J.fa_z_x_fb_x_z * b.e1);
-    D[4][13] = T(2) * (J.fa_z_x_fb_x_y * b.e1 - J.fa_z_x_fb_x_x * b.e2 - J.fa_z_x_fb_x_z * b.e0);
+    D[2][10] = D1_2_7 - D2_1_6;
+    D[2][11] = D2_1_5 - D1_1_8;
+    D[2][12] = D2_1_8 + D1_2_5;
+    D[2][13] = -D2_1_7 - D1_1_6;
+    D[3][3] = -D1_1_3 * J.fa_y_x_fb_x_x - D1_3 * J.fa_y_x_fb_x_y - D1_1 * J.fa_y_x_fb_x_z;
+    D[3][4] = D1_3_2 * J.fa_y_x_fb_x_x + D1_1 * J.fa_y_x_fb_x_y - D1_3 * J.fa_y_x_fb_x_z;
+    D[3][5] = D1_3_2 * J.fa_y_x_fb_x_y - D1_1 * J.fa_y_x_fb_x_x + D1_1_3 * J.fa_y_x_fb_x_z;
+    D[3][6] = D1_3 * J.fa_y_x_fb_x_x - D1_1_3 * J.fa_y_x_fb_x_y + D1_3_2 * J.fa_y_x_fb_x_z;
+    D[3][10] = D1_1_7 * J.fa_y_x_fb_x_x + D1_3_3 * J.fa_y_x_fb_x_y + D1_1_5 * J.fa_y_x_fb_x_z;
+    D[3][11] = D1_3_3 * J.fa_y_x_fb_x_z - D1_3_4 * J.fa_y_x_fb_x_x - D1_1_5 * J.fa_y_x_fb_x_y;
+    D[3][12] = D1_1_5 * J.fa_y_x_fb_x_x - D1_3_4 * J.fa_y_x_fb_x_y - D1_1_7 * J.fa_y_x_fb_x_z;
+    D[3][13] = D1_1_7 * J.fa_y_x_fb_x_y - D1_3_3 * J.fa_y_x_fb_x_x - D1_3_4 * J.fa_y_x_fb_x_z;
+    D[4][3] = -D1_1_3 * J.fa_z_x_fb_x_x - D1_3 * J.fa_z_x_fb_x_y - D1_1 * J.fa_z_x_fb_x_z;
+    D[4][4] = D1_3_2 * J.fa_z_x_fb_x_x + D1_1 * J.fa_z_x_fb_x_y - D1_3 * J.fa_z_x_fb_x_z;
+    D[4][5] = D1_3_2 * J.fa_z_x_fb_x_y - D1_1 * J.fa_z_x_fb_x_x + D1_1_3 * J.fa_z_x_fb_x_z;
+    D[4][6] = D1_3 * J.fa_z_x_fb_x_x - D1_1_3 * J.fa_z_x_fb_x_y + D1_3_2 * J.fa_z_x_fb_x_z;
+    D[4][10] = D1_1_7 * J.fa_z_x_fb_x_x + D1_3_3 * J.fa_z_x_fb_x_y + D1_1_5 * J.fa_z_x_fb_x_z;
+    D[4][11] = D1_3_3 * J.fa_z_x_fb_x_z - D1_3_4 * J.fa_z_x_fb_x_x - D1_1_5 * J.fa_z_x_fb_x_y;
+    D[4][12] = D1_1_5 * J.fa_z_x_fb_x_x - D1_3_4 * J.fa_z_x_fb_x_y - D1_1_7 * J.fa_z_x_fb_x_z;
+    D[4][13] = D1_1_7 * J.fa_z_x_fb_x_y - D1_3_3 * J.fa_z_x_fb_x_x - D1_3_4 * J.fa_z_x_fb_x_z;
   }
 
   // -Jdot v - d/dt(dC/dt): 81 +, 117 *
@@ -937,17 +945,15 @@ struct hinge {
       J.wa_z = fa_x_fb_x_z * wa_x_1;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 14 +, 12 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 11 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      const T K11_1 = ma.Ixy + mb.Ixy;
-      const T K11_2 = ma.Ixz + mb.Ixz;
-      const T K11_3 = ma.Iyz + mb.Iyz;
-      K[0] = J.wa_x * (J.wa_x * (ma.Ixx + mb.Ixx) + J.wa_y * K11_1 + J.wa_z * K11_2) + J.wa_y *
-          (J.wa_x * K11_1 + J.wa_y * (ma.Iyy + mb.Iyy) + J.wa_z * K11_3) + J.wa_z *
-          (J.wa_x * K11_2 + J.wa_y * K11_3 + J.wa_z * (ma.Izz + mb.Izz));
+      const T K11_1 = J.wa_z * T(2);
+      K[0] = J.wa_z * J.wa_z * (ma.Izz + mb.Izz) + J.wa_x *
+          (J.wa_x * (ma.Ixx + mb.Ixx) + J.wa_y * T(2) * (ma.Ixy + mb.Ixy) + K11_1 *
+          (ma.Ixz + mb.Ixz)) + J.wa_y * (J.wa_y * (ma.Iyy + mb.Iyy) + K11_1 * (ma.Iyz + mb.Iyz));
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1080,7 +1086,7 @@ struct hinge {
       D[0][11] = J.wa_x * b.xz + J.wa_y * b.yz + J.wa_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 27 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -1088,14 +1094,17 @@ struct hinge {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_z * a.e2 - J.wa_x * a.e0 - J.wa_y * a.e3);
-      D[0][5] = T(2) * (J.wa_x * a.e3 - J.wa_y * a.e0 - J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_y * a.e1 - J.wa_x * a.e2 - J.wa_z * a.e0);
-      D[0][10] = T(-2) * (J.wa_x * b.e1 + J.wa_y * b.e2 + J.wa_z * b.e3);
-      D[0][11] = T(2) * (J.wa_x * b.e0 + J.wa_y * b.e3 - J.wa_z * b.e2);
-      D[0][12] = T(2) * (J.wa_y * b.e0 - J.wa_x * b.e3 + J.wa_z * b.e1);
-      D[0][13] = T(2) * (J.wa_x * b.e2 - J.wa_y * b.e1 + J.wa_z * b.e0);
+      const T D1_1 = J.wa_x * T(2);
+      const T D1_2 = J.wa_y * T(2);
+      const T D1_3 = J.wa_z * T(2);
+      D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+      D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+      D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+      D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
+      D[0][10] = -D1_1 * b.e1 - D1_2 * b.e2 - D1_3 * b.e3;
+      D[0][11] = D1_1 * b.e0 + D1_2 * b.e3 - D1_3 * b.e2;
+      D[0][12] = D1_2 * b.e0 - D1_1 * b.e3 + D1_3 * b.e1;
+      D[0][13] = D1_1 * b.e2 - D1_2 * b.e1 + D1_3 * b.e0;
     }
 
     // -Jdot v - d/dt(dC/dt): 40 +, 48 *, 1 /, 1 <
@@ -1800,13 +1809,14 @@ struct hinge::angle::a_immovable : hinge::angle {
     J.wb_z = fa_x_fb_x_z * wb_x_1;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+    const T K11_1 = J.wb_z * T(2);
+    K[0] = mb.Izz * J.wb_z * J.wb_z + J.wb_x *
+        (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_1 * mb.Ixz) + J.wb_y *
+        (mb.Iyy * J.wb_y + K11_1 * mb.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -1892,13 +1902,14 @@ struct hinge::angle::a_immovable : hinge::angle {
 struct hinge::angle::b_immovable : hinge::angle {
   static constexpr int immovable_body = 1;
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    const T K11_1 = J.wa_z * T(2);
+    K[0] = ma.Izz * J.wa_z * J.wa_z + J.wa_x *
+        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+        (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
   }
 
   // J v: 3 +, 3 *

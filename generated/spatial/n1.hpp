@@ -71,18 +71,16 @@ struct n1 {
     J.na_x_nb_z = na_x * nb_y - na_y * nb_x;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 14 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 11 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
-    const T K11_1 = ma.Ixy + mb.Ixy;
-    const T K11_2 = ma.Ixz + mb.Ixz;
-    const T K11_3 = ma.Iyz + mb.Iyz;
-    K[0] = J.na_x_nb_x * (J.na_x_nb_x * (ma.Ixx + mb.Ixx) + J.na_x_nb_y * K11_1 + J.na_x_nb_z *
-        K11_2) + J.na_x_nb_y * (J.na_x_nb_x * K11_1 + J.na_x_nb_y * (ma.Iyy + mb.Iyy) +
-        J.na_x_nb_z * K11_3) + J.na_x_nb_z *
-        (J.na_x_nb_x * K11_2 + J.na_x_nb_y * K11_3 + J.na_x_nb_z * (ma.Izz + mb.Izz));
+    const T K11_1 = J.na_x_nb_z * T(2);
+    K[0] = J.na_x_nb_z * J.na_x_nb_z * (ma.Izz + mb.Izz) + J.na_x_nb_x *
+        (J.na_x_nb_x * (ma.Ixx + mb.Ixx) + J.na_x_nb_y * T(2) * (ma.Ixy + mb.Ixy) + K11_1 *
+        (ma.Ixz + mb.Ixz)) + J.na_x_nb_y *
+        (J.na_x_nb_y * (ma.Iyy + mb.Iyy) + K11_1 * (ma.Iyz + mb.Iyz));
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -218,7 +216,7 @@ struct n1 {
     D[0][11] = -J.na_x_nb_x * b.xz - J.na_x_nb_y * b.yz - J.na_x_nb_z * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 27 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
     for (auto& row : D) {
@@ -226,14 +224,17 @@ struct n1 {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    D[0][3] = T(-2) * (J.na_x_nb_x * a.e1 + J.na_x_nb_y * a.e2 + J.na_x_nb_z * a.e3);
-    D[0][4] = T(2) * (J.na_x_nb_x * a.e0 + J.na_x_nb_y * a.e3 - J.na_x_nb_z * a.e2);
-    D[0][5] = T(2) * (J.na_x_nb_y * a.e0 - J.na_x_nb_x * a.e3 + J.na_x_nb_z * a.e1);
-    D[0][6] = T(2) * (J.na_x_nb_x * a.e2 - J.na_x_nb_y * a.e1 + J.na_x_nb_z * a.e0);
-    D[0][10] = T(2) * (J.na_x_nb_x * b.e1 + J.na_x_nb_y * b.e2 + J.na_x_nb_z * b.e3);
-    D[0][11] = T(2) * (J.na_x_nb_z * b.e2 - J.na_x_nb_x * b.e0 - J.na_x_nb_y * b.e3);
-    D[0][12] = T(2) * (J.na_x_nb_x * b.e3 - J.na_x_nb_y * b.e0 - J.na_x_nb_z * b.e1);
-    D[0][13] = T(2) * (J.na_x_nb_y * b.e1 - J.na_x_nb_x * b.e2 - J.na_x_nb_z * b.e0);
+    const T D1_1 = J.na_x_nb_x * T(2);
+    const T D1_2 = J.na_x_nb_y * T(2);
+    const T D1_3 = J.na_x_nb_z * T(2);
+    D[0][3] = -D1_1 * a.e1 - D1_2 * a.e2 - D1_3 * a.e3;
+    D[0][4] = D1_1 * a.e0 + D1_2 * a.e3 - D1_3 * a.e2;
+    D[0][5] = D1_2 * a.e0 - D1_1 * a.e3 + D1_3 * a.e1;
+    D[0][6] = D1_1 * a.e2 - D1_2 * a.e1 + D1_3 * a.e0;
+    D[0][10] = D1_1 * b.e1 + D1_2 * b.e2 + D1_3 * b.e3;
+    D[0][11] = D1_3 * b.e2 - D1_1 * b.e0 - D1_2 * b.e3;
+    D[0][12] = D1_1 * b.e3 - D1_2 * b.e0 - D1_3 * b.e1;
+    D[0][13] = D1_2 * b.e1 - D1_1 * b.e2 - D1_3 * b.e0;
   }
 
   // -Jdot v - d/dt(dC/dt): 33 +, 45 *
@@ -355,13 +356,14 @@ struct n1 {
 struct n1::a_immovable : n1 {
   static constexpr int immovable_body = 0;
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = J.na_x_nb_x * (mb.Ixx * J.na_x_nb_x + mb.Ixy * J.na_x_nb_y + mb.Ixz * J.na_x_nb_z) +
-        J.na_x_nb_y * (mb.Ixy * J.na_x_nb_x + mb.Iyy * J.na_x_nb_y + mb.Iyz * J.na_x_nb_z) +
-        J.na_x_nb_z * (mb.Ixz * J.na_x_nb_x + mb.Iyz * J.na_x_nb_y + mb.Izz * J.na_x_nb_z);
+    const T K11_1 = J.na_x_nb_z * T(2);
+    K[0] = mb.Izz * J.na_x_nb_z * J.na_x_nb_z + J.na_x_nb_x *
+        (mb.Ixx * J.na_x_nb_x + mb.Ixy * J.na_x_nb_y * T(2) + K11_1 * mb.Ixz) + J.na_x_nb_y *
+        (mb.Iyy * J.na_x_nb_y + K11_1 * mb.Iyz);
   }
 
   // J v: 3 +, 3 *
@@ -449,13 +451,14 @@ struct n1::a_immovable : n1 {
 struct n1::b_immovable : n1 {
   static constexpr int immovable_body = 1;
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = J.na_x_nb_x * (ma.Ixx * J.na_x_nb_x + ma.Ixy * J.na_x_nb_y + ma.Ixz * J.na_x_nb_z) +
-        J.na_x_nb_y * (ma.Ixy * J.na_x_nb_x + ma.Iyy * J.na_x_nb_y + ma.Iyz * J.na_x_nb_z) +
-        J.na_x_nb_z * (ma.Ixz * J.na_x_nb_x + ma.Iyz * J.na_x_nb_y + ma.Izz * J.na_x_nb_z);
+    const T K11_1 = J.na_x_nb_z * T(2);
+    K[0] = ma.Izz * J.na_x_nb_z * J.na_x_nb_z + J.na_x_nb_x *
+        (ma.Ixx * J.na_x_nb_x + ma.Ixy * J.na_x_nb_y * T(2) + K11_1 * ma.Ixz) + J.na_x_nb_y *
+        (ma.Iyy * J.na_x_nb_y + K11_1 * ma.Iyz);
   }
 
   // J v: 2 +, 3 *

@@ -98,18 +98,19 @@ struct n2 {
     J.rb_x_n_z = n_y * rb_x - n_x * rb_y;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 19 +, 24 *
+  // K = J M^-1 J^T, lower triangle, from J: 15 +, 26 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
-    K[0] = ma.m + mb.m + J.ra_d_x_n_x *
-        (ma.Ixx * J.ra_d_x_n_x + ma.Ixy * J.ra_d_x_n_y + ma.Ixz * J.ra_d_x_n_z) + J.ra_d_x_n_y *
-        (ma.Ixy * J.ra_d_x_n_x + ma.Iyy * J.ra_d_x_n_y + ma.Iyz * J.ra_d_x_n_z) + J.ra_d_x_n_z *
-        (ma.Ixz * J.ra_d_x_n_x + ma.Iyz * J.ra_d_x_n_y + ma.Izz * J.ra_d_x_n_z) + J.rb_x_n_x *
-        (mb.Ixx * J.rb_x_n_x + mb.Ixy * J.rb_x_n_y + mb.Ixz * J.rb_x_n_z) + J.rb_x_n_y *
-        (mb.Ixy * J.rb_x_n_x + mb.Iyy * J.rb_x_n_y + mb.Iyz * J.rb_x_n_z) + J.rb_x_n_z *
-        (mb.Ixz * J.rb_x_n_x + mb.Iyz * J.rb_x_n_y + mb.Izz * J.rb_x_n_z);
+    const T K11_1 = J.ra_d_x_n_z * T(2);
+    const T K11_2 = J.rb_x_n_z * T(2);
+    K[0] = ma.Izz * J.ra_d_x_n_z * J.ra_d_x_n_z + mb.Izz * J.rb_x_n_z * J.rb_x_n_z + J.ra_d_x_n_x *
+        (ma.Ixx * J.ra_d_x_n_x + ma.Ixy * J.ra_d_x_n_y * T(2) + K11_1 * ma.Ixz) + J.ra_d_x_n_y *
+        (ma.Iyy * J.ra_d_x_n_y + K11_1 * ma.Iyz) + J.rb_x_n_x *
+        (mb.Ixx * J.rb_x_n_x + mb.Ixy * J.rb_x_n_y * T(2) + K11_2 * mb.Ixz) + J.rb_x_n_y *
+        (mb.Iyy * J.rb_x_n_y + K11_2 * mb.Iyz) + (J.n_x * J.n_x + J.n_y * J.n_y + J.n_z * J.n_z) *
+        (ma.m + mb.m);
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -291,7 +292,7 @@ struct n2 {
     D[0][11] = J.rb_x_n_x * b.xz + J.rb_x_n_y * b.yz + J.rb_x_n_z * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 19 +, 32 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 20 +, 30 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
     for (auto& row : D) {
@@ -299,20 +300,26 @@ struct n2 {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
+    const T D1_1 = J.ra_d_x_n_x * T(2);
+    const T D1_2 = J.ra_d_x_n_y * T(2);
+    const T D1_3 = J.ra_d_x_n_z * T(2);
+    const T D1_1_2 = T(2) * J.rb_x_n_x;
+    const T D1_2_2 = T(2) * J.rb_x_n_y;
+    const T D1_3_2 = T(2) * J.rb_x_n_z;
     D[0][0] = -J.n_x;
     D[0][1] = -J.n_y;
     D[0][2] = -J.n_z;
-    D[0][3] = T(2) * (J.ra_d_x_n_x * a.e1 + J.ra_d_x_n_y * a.e2 + J.ra_d_x_n_z * a.e3);
-    D[0][4] = T(2) * (J.ra_d_x_n_z * a.e2 - J.ra_d_x_n_x * a.e0 - J.ra_d_x_n_y * a.e3);
-    D[0][5] = T(2) * (J.ra_d_x_n_x * a.e3 - J.ra_d_x_n_y * a.e0 - J.ra_d_x_n_z * a.e1);
-    D[0][6] = T(2) * (J.ra_d_x_n_y * a.e1 - J.ra_d_x_n_x * a.e2 - J.ra_d_x_n_z * a.e0);
+    D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+    D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+    D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+    D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
     D[0][7] = J.n_x;
     D[0][8] = J.n_y;
     D[0][9] = J.n_z;
-    D[0][10] = T(-2) * (J.rb_x_n_x * b.e1 + J.rb_x_n_y * b.e2 + J.rb_x_n_z * b.e3);
-    D[0][11] = T(2) * (J.rb_x_n_x * b.e0 + J.rb_x_n_y * b.e3 - J.rb_x_n_z * b.e2);
-    D[0][12] = T(2) * (J.rb_x_n_y * b.e0 - J.rb_x_n_x * b.e3 + J.rb_x_n_z * b.e1);
-    D[0][13] = T(2) * (J.rb_x_n_x * b.e2 - J.rb_x_n_y * b.e1 + J.rb_x_n_z * b.e0);
+    D[0][10] = -D1_1_2 * b.e1 - D1_2_2 * b.e2 - D1_3_2 * b.e3;
+    D[0][11] = D1_1_2 * b.e0 + D1_2_2 * b.e3 - D1_3_2 * b.e2;
+    D[0][12] = D1_2_2 * b.e0 - D1_1_2 * b.e3 + D1_3_2 * b.e1;
+    D[0][13] = D1_1_2 * b.e2 - D1_2_2 * b.e1 + D1_3_2 * b.e0;
   }
 
   // -Jdot v - d/dt(dC/dt): 56 +, 63 *

@@ -288,7 +288,7 @@ struct p1 {
     D[1][11] = -J.fa_z_x_fb_x_x * b.xz - J.fa_z_x_fb_x_y * b.yz - J.fa_z_x_fb_x_z * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 32 +, 64 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 34 +, 54 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[2][14]) {
     for (auto& row : D) {
@@ -296,22 +296,28 @@ struct p1 {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    D[0][3] = T(-2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
-    D[0][4] = T(2) * (J.fa_y_x_fb_x_x * a.e0 + J.fa_y_x_fb_x_y * a.e3 - J.fa_y_x_fb_x_z * a.e2);
-    D[0][5] = T(2) * (J.fa_y_x_fb_x_y * a.e0 - J.fa_y_x_fb_x_x * a.e3 + J.fa_y_x_fb_x_z * a.e1);
-    D[0][6] = T(2) * (J.fa_y_x_fb_x_x * a.e2 - J.fa_y_x_fb_x_y * a.e1 + J.fa_y_x_fb_x_z * a.e0);
-    D[0][10] = T(2) * (J.fa_y_x_fb_x_x * b.e1 + J.fa_y_x_fb_x_y * b.e2 + J.fa_y_x_fb_x_z * b.e3);
-    D[0][11] = T(2) * (J.fa_y_x_fb_x_z * b.e2 - J.fa_y_x_fb_x_x * b.e0 - J.fa_y_x_fb_x_y * b.e3);
-    D[0][12] = T(2) * (J.fa_y_x_fb_x_x * b.e3 - J.fa_y_x_fb_x_y * b.e0 - J.fa_y_x_fb_x_z * b.e1);
-    D[0][13] = T(2) * (J.fa_y_x_fb_x_y * b.e1 - J.fa_y_x_fb_x_x * b.e2 - J.fa_y_x_fb_x_z * b.e0);
-    D[1][3] = T(-2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
-    D[1][4] = T(2) * (J.fa_z_x_fb_x_x * a.e0 + J.fa_z_x_fb_x_y * a.e3 - J.fa_z_x_fb_x_z * a.e2);
-    D[1][5] = T(2) * (J.fa_z_x_fb_x_y * a.e0 - J.fa_z_x_fb_x_x * a.e3 + J.fa_z_x_fb_x_z * a.e1);
-    D[1][6] = T(2) * (J.fa_z_x_fb_x_x * a.e2 - J.fa_z_x_fb_x_y * a.e1 + J.fa_z_x_fb_x_z * a.e0);
-    D[1][10] = T(2) * (J.fa_z_x_fb_x_x * b.e1 + J.fa_z_x_fb_x_y * b.e2 + J.fa_z_x_fb_x_z * b.e3);
-    D[1][11] = T(2) * (J.fa_z_x_fb_x_z * b.e2 - J.fa_z_x_fb_x_x * b.e0 - J.fa_z_x_fb_x_y * b.e3);
-    D[1][12] = T(2) * (J.fa_z_x_fb_x_x * b.e3 - J.fa_z_x_fb_x_y * b.e0 - J.fa_z_x_fb_x_z * b.e1);
-    D[1][13] = T(2) * (J.fa_z_x_fb_x_y * b.e1 - J.fa_z_x_fb_x_x * b.e2 - J.fa_z_x_fb_x_z * b.e0);
+    const T D1_1 = J.fa_y_x_fb_x_x * T(2);
+    const T D1_2 = J.fa_y_x_fb_x_y * T(2);
+    const T D1_3 = J.fa_y_x_fb_x_z * T(2);
+    const T D2_1 = T(2) * J.fa_z_x_fb_x_x;
+    const T D2_2 = T(2) * J.fa_z_x_fb_x_y;
+    const T D2_3 = T(2) * J.fa_z_x_fb_x_z;
+    D[0][3] = -D1_1 * a.e1 - D1_2 * a.e2 - D1_3 * a.e3;
+    D[0][4] = D1_1 * a.e0 + D1_2 * a.e3 - D1_3 * a.e2;
+    D[0][5] = D1_2 * a.e0 - D1_1 * a.e3 + D1_3 * a.e1;
+    D[0][6] = D1_1 * a.e2 - D1_2 * a.e1 + D1_3 * a.e0;
+    D[0][10] = D1_1 * b.e1 + D1_2 * b.e2 + D1_3 * b.e3;
+    D[0][11] = D1_3 * b.e2 - D1_1 * b.e0 - D1_2 * b.e3;
+    D[0][12] = D1_1 * b.e3 - D1_2 * b.e0 - D1_3 * b.e1;
+    D[0][13] = D1_2 * b.e1 - D1_1 * b.e2 - D1_3 * b.e0;
+    D[1][3] = -D2_1 * a.e1 - D2_2 * a.e2 - D2_3 * a.e3;
+    D[1][4] = D2_1 * a.e0 + D2_2 * a.e3 - D2_3 * a.e2;
+    D[1][5] = D2_2 * a.e0 - D2_1 * a.e3 + D2_3 * a.e1;
+    D[1][6] = D2_1 * a.e2 - D2_2 * a.e1 + D2_3 * a.e0;
+    D[1][10] = D2_1 * b.e1 + D2_2 * b.e2 + D2_3 * b.e3;
+    D[1][11] = D2_3 * b.e2 - D2_1 * b.e0 - D2_2 * b.e3;
+    D[1][12] = D2_1 * b.e3 - D2_2 * b.e0 - D2_3 * b.e1;
+    D[1][13] = D2_2 * b.e1 - D2_1 * b.e2 - D2_3 * b.e0;
   }
 
   // -Jdot v - d/dt(dC/dt): 54 +, 75 *

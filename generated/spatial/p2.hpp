@@ -402,7 +402,7 @@ struct p2 {
     D[1][11] = J.rb_x_fa_z_x * b.xz + J.rb_x_fa_z_y * b.yz + J.rb_x_fa_z_z * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 38 +, 64 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 40 +, 56 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[2][14]) {
     for (auto& row : D) {
@@ -410,34 +410,42 @@ struct p2 {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
+    const T D1_1 = a.e1 * T(2);
+    const T D1_2 = a.e2 * T(2);
+    const T D1_3 = a.e3 * T(2);
+    const T D1_1_2 = T(2) * a.e0;
+    const T D1_1_3 = T(2) * b.e1;
+    const T D1_2_2 = T(2) * b.e2;
+    const T D1_3_2 = T(2) * b.e3;
+    const T D1_1_4 = T(2) * b.e0;
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
-    D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
-    D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
-    D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
+    D[0][3] = D1_1 * J.ra_d_x_fa_y_x + D1_2 * J.ra_d_x_fa_y_y + D1_3 * J.ra_d_x_fa_y_z;
+    D[0][4] = D1_2 * J.ra_d_x_fa_y_z - D1_1_2 * J.ra_d_x_fa_y_x - D1_3 * J.ra_d_x_fa_y_y;
+    D[0][5] = D1_3 * J.ra_d_x_fa_y_x - D1_1_2 * J.ra_d_x_fa_y_y - D1_1 * J.ra_d_x_fa_y_z;
+    D[0][6] = D1_1 * J.ra_d_x_fa_y_y - D1_2 * J.ra_d_x_fa_y_x - D1_1_2 * J.ra_d_x_fa_y_z;
     D[0][7] = J.fa_y_x;
     D[0][8] = J.fa_y_y;
     D[0][9] = J.fa_y_z;
-    D[0][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
-    D[0][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
-    D[0][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
-    D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
+    D[0][10] = -D1_1_3 * J.rb_x_fa_y_x - D1_2_2 * J.rb_x_fa_y_y - D1_3_2 * J.rb_x_fa_y_z;
+    D[0][11] = D1_1_4 * J.rb_x_fa_y_x + D1_3_2 * J.rb_x_fa_y_y - D1_2_2 * J.rb_x_fa_y_z;
+    D[0][12] = D1_1_4 * J.rb_x_fa_y_y - D1_3_2 * J.rb_x_fa_y_x + D1_1_3 * J.rb_x_fa_y_z;
+    D[0][13] = D1_2_2 * J.rb_x_fa_y_x - D1_1_3 * J.rb_x_fa_y_y + D1_1_4 * J.rb_x_fa_y_z;
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
-    D[1][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
-    D[1][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
-    D[1][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
+    D[1][3] = D1_1 * J.ra_d_x_fa_z_x + D1_2 * J.ra_d_x_fa_z_y + D1_3 * J.ra_d_x_fa_z_z;
+    D[1][4] = D1_2 * J.ra_d_x_fa_z_z - D1_1_2 * J.ra_d_x_fa_z_x - D1_3 * J.ra_d_x_fa_z_y;
+    D[1][5] = D1_3 * J.ra_d_x_fa_z_x - D1_1_2 * J.ra_d_x_fa_z_y - D1_1 * J.ra_d_x_fa_z_z;
+    D[1][6] = D1_1 * J.ra_d_x_fa_z_y - D1_2 * J.ra_d_x_fa_z_x - D1_1_2 * J.ra_d_x_fa_z_z;
     D[1][7] = J.fa_z_x;
     D[1][8] = J.fa_z_y;
     D[1][9] = J.fa_z_z;
-    D[1][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
-    D[1][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
-    D[1][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
-    D[1][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
+    D[1][10] = -D1_1_3 * J.rb_x_fa_z_x - D1_2_2 * J.rb_x_fa_z_y - D1_3_2 * J.rb_x_fa_z_z;
+    D[1][11] = D1_1_4 * J.rb_x_fa_z_x + D1_3_2 * J.rb_x_fa_z_y - D1_2_2 * J.rb_x_fa_z_z;
+    D[1][12] = D1_1_4 * J.rb_x_fa_z_y - D1_3_2 * J.rb_x_fa_z_x + D1_1_3 * J.rb_x_fa_z_z;
+    D[1][13] = D1_2_2 * J.rb_x_fa_z_x - D1_1_3 * J.rb_x_fa_z_y + D1_1_4 * J.rb_x_fa_z_z;
   }
 
   // -Jdot v - d/dt(dC/dt): 85 +, 104 *

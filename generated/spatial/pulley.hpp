@@ -330,7 +330,7 @@ struct pulley {
     D[0][11] = D1_1 * b.xz + D1_2 * b.yz + D1_3 * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 38 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 18 +, 34 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
     for (auto& row : D) {
@@ -338,23 +338,27 @@ struct pulley {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T D1_1 = J.ratio * J.rb_x_nb_x;
-    const T D1_2 = J.ratio * J.rb_x_nb_y;
-    const T D1_3 = J.ratio * J.rb_x_nb_z;
+    const T D1_1 = J.ra_x_na_x * T(2);
+    const T D1_2 = J.ra_x_na_y * T(2);
+    const T D1_3 = J.ra_x_na_z * T(2);
+    const T D1_1_2 = T(2) * J.ratio;
+    const T D1_2_2 = J.rb_x_nb_x * D1_1_2;
+    const T D1_3_2 = J.rb_x_nb_y * D1_1_2;
+    const T D1_4 = J.rb_x_nb_z * D1_1_2;
     D[0][0] = J.na_x;
     D[0][1] = J.na_y;
     D[0][2] = J.na_z;
-    D[0][3] = T(-2) * (J.ra_x_na_x * a.e1 + J.ra_x_na_y * a.e2 + J.ra_x_na_z * a.e3);
-    D[0][4] = T(2) * (J.ra_x_na_x * a.e0 + J.ra_x_na_y * a.e3 - J.ra_x_na_z * a.e2);
-    D[0][5] = T(2) * (J.ra_x_na_y * a.e0 - J.ra_x_na_x * a.e3 + J.ra_x_na_z * a.e1);
-    D[0][6] = T(2) * (J.ra_x_na_x * a.e2 - J.ra_x_na_y * a.e1 + J.ra_x_na_z * a.e0);
+    D[0][3] = -D1_1 * a.e1 - D1_2 * a.e2 - D1_3 * a.e3;
+    D[0][4] = D1_1 * a.e0 + D1_2 * a.e3 - D1_3 * a.e2;
+    D[0][5] = D1_2 * a.e0 - D1_1 * a.e3 + D1_3 * a.e1;
+    D[0][6] = D1_1 * a.e2 - D1_2 * a.e1 + D1_3 * a.e0;
     D[0][7] = J.nb_x * J.ratio;
     D[0][8] = J.nb_y * J.ratio;
     D[0][9] = J.nb_z * J.ratio;
-    D[0][10] = T(-2) * (D1_1 * b.e1 + D1_2 * b.e2 + D1_3 * b.e3);
-    D[0][11] = T(2) * (D1_1 * b.e0 + D1_2 * b.e3 - D1_3 * b.e2);
-    D[0][12] = T(2) * (D1_2 * b.e0 - D1_1 * b.e3 + D1_3 * b.e1);
-    D[0][13] = T(2) * (D1_1 * b.e2 - D1_2 * b.e1 + D1_3 * b.e0);
+    D[0][10] = -D1_2_2 * b.e1 - D1_3_2 * b.e2 - D1_4 * b.e3;
+    D[0][11] = D1_2_2 * b.e0 + D1_3_2 * b.e3 - D1_4 * b.e2;
+    D[0][12] = D1_3_2 * b.e0 - D1_2_2 * b.e3 + D1_4 * b.e1;
+    D[0][13] = D1_2_2 * b.e2 - D1_3_2 * b.e1 + D1_4 * b.e0;
   }
 
   // -Jdot v - d/dt(dC/dt): 68 +, 81 *, 2 /, 2 sqrt, 8 <

@@ -131,18 +131,18 @@ struct rack_and_pinion {
     J.wb_z = vb_x_1 * rb_x_e_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 20 +, 28 *
+  // K = J M^-1 J^T, lower triangle, from J: 14 +, 26 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
-    K[0] = J.turned_x_fa_z_x * (ma.Ixx * J.turned_x_fa_z_x + ma.Ixy * J.turned_x_fa_z_y + ma.Ixz *
-        J.turned_x_fa_z_z) + J.turned_x_fa_z_y *
-        (ma.Ixy * J.turned_x_fa_z_x + ma.Iyy * J.turned_x_fa_z_y + ma.Iyz * J.turned_x_fa_z_z) +
-        J.turned_x_fa_z_z * (ma.Ixz * J.turned_x_fa_z_x + ma.Iyz * J.turned_x_fa_z_y + ma.Izz *
-        J.turned_x_fa_z_z) + J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) +
-        J.wb_y * (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z) + mb.m *
+    const T K11_1 = J.turned_x_fa_z_z * T(2);
+    const T K11_2 = J.wb_z * T(2);
+    K[0] = ma.Izz * J.turned_x_fa_z_z * J.turned_x_fa_z_z + mb.Izz * J.wb_z * J.wb_z +
+        J.turned_x_fa_z_x * (ma.Ixx * J.turned_x_fa_z_x + ma.Ixy * J.turned_x_fa_z_y * T(2) +
+        K11_1 * ma.Ixz) + J.turned_x_fa_z_y * (ma.Iyy * J.turned_x_fa_z_y + K11_1 * ma.Iyz) +
+        J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
+        (mb.Iyy * J.wb_y + K11_2 * mb.Iyz) + mb.m *
         (J.vb_x * J.vb_x + J.vb_y * J.vb_y + J.vb_z * J.vb_z);
   }
 
@@ -304,7 +304,7 @@ struct rack_and_pinion {
     D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 30 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
     for (auto& row : D) {
@@ -312,21 +312,23 @@ struct rack_and_pinion {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    D[0][3] = T(2) * (J.turned_x_fa_z_x * a.e1 + J.turned_x_fa_z_y * a.e2 + J.turned_x_fa_z_z *
-        a.e3);
-    D[0][4] = T(2) * (J.turned_x_fa_z_z * a.e2 - J.turned_x_fa_z_x * a.e0 - J.turned_x_fa_z_y *
-        a.e3);
-    D[0][5] = T(2) * (J.turned_x_fa_z_x * a.e3 - J.turned_x_fa_z_y * a.e0 - J.turned_x_fa_z_z *
-        a.e1);
-    D[0][6] = T(2) * (J.turned_x_fa_z_y * a.e1 - J.turned_x_fa_z_x * a.e2 - J.turned_x_fa_z_z *
-        a.e0);
+    const T D1_1 = J.turned_x_fa_z_x * T(2);
+    const T D1_2 = J.turned_x_fa_z_y * T(2);
+    const T D1_3 = J.turned_x_fa_z_z * T(2);
+    const T D1_1_2 = T(2) * J.wb_x;
+    const T D1_2_2 = T(2) * J.wb_y;
+    const T D1_3_2 = T(2) * J.wb_z;
+    D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+    D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+    D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+    D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
     D[0][7] = J.vb_x;
     D[0][8] = J.vb_y;
     D[0][9] = J.vb_z;
-    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-    D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-    D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-    D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+    D[0][10] = -D1_1_2 * b.e1 - D1_2_2 * b.e2 - D1_3_2 * b.e3;
+    D[0][11] = D1_1_2 * b.e0 + D1_2_2 * b.e3 - D1_3_2 * b.e2;
+    D[0][12] = D1_2_2 * b.e0 - D1_1_2 * b.e3 + D1_3_2 * b.e1;
+    D[0][13] = D1_1_2 * b.e2 - D1_2_2 * b.e1 + D1_3_2 * b.e0;
   }
 
   // -Jdot v - d/dt(dC/dt): 59 +, 88 *, 1 /, 1 <, 2 call
@@ -936,13 +938,14 @@ struct rack_and_pinion::a_immovable : rack_and_pinion {
     J.wb_z = vb_x_1 * rb_x_e_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 11 +, 16 *
+  // K = J M^-1 J^T, lower triangle, from J: 8 +, 15 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z) + mb.m *
+    const T K11_1 = J.wb_z * T(2);
+    K[0] = mb.Izz * J.wb_z * J.wb_z + J.wb_x *
+        (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_1 * mb.Ixz) + J.wb_y *
+        (mb.Iyy * J.wb_y + K11_1 * mb.Iyz) + mb.m *
         (J.vb_x * J.vb_x + J.vb_y * J.vb_y + J.vb_z * J.vb_z);
   }
 
@@ -1084,15 +1087,14 @@ struct rack_and_pinion::b_immovable : rack_and_pinion {
     J.turned_x_fa_z_z = fa_z_y * turned_x - fa_z_x * turned_y;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = J.turned_x_fa_z_x * (ma.Ixx * J.turned_x_fa_z_x + ma.Ixy * J.turned_x_fa_z_y + ma.Ixz *
-        J.turned_x_fa_z_z) + J.turned_x_fa_z_y *
-        (ma.Ixy * J.turned_x_fa_z_x + ma.Iyy * J.turned_x_fa_z_y + ma.Iyz * J.turned_x_fa_z_z) +
-        J.turned_x_fa_z_z * (ma.Ixz * J.turned_x_fa_z_x + ma.Iyz * J.turned_x_fa_z_y + ma.Izz *
-        J.turned_x_fa_z_z);
+    const T K11_1 = J.turned_x_fa_z_z * T(2);
+    K[0] = ma.Izz * J.turned_x_fa_z_z * J.turned_x_fa_z_z + J.turned_x_fa_z_x *
+        (ma.Ixx * J.turned_x_fa_z_x + ma.Ixy * J.turned_x_fa_z_y * T(2) + K11_1 * ma.Ixz) +
+        J.turned_x_fa_z_y * (ma.Iyy * J.turned_x_fa_z_y + K11_1 * ma.Iyz);
   }
 
   // J v: 3 +, 3 *

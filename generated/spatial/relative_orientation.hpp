@@ -431,7 +431,7 @@ struct relative_orientation {
     D[2][11] = J.wb_3_x * b.xz + J.wb_3_y * b.yz + J.wb_3_z * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 48 +, 96 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 54 +, 80 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][14]) {
     for (auto& row : D) {
@@ -439,30 +439,38 @@ struct relative_orientation {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    D[0][3] = T(-2) * (J.wa_1_x * a.e1 + J.wa_1_y * a.e2 + J.wa_1_z * a.e3);
-    D[0][4] = T(2) * (J.wa_1_x * a.e0 + J.wa_1_y * a.e3 - J.wa_1_z * a.e2);
-    D[0][5] = T(2) * (J.wa_1_y * a.e0 - J.wa_1_x * a.e3 + J.wa_1_z * a.e1);
-    D[0][6] = T(2) * (J.wa_1_x * a.e2 - J.wa_1_y * a.e1 + J.wa_1_z * a.e0);
-    D[0][10] = T(-2) * (J.wb_1_x * b.e1 + J.wb_1_y * b.e2 + J.wb_1_z * b.e3);
-    D[0][11] = T(2) * (J.wb_1_x * b.e0 + J.wb_1_y * b.e3 - J.wb_1_z * b.e2);
-    D[0][12] = T(2) * (J.wb_1_y * b.e0 - J.wb_1_x * b.e3 + J.wb_1_z * b.e1);
-    D[0][13] = T(2) * (J.wb_1_x * b.e2 - J.wb_1_y * b.e1 + J.wb_1_z * b.e0);
-    D[1][3] = T(-2) * (J.wa_2_x * a.e1 + J.wa_2_y * a.e2 + J.wa_2_z * a.e3);
-    D[1][4] = T(2) * (J.wa_2_x * a.e0 + J.wa_2_y * a.e3 - J.wa_2_z * a.e2);
-    D[1][5] = T(2) * (J.wa_2_y * a.e0 - J.wa_2_x * a.e3 + J.wa_2_z * a.e1);
-    D[1][6] = T(2) * (J.wa_2_x * a.e2 - J.wa_2_y * a.e1 + J.wa_2_z * a.e0);
-    D[1][10] = T(-2) * (J.wb_2_x * b.e1 + J.wb_2_y * b.e2 + J.wb_2_z * b.e3);
-    D[1][11] = T(2) * (J.wb_2_x * b.e0 + J.wb_2_y * b.e3 - J.wb_2_z * b.e2);
-    D[1][12] = T(2) * (J.wb_2_y * b.e0 - J.wb_2_x * b.e3 + J.wb_2_z * b.e1);
-    D[1][13] = T(2) * (J.wb_2_x * b.e2 - J.wb_2_y * b.e1 + J.wb_2_z * b.e0);
-    D[2][3] = T(-2) * (J.wa_3_x * a.e1 + J.wa_3_y * a.e2 + J.wa_3_z * a.e3);
-    D[2][4] = T(2) * (J.wa_3_x * a.e0 + J.wa_3_y * a.e3 - J.wa_3_z * a.e2);
-    D[2][5] = T(2) * (J.wa_3_y * a.e0 - J.wa_3_x * a.e3 + J.wa_3_z * a.e1);
-    D[2][6] = T(2) * (J.wa_3_x * a.e2 - J.wa_3_y * a.e1 + J.wa_3_z * a.e0);
-    D[2][10] = T(-2) * (J.wb_3_x * b.e1 + J.wb_3_y * b.e2 + J.wb_3_z * b.e3);
-    D[2][11] = T(2) * (J.wb_3_x * b.e0 + J.wb_3_y * b.e3 - J.wb_3_z * b.e2);
-    D[2][12] = T(2) * (J.wb_3_y * b.e0 - J.wb_3_x * b.e3 + J.wb_3_z * b.e1);
-    D[2][13] = T(2) * (J.wb_3_x * b.e2 - J.wb_3_y * b.e1 + J.wb_3_z * b.e0);
+    const T D1_1 = a.e1 * T(2);
+    const T D1_2 = a.e2 * T(2);
+    const T D1_3 = a.e3 * T(2);
+    const T D1_1_2 = T(2) * a.e0;
+    const T D1_1_3 = T(2) * b.e1;
+    const T D1_2_2 = T(2) * b.e2;
+    const T D1_3_2 = T(2) * b.e3;
+    const T D1_1_4 = T(2) * b.e0;
+    D[0][3] = -D1_1 * J.wa_1_x - D1_2 * J.wa_1_y - D1_3 * J.wa_1_z;
+    D[0][4] = D1_1_2 * J.wa_1_x + D1_3 * J.wa_1_y - D1_2 * J.wa_1_z;
+    D[0][5] = D1_1_2 * J.wa_1_y - D1_3 * J.wa_1_x + D1_1 * J.wa_1_z;
+    D[0][6] = D1_2 * J.wa_1_x - D1_1 * J.wa_1_y + D1_1_2 * J.wa_1_z;
+    D[0][10] = -D1_1_3 * J.wb_1_x - D1_2_2 * J.wb_1_y - D1_3_2 * J.wb_1_z;
+    D[0][11] = D1_1_4 * J.wb_1_x + D1_3_2 * J.wb_1_y - D1_2_2 * J.wb_1_z;
+    D[0][12] = D1_1_4 * J.wb_1_y - D1_3_2 * J.wb_1_x + D1_1_3 * J.wb_1_z;
+    D[0][13] = D1_2_2 * J.wb_1_x - D1_1_3 * J.wb_1_y + D1_1_4 * J.wb_1_z;
+    D[1][3] = -D1_1 * J.wa_2_x - D1_2 * J.wa_2_y - D1_3 * J.wa_2_z;
+    D[1][4] = D1_1_2 * J.wa_2_x + D1_3 * J.wa_2_y - D1_2 * J.wa_2_z;
+    D[1][5] = D1_1_2 * J.wa_2_y - D1_3 * J.wa_2_x + D1_1 * J.wa_2_z;
+    D[1][6] = D1_2 * J.wa_2_x - D1_1 * J.wa_2_y + D1_1_2 * J.wa_2_z;
+    D[1][10] = -D1_1_3 * J.wb_2_x - D1_2_2 * J.wb_2_y - D1_3_2 * J.wb_2_z;
+    D[1][11] = D1_1_4 * J.wb_2_x + D1_3_2 * J.wb_2_y - D1_2_2 * J.wb_2_z;
+    D[1][12] = D1_1_4 * J.wb_2_y - D1_3_2 * J.wb_2_x + D1_1_3 * J.wb_2_z;
+    D[1][13] = D1_2_2 * J.wb_2_x - D1_1_3 * J.wb_2_y + D1_1_4 * J.wb_2_z;
+    D[2][3] = -D1_1 * J.wa_3_x - D1_2 * J.wa_3_y - D1_3 * J.wa_3_z;
+    D[2][4] = D1_1_2 * J.wa_3_x + D1_3 * J.wa_3_y - D1_2 * J.wa_3_z;
+    D[2][5] = D1_1_2 * J.wa_3_y - D1_3 * J.wa_3_x + D1_1 * J.wa_3_z;
+    D[2][6] = D1_2 * J.wa_3_x - D1_1 * J.wa_3_y + D1_1_2 * J.wa_3_z;
+    D[2][10] = -D1_1_3 * J.wb_3_x - D1_2_2 * J.wb_3_y - D1_3_2 * J.wb_3_z;
+    D[2][11] = D1_1_4 * J.wb_3_x + D1_3_2 * J.wb_3_y - D1_2_2 * J.wb_3_z;
+    D[2][12] = D1_1_4 * J.wb_3_y - D1_3_2 * J.wb_3_x + D1_1_3 * J.wb_3_z;
+    D[2][13] = D1_2_2 * J.wb_3_x - D1_1_3 * J.wb_3_y + D1_1_4 * J.wb_3_z;
   }
 
   // -Jdot v - d/dt(dC/dt): 117 +, 162 *

@@ -610,7 +610,7 @@ struct rolling_disc {
     D[2][11] = -D3_1 * b.xz - D3_2 * b.yz - D3_3 * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 57 +, 100 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 58 +, 81 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][14]) {
     for (auto& row : D) {
@@ -618,67 +618,72 @@ struct rolling_disc {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T D1_1 = J.radius * b.e1;
-    const T D1_2 = J.radius * b.e2;
-    const T D1_3 = J.radius * b.e3;
-    const T D1_1_2 = J.radius * b.e0;
+    const T D1_1 = a.e1 * T(2);
+    const T D1_2 = a.e2 * T(2);
+    const T D1_3 = a.e3 * T(2);
+    const T D1_1_2 = T(2) * a.e0;
+    const T D1_1_3 = T(2) * J.radius;
+    const T D1_2_2 = b.e1 * D1_1_3;
+    const T D1_3_2 = b.e2 * D1_1_3;
+    const T D1_4 = b.e3 * D1_1_3;
+    const T D1_1_4 = D1_1_3 * b.e0;
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = T(-2) * (J.wa_1_x * a.e1 + J.wa_1_y * a.e2 + J.wa_1_z * a.e3);
-    D[0][4] = T(2) * (J.wa_1_x * a.e0 + J.wa_1_y * a.e3 - J.wa_1_z * a.e2);
-    D[0][5] = T(2) * (J.wa_1_y * a.e0 - J.wa_1_x * a.e3 + J.wa_1_z * a.e1);
-    D[0][6] = T(2) * (J.wa_1_x * a.e2 - J.wa_1_y * a.e1 + J.wa_1_z * a.e0);
+    D[0][3] = -D1_1 * J.wa_1_x - D1_2 * J.wa_1_y - D1_3 * J.wa_1_z;
+    D[0][4] = D1_1_2 * J.wa_1_x + D1_3 * J.wa_1_y - D1_2 * J.wa_1_z;
+    D[0][5] = D1_1_2 * J.wa_1_y - D1_3 * J.wa_1_x + D1_1 * J.wa_1_z;
+    D[0][6] = D1_2 * J.wa_1_x - D1_1 * J.wa_1_y + D1_1_2 * J.wa_1_z;
     D[0][7] = J.fa_x_x;
     D[0][8] = J.fa_x_y;
     D[0][9] = J.fa_x_z;
-    D[0][10] = T(2) * (D1_1 * J.fa_x_x_dir_m_x_k_x + D1_2 * J.fa_x_x_dir_m_x_k_y + D1_3 *
-        J.fa_x_x_dir_m_x_k_z);
-    D[0][11] = T(2) * (D1_2 * J.fa_x_x_dir_m_x_k_z - D1_1_2 * J.fa_x_x_dir_m_x_k_x - D1_3 *
-        J.fa_x_x_dir_m_x_k_y);
-    D[0][12] = T(2) * (D1_3 * J.fa_x_x_dir_m_x_k_x - D1_1_2 * J.fa_x_x_dir_m_x_k_y - D1_1 *
-        J.fa_x_x_dir_m_x_k_z);
-    D[0][13] = T(2) * (D1_1 * J.fa_x_x_dir_m_x_k_y - D1_2 * J.fa_x_x_dir_m_x_k_x - D1_1_2 *
-        J.fa_x_x_dir_m_x_k_z);
+    D[0][10] = D1_2_2 * J.fa_x_x_dir_m_x_k_x + D1_3_2 * J.fa_x_x_dir_m_x_k_y + D1_4 *
+        J.fa_x_x_dir_m_x_k_z;
+    D[0][11] = D1_3_2 * J.fa_x_x_dir_m_x_k_z - D1_1_4 * J.fa_x_x_dir_m_x_k_x - D1_4 *
+        J.fa_x_x_dir_m_x_k_y;
+    D[0][12] = D1_4 * J.fa_x_x_dir_m_x_k_x - D1_1_4 * J.fa_x_x_dir_m_x_k_y - D1_2_2 *
+        J.fa_x_x_dir_m_x_k_z;
+    D[0][13] = D1_2_2 * J.fa_x_x_dir_m_x_k_y - D1_3_2 * J.fa_x_x_dir_m_x_k_x - D1_1_4 *
+        J.fa_x_x_dir_m_x_k_z;
     D[1][0] = -J.fa_y_x;
     D[1][1] = -J.fa_y_y;
     D[1][2] = -J.fa_y_z;
-    D[1][3] = T(2) * (J.arm_a_x_fa_y_x * a.e1 + J.arm_a_x_fa_y_y * a.e2 + J.arm_a_x_fa_y_z * a.e3);
-    D[1][4] = T(2) * (J.arm_a_x_fa_y_z * a.e2 - J.arm_a_x_fa_y_x * a.e0 - J.arm_a_x_fa_y_y * a.e3);
-    D[1][5] = T(2) * (J.arm_a_x_fa_y_x * a.e3 - J.arm_a_x_fa_y_y * a.e0 - J.arm_a_x_fa_y_z * a.e1);
-    D[1][6] = T(2) * (J.arm_a_x_fa_y_y * a.e1 - J.arm_a_x_fa_y_x * a.e2 - J.arm_a_x_fa_y_z * a.e0);
+    D[1][3] = D1_1 * J.arm_a_x_fa_y_x + D1_2 * J.arm_a_x_fa_y_y + D1_3 * J.arm_a_x_fa_y_z;
+    D[1][4] = D1_2 * J.arm_a_x_fa_y_z - D1_1_2 * J.arm_a_x_fa_y_x - D1_3 * J.arm_a_x_fa_y_y;
+    D[1][5] = D1_3 * J.arm_a_x_fa_y_x - D1_1_2 * J.arm_a_x_fa_y_y - D1_1 * J.arm_a_x_fa_y_z;
+    D[1][6] = D1_1 * J.arm_a_x_fa_y_y - D1_2 * J.arm_a_x_fa_y_x - D1_1_2 * J.arm_a_x_fa_y_z;
     D[1][7] = J.fa_y_x;
     D[1][8] = J.fa_y_y;
     D[1][9] = J.fa_y_z;
-    D[1][10] = T(2) * (D1_1 * J.k_x_dir_m_x_fa_y_x + D1_2 * J.k_x_dir_m_x_fa_y_y + D1_3 *
-        J.k_x_dir_m_x_fa_y_z);
-    D[1][11] = T(2) * (D1_2 * J.k_x_dir_m_x_fa_y_z - D1_1_2 * J.k_x_dir_m_x_fa_y_x - D1_3 *
-        J.k_x_dir_m_x_fa_y_y);
-    D[1][12] = T(2) * (D1_3 * J.k_x_dir_m_x_fa_y_x - D1_1_2 * J.k_x_dir_m_x_fa_y_y - D1_1 *
-        J.k_x_dir_m_x_fa_y_z);
-    D[1][13] = T(2) * (D1_1 * J.k_x_dir_m_x_fa_y_y - D1_2 * J.k_x_dir_m_x_fa_y_x - D1_1_2 *
-        J.k_x_dir_m_x_fa_y_z);
+    D[1][10] = D1_2_2 * J.k_x_dir_m_x_fa_y_x + D1_3_2 * J.k_x_dir_m_x_fa_y_y + D1_4 *
+        J.k_x_dir_m_x_fa_y_z;
+    D[1][11] = D1_3_2 * J.k_x_dir_m_x_fa_y_z - D1_1_4 * J.k_x_dir_m_x_fa_y_x - D1_4 *
+        J.k_x_dir_m_x_fa_y_y;
+    D[1][12] = D1_4 * J.k_x_dir_m_x_fa_y_x - D1_1_4 * J.k_x_dir_m_x_fa_y_y - D1_2_2 *
+        J.k_x_dir_m_x_fa_y_z;
+    D[1][13] = D1_2_2 * J.k_x_dir_m_x_fa_y_y - D1_3_2 * J.k_x_dir_m_x_fa_y_x - D1_1_4 *
+        J.k_x_dir_m_x_fa_y_z;
     D[2][0] = -J.fa_z_x;
     D[2][1] = -J.fa_z_y;
     D[2][2] = -J.fa_z_z;
-    D[2][3] = T(2) * (J.arm_a_x_fa_z_x * a.e1 + J.arm_a_x_fa_z_y * a.e2 + J.arm_a_x_fa_z_z * a.e3);
-    D[2][4] = T(2) * (J.arm_a_x_fa_z_z * a.e2 - J.arm_a_x_fa_z_x * a.e0 - J.arm_a_x_fa_z_y * a.e3);
-    D[2][5] = T(2) * (J.arm_a_x_fa_z_x * a.e3 - J.arm_a_x_fa_z_y * a.e0 - J.arm_a_x_fa_z_z * a.e1);
-    D[2][6] = T(2) * (J.arm_a_x_fa_z_y * a.e1 - J.arm_a_x_fa_z_x * a.e2 - J.arm_a_x_fa_z_z * a.e0);
+    D[2][3] = D1_1 * J.arm_a_x_fa_z_x + D1_2 * J.arm_a_x_fa_z_y + D1_3 * J.arm_a_x_fa_z_z;
+    D[2][4] = D1_2 * J.arm_a_x_fa_z_z - D1_1_2 * J.arm_a_x_fa_z_x - D1_3 * J.arm_a_x_fa_z_y;
+    D[2][5] = D1_3 * J.arm_a_x_fa_z_x - D1_1_2 * J.arm_a_x_fa_z_y - D1_1 * J.arm_a_x_fa_z_z;
+    D[2][6] = D1_1 * J.arm_a_x_fa_z_y - D1_2 * J.arm_a_x_fa_z_x - D1_1_2 * J.arm_a_x_fa_z_z;
     D[2][7] = J.fa_z_x;
     D[2][8] = J.fa_z_y;
     D[2][9] = J.fa_z_z;
-    D[2][10] = T(2) * (D1_1 * J.k_x_dir_m_x_fa_z_x + D1_2 * J.k_x_dir_m_x_fa_z_y + D1_3 *
-        J.k_x_dir_m_x_fa_z_z);
-    D[2][11] = T(2) * (D1_2 * J.k_x_dir_m_x_fa_z_z - D1_1_2 * J.k_x_dir_m_x_fa_z_x - D1_3 *
-        J.k_x_dir_m_x_fa_z_y);
-    D[2][12] = T(2) * (D1_3 * J.k_x_dir_m_x_fa_z_x - D1_1_2 * J.k_x_dir_m_x_fa_z_y - D1_1 *
-        J.k_x_dir_m_x_fa_z_z);
-    D[2][13] = T(2) * (D1_1 * J.k_x_dir_m_x_fa_z_y - D1_2 * J.k_x_dir_m_x_fa_z_x - D1_1_2 *
-        J.k_x_dir_m_x_fa_z_z);
+    D[2][10] = D1_2_2 * J.k_x_dir_m_x_fa_z_x + D1_3_2 * J.k_x_dir_m_x_fa_z_y + D1_4 *
+        J.k_x_dir_m_x_fa_z_z;
+    D[2][11] = D1_3_2 * J.k_x_dir_m_x_fa_z_z - D1_1_4 * J.k_x_dir_m_x_fa_z_x - D1_4 *
+        J.k_x_dir_m_x_fa_z_y;
+    D[2][12] = D1_4 * J.k_x_dir_m_x_fa_z_x - D1_1_4 * J.k_x_dir_m_x_fa_z_y - D1_2_2 *
+        J.k_x_dir_m_x_fa_z_z;
+    D[2][13] = D1_2_2 * J.k_x_dir_m_x_fa_z_y - D1_3_2 * J.k_x_dir_m_x_fa_z_x - D1_1_4 *
+        J.k_x_dir_m_x_fa_z_z;
   }
 
-  // -Jdot v - d/dt(dC/dt): 172 +, 231 *, 1 /, 1 sqrt, 4 <
+  // -Jdot v - d/dt(dC/dt): 172 +, 228 *, 1 /, 1 sqrt, 4 <
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[3]) {
@@ -733,8 +738,8 @@ struct rolling_disc {
     const T w_b_x_w_b_x_k_x_fa_x_z = fa_x_y * w_b_x_w_b_x_k_x - fa_x_x * w_b_x_w_b_x_k_y;
     const T w_a_x_w_a_x_fa_x_x_k_z = k_y * w_a_x_w_a_x_fa_x_x - k_x * w_a_x_w_a_x_fa_x_y;
     const T w_a_x_fa_x_x_w_b_x_k_z = w_a_x_fa_x_x * w_b_x_k_y - w_a_x_fa_x_y * w_b_x_k_x;
-    const T m_dot_dot_z = w_a_x_w_a_x_fa_x_x_k_z - w_b_x_w_b_x_k_x_fa_x_z + T(2) *
-        w_a_x_fa_x_x_w_b_x_k_z;
+    const T m_dot_dot_z = w_a_x_w_a_x_fa_x_x_k_z - w_b_x_w_b_x_k_x_fa_x_z +
+        w_a_x_fa_x_x_w_b_x_k_z * T(2);
     const T m_z = fa_x_x * k_y - fa_x_y * k_x;
     const T m_x = fa_x_y * k_z - fa_x_z * k_y;
     const T m_y = fa_x_z * k_x - fa_x_x * k_z;
@@ -748,10 +753,10 @@ struct rolling_disc {
     const T w_a_x_w_a_x_fa_x_x_k_y = k_x * w_a_x_w_a_x_fa_x_z - k_z * w_a_x_w_a_x_fa_x_x;
     const T w_a_x_fa_x_x_w_b_x_k_x = w_a_x_fa_x_y * w_b_x_k_z - w_a_x_fa_x_z * w_b_x_k_y;
     const T w_a_x_fa_x_x_w_b_x_k_y = w_a_x_fa_x_z * w_b_x_k_x - w_a_x_fa_x_x * w_b_x_k_z;
-    const T m_dot_dot_x = w_a_x_w_a_x_fa_x_x_k_x - w_b_x_w_b_x_k_x_fa_x_x + T(2) *
-        w_a_x_fa_x_x_w_b_x_k_x;
-    const T m_dot_dot_y = w_a_x_w_a_x_fa_x_x_k_y - w_b_x_w_b_x_k_x_fa_x_y + T(2) *
-        w_a_x_fa_x_x_w_b_x_k_y;
+    const T m_dot_dot_x = w_a_x_w_a_x_fa_x_x_k_x - w_b_x_w_b_x_k_x_fa_x_x +
+        w_a_x_fa_x_x_w_b_x_k_x * T(2);
+    const T m_dot_dot_y = w_a_x_w_a_x_fa_x_x_k_y - w_b_x_w_b_x_k_x_fa_x_y +
+        w_a_x_fa_x_x_w_b_x_k_y * T(2);
     const T dir_m_x = select(m_len > smallest<T>(), m_x * inv_m_len, T(1));
     const T dir_m_y = select(m_len > smallest<T>(), m_y * inv_m_len, T(0));
     const T dot_m_dot_dot_dir_m = m_dot_dot_z * dir_m_z + m_dot_dot_y * dir_m_y + m_dot_dot_x *
@@ -792,19 +797,21 @@ struct rolling_disc {
     const T w_b_x_k_x_dir_m_z = vb.wx * k_x_dir_m_y - vb.wy * k_x_dir_m_x;
     const T g2_3 = g1_6 + w_a_x_arm_a_z + p.radius * w_b_x_k_x_dir_m_z;
     const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
-    const T g2_4 = w_b_x_k_x_dir_m_x_2 - (g1_7 * k_z - g1_8 * k_y) * inv_m_len;
-    const T arm_a_dot_x = -g1_4 - p.radius * g2_4;
-    const T g2_5 = w_b_x_k_x_dir_m_y - (g1_8 * k_x - g1_9 * k_z) * inv_m_len;
-    const T arm_a_dot_y = -g1_5 - p.radius * g2_5;
+    const T g2_4 = k_z * inv_m_len;
+    const T g2_5 = inv_m_len * g1_8;
+    const T g2_6 = p.radius * (w_b_x_k_x_dir_m_x_2 - g2_4 * g1_7 + g2_5 * k_y);
+    const T arm_a_dot_x = -g1_4 - g2_6;
+    const T g2_7 = p.radius * (w_b_x_k_x_dir_m_y - g2_5 * k_x + g2_4 * g1_9);
+    const T arm_a_dot_y = -g1_5 - g2_7;
     const T w_a_x_arm_a_dot_z = va.wx * arm_a_dot_y - va.wy * arm_a_dot_x;
-    const T g2_6 = w_a_x_arm_a_dot_z + p.radius * (vb.wx * g2_5 - vb.wy * g2_4);
+    const T g2_8 = g2_6 * vb.wy - w_a_x_arm_a_dot_z - g2_7 * vb.wx;
     const T w_b_x_k_x_dir_m_z_2 = w_b_x_k_x * dir_m_y - w_b_x_k_y * dir_m_x;
-    const T g2_7 = w_b_x_k_x_dir_m_z_2 - (g1_9 * k_y - g1_7 * k_x) * inv_m_len;
-    const T arm_a_dot_z = -g1_6 - p.radius * g2_7;
+    const T g2_9 = p.radius * (w_b_x_k_x_dir_m_z_2 + inv_m_len * (g1_7 * k_x - g1_9 * k_y));
+    const T arm_a_dot_z = -g1_6 - g2_9;
     const T w_a_x_arm_a_dot_x = va.wy * arm_a_dot_z - va.wz * arm_a_dot_y;
     const T w_a_x_arm_a_dot_y = va.wz * arm_a_dot_x - va.wx * arm_a_dot_z;
-    const T g2_8 = w_a_x_arm_a_dot_y + p.radius * (vb.wz * g2_4 - vb.wx * g2_7);
-    const T g2_9 = w_a_x_arm_a_dot_x + p.radius * (vb.wy * g2_7 - vb.wz * g2_5);
+    const T g2_10 = g2_9 * vb.wx - w_a_x_arm_a_dot_y - g2_6 * vb.wz;
+    const T g2_11 = g2_7 * vb.wz - w_a_x_arm_a_dot_x - g2_9 * vb.wy;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
@@ -812,11 +819,11 @@ struct rolling_disc {
     const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
     const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
     g[0] = p.radius * (dot_m_dot_dot_dir_m + (g1_7 * m_dot_y + g1_8 * m_dot_z + g1_9 * m_dot_x) *
-        inv_m_len) - dot_u_w_a_x_w_a_x_fa_x - T(2) * dot_u_dot_w_a_x_fa_x - dot_u_dot_dot_fa_x;
-    g[1] = g2_1 * w_a_x_fa_y_x + g2_2 * w_a_x_fa_y_y + g2_3 * w_a_x_fa_y_z + g2_6 * fa_y_z + g2_8 *
-        fa_y_y + g2_9 * fa_y_x;
-    g[2] = g2_1 * w_a_x_fa_z_x + g2_2 * w_a_x_fa_z_y + g2_3 * w_a_x_fa_z_z + g2_6 * fa_z_z + g2_8 *
-        fa_z_y + g2_9 * fa_z_x;
+        inv_m_len) - dot_u_w_a_x_w_a_x_fa_x - dot_u_dot_w_a_x_fa_x * T(2) - dot_u_dot_dot_fa_x;
+    g[1] = g2_1 * w_a_x_fa_y_x + g2_2 * w_a_x_fa_y_y + g2_3 * w_a_x_fa_y_z - g2_8 * fa_y_z -
+        g2_10 * fa_y_y - g2_11 * fa_y_x;
+    g[2] = g2_1 * w_a_x_fa_z_x + g2_2 * w_a_x_fa_z_y + g2_3 * w_a_x_fa_z_z - g2_8 * fa_z_z -
+        g2_10 * fa_z_y - g2_11 * fa_z_x;
   }
 
   // dC/dt at fixed q: nothing

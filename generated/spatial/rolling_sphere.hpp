@@ -497,7 +497,7 @@ struct rolling_sphere {
     D[2][11] = D3_1 * b.xz + D3_2 * b.yz + D3_3 * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 49 +, 84 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 50 +, 69 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][14]) {
     for (auto& row : D) {
@@ -505,48 +505,53 @@ struct rolling_sphere {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T D2_1 = J.radius * b.e1;
-    const T D2_2 = J.radius * b.e2;
-    const T D2_3 = J.radius * b.e3;
-    const T D2_1_2 = J.radius * b.e0;
+    const T D1_1 = a.e1 * T(2);
+    const T D1_2 = a.e2 * T(2);
+    const T D1_3 = a.e3 * T(2);
+    const T D1_1_2 = T(2) * a.e0;
+    const T D2_1 = T(2) * J.radius;
+    const T D2_2 = b.e1 * D2_1;
+    const T D2_3 = b.e2 * D2_1;
+    const T D2_4 = b.e3 * D2_1;
+    const T D2_1_2 = D2_1 * b.e0;
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = T(2) * (J.ra_u_x_fa_x_x * a.e1 + J.ra_u_x_fa_x_y * a.e2 + J.ra_u_x_fa_x_z * a.e3);
-    D[0][4] = T(2) * (J.ra_u_x_fa_x_z * a.e2 - J.ra_u_x_fa_x_x * a.e0 - J.ra_u_x_fa_x_y * a.e3);
-    D[0][5] = T(2) * (J.ra_u_x_fa_x_x * a.e3 - J.ra_u_x_fa_x_y * a.e0 - J.ra_u_x_fa_x_z * a.e1);
-    D[0][6] = T(2) * (J.ra_u_x_fa_x_y * a.e1 - J.ra_u_x_fa_x_x * a.e2 - J.ra_u_x_fa_x_z * a.e0);
+    D[0][3] = D1_1 * J.ra_u_x_fa_x_x + D1_2 * J.ra_u_x_fa_x_y + D1_3 * J.ra_u_x_fa_x_z;
+    D[0][4] = D1_2 * J.ra_u_x_fa_x_z - D1_1_2 * J.ra_u_x_fa_x_x - D1_3 * J.ra_u_x_fa_x_y;
+    D[0][5] = D1_3 * J.ra_u_x_fa_x_x - D1_1_2 * J.ra_u_x_fa_x_y - D1_1 * J.ra_u_x_fa_x_z;
+    D[0][6] = D1_1 * J.ra_u_x_fa_x_y - D1_2 * J.ra_u_x_fa_x_x - D1_1_2 * J.ra_u_x_fa_x_z;
     D[0][7] = J.fa_x_x;
     D[0][8] = J.fa_x_y;
     D[0][9] = J.fa_x_z;
     D[1][0] = -J.fa_y_x;
     D[1][1] = -J.fa_y_y;
     D[1][2] = -J.fa_y_z;
-    D[1][3] = T(2) * (J.arm_a_x_fa_y_x * a.e1 + J.arm_a_x_fa_y_y * a.e2 + J.arm_a_x_fa_y_z * a.e3);
-    D[1][4] = T(2) * (J.arm_a_x_fa_y_z * a.e2 - J.arm_a_x_fa_y_x * a.e0 - J.arm_a_x_fa_y_y * a.e3);
-    D[1][5] = T(2) * (J.arm_a_x_fa_y_x * a.e3 - J.arm_a_x_fa_y_y * a.e0 - J.arm_a_x_fa_y_z * a.e1);
-    D[1][6] = T(2) * (J.arm_a_x_fa_y_y * a.e1 - J.arm_a_x_fa_y_x * a.e2 - J.arm_a_x_fa_y_z * a.e0);
+    D[1][3] = D1_1 * J.arm_a_x_fa_y_x + D1_2 * J.arm_a_x_fa_y_y + D1_3 * J.arm_a_x_fa_y_z;
+    D[1][4] = D1_2 * J.arm_a_x_fa_y_z - D1_1_2 * J.arm_a_x_fa_y_x - D1_3 * J.arm_a_x_fa_y_y;
+    D[1][5] = D1_3 * J.arm_a_x_fa_y_x - D1_1_2 * J.arm_a_x_fa_y_y - D1_1 * J.arm_a_x_fa_y_z;
+    D[1][6] = D1_1 * J.arm_a_x_fa_y_y - D1_2 * J.arm_a_x_fa_y_x - D1_1_2 * J.arm_a_x_fa_y_z;
     D[1][7] = J.fa_y_x;
     D[1][8] = J.fa_y_y;
     D[1][9] = J.fa_y_z;
-    D[1][10] = T(2) * (D2_1 * J.fa_z_x + D2_2 * J.fa_z_y + D2_3 * J.fa_z_z);
-    D[1][11] = T(2) * (D2_2 * J.fa_z_z - D2_1_2 * J.fa_z_x - D2_3 * J.fa_z_y);
-    D[1][12] = T(2) * (D2_3 * J.fa_z_x - D2_1_2 * J.fa_z_y - D2_1 * J.fa_z_z);
-    D[1][13] = T(2) * (D2_1 * J.fa_z_y - D2_2 * J.fa_z_x - D2_1_2 * J.fa_z_z);
+    D[1][10] = D2_2 * J.fa_z_x + D2_3 * J.fa_z_y + D2_4 * J.fa_z_z;
+    D[1][11] = D2_3 * J.fa_z_z - D2_1_2 * J.fa_z_x - D2_4 * J.fa_z_y;
+    D[1][12] = D2_4 * J.fa_z_x - D2_1_2 * J.fa_z_y - D2_2 * J.fa_z_z;
+    D[1][13] = D2_2 * J.fa_z_y - D2_3 * J.fa_z_x - D2_1_2 * J.fa_z_z;
     D[2][0] = -J.fa_z_x;
     D[2][1] = -J.fa_z_y;
     D[2][2] = -J.fa_z_z;
-    D[2][3] = T(2) * (J.arm_a_x_fa_z_x * a.e1 + J.arm_a_x_fa_z_y * a.e2 + J.arm_a_x_fa_z_z * a.e3);
-    D[2][4] = T(2) * (J.arm_a_x_fa_z_z * a.e2 - J.arm_a_x_fa_z_x * a.e0 - J.arm_a_x_fa_z_y * a.e3);
-    D[2][5] = T(2) * (J.arm_a_x_fa_z_x * a.e3 - J.arm_a_x_fa_z_y * a.e0 - J.arm_a_x_fa_z_z * a.e1);
-    D[2][6] = T(2) * (J.arm_a_x_fa_z_y * a.e1 - J.arm_a_x_fa_z_x * a.e2 - J.arm_a_x_fa_z_z * a.e0);
+    D[2][3] = D1_1 * J.arm_a_x_fa_z_x + D1_2 * J.arm_a_x_fa_z_y + D1_3 * J.arm_a_x_fa_z_z;
+    D[2][4] = D1_2 * J.arm_a_x_fa_z_z - D1_1_2 * J.arm_a_x_fa_z_x - D1_3 * J.arm_a_x_fa_z_y;
+    D[2][5] = D1_3 * J.arm_a_x_fa_z_x - D1_1_2 * J.arm_a_x_fa_z_y - D1_1 * J.arm_a_x_fa_z_z;
+    D[2][6] = D1_1 * J.arm_a_x_fa_z_y - D1_2 * J.arm_a_x_fa_z_x - D1_1_2 * J.arm_a_x_fa_z_z;
     D[2][7] = J.fa_z_x;
     D[2][8] = J.fa_z_y;
     D[2][9] = J.fa_z_z;
-    D[2][10] = T(-2) * (D2_1 * J.fa_y_x + D2_2 * J.fa_y_y + D2_3 * J.fa_y_z);
-    D[2][11] = T(2) * (D2_1_2 * J.fa_y_x + D2_3 * J.fa_y_y - D2_2 * J.fa_y_z);
-    D[2][12] = T(2) * (D2_1_2 * J.fa_y_y - D2_3 * J.fa_y_x + D2_1 * J.fa_y_z);
-    D[2][13] = T(2) * (D2_2 * J.fa_y_x - D2_1 * J.fa_y_y + D2_1_2 * J.fa_y_z);
+    D[2][10] = -D2_2 * J.fa_y_x - D2_3 * J.fa_y_y - D2_4 * J.fa_y_z;
+    D[2][11] = D2_1_2 * J.fa_y_x + D2_4 * J.fa_y_y - D2_3 * J.fa_y_z;
+    D[2][12] = D2_1_2 * J.fa_y_y - D2_4 * J.fa_y_x + D2_2 * J.fa_y_z;
+    D[2][13] = D2_3 * J.fa_y_x - D2_2 * J.fa_y_y + D2_1_2 * J.fa_y_z;
   }
 
   // -Jdot v - d/dt(dC/dt): 93 +, 113 *

@@ -815,7 +815,7 @@ struct screw {
     D[4][11] = J.wb_5_x * b.xz + J.wb_5_y * b.yz + J.wb_5_z * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 89 +, 160 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 95 +, 128 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[5][14]) {
     for (auto& row : D) {
@@ -823,64 +823,72 @@ struct screw {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    D[0][3] = T(-2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
-    D[0][4] = T(2) * (J.fa_y_x_fb_x_x * a.e0 + J.fa_y_x_fb_x_y * a.e3 - J.fa_y_x_fb_x_z * a.e2);
-    D[0][5] = T(2) * (J.fa_y_x_fb_x_y * a.e0 - J.fa_y_x_fb_x_x * a.e3 + J.fa_y_x_fb_x_z * a.e1);
-    D[0][6] = T(2) * (J.fa_y_x_fb_x_x * a.e2 - J.fa_y_x_fb_x_y * a.e1 + J.fa_y_x_fb_x_z * a.e0);
-    D[0][10] = T(2) * (J.fa_y_x_fb_x_x * b.e1 + J.fa_y_x_fb_x_y * b.e2 + J.fa_y_x_fb_x_z * b.e3);
-    D[0][11] = T(2) * (J.fa_y_x_fb_x_z * b.e2 - J.fa_y_x_fb_x_x * b.e0 - J.fa_y_x_fb_x_y * b.e3);
-    D[0][12] = T(2) * (J.fa_y_x_fb_x_x * b.e3 - J.fa_y_x_fb_x_y * b.e0 - J.fa_y_x_fb_x_z * b.e1);
-    D[0][13] = T(2) * (J.fa_y_x_fb_x_y * b.e1 - J.fa_y_x_fb_x_x * b.e2 - J.fa_y_x_fb_x_z * b.e0);
-    D[1][3] = T(-2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
-    D[1][4] = T(2) * (J.fa_z_x_fb_x_x * a.e0 + J.fa_z_x_fb_x_y * a.e3 - J.fa_z_x_fb_x_z * a.e2);
-    D[1][5] = T(2) * (J.fa_z_x_fb_x_y * a.e0 - J.fa_z_x_fb_x_x * a.e3 + J.fa_z_x_fb_x_z * a.e1);
-    D[1][6] = T(2) * (J.fa_z_x_fb_x_x * a.e2 - J.fa_z_x_fb_x_y * a.e1 + J.fa_z_x_fb_x_z * a.e0);
-    D[1][10] = T(2) * (J.fa_z_x_fb_x_x * b.e1 + J.fa_z_x_fb_x_y * b.e2 + J.fa_z_x_fb_x_z * b.e3);
-    D[1][11] = T(2) * (J.fa_z_x_fb_x_z * b.e2 - J.fa_z_x_fb_x_x * b.e0 - J.fa_z_x_fb_x_y * b.e3);
-    D[1][12] = T(2) * (J.fa_z_x_fb_x_x * b.e3 - J.fa_z_x_fb_x_y * b.e0 - J.fa_z_x_fb_x_z * b.e1);
-    D[1][13] = T(2) * (J.fa_z_x_fb_x_y * b.e1 - J.fa_z_x_fb_x_x * b.e2 - J.fa_z_x_fb_x_z * b.e0);
+    const T D1_1 = a.e1 * T(2);
+    const T D1_2 = a.e2 * T(2);
+    const T D1_3 = a.e3 * T(2);
+    const T D1_1_2 = T(2) * a.e0;
+    const T D1_1_3 = T(2) * b.e1;
+    const T D1_2_2 = T(2) * b.e2;
+    const T D1_3_2 = T(2) * b.e3;
+    const T D1_1_4 = T(2) * b.e0;
+    D[0][3] = -D1_1 * J.fa_y_x_fb_x_x - D1_2 * J.fa_y_x_fb_x_y - D1_3 * J.fa_y_x_fb_x_z;
+    D[0][4] = D1_1_2 * J.fa_y_x_fb_x_x + D1_3 * J.fa_y_x_fb_x_y - D1_2 * J.fa_y_x_fb_x_z;
+    D[0][5] = D1_1_2 * J.fa_y_x_fb_x_y - D1_3 * J.fa_y_x_fb_x_x + D1_1 * J.fa_y_x_fb_x_z;
+    D[0][6] = D1_2 * J.fa_y_x_fb_x_x - D1_1 * J.fa_y_x_fb_x_y + D1_1_2 * J.fa_y_x_fb_x_z;
+    D[0][10] = D1_1_3 * J.fa_y_x_fb_x_x + D1_2_2 * J.fa_y_x_fb_x_y + D1_3_2 * J.fa_y_x_fb_x_z;
+    D[0][11] = D1_2_2 * J.fa_y_x_fb_x_z - D1_1_4 * J.fa_y_x_fb_x_x - D1_3_2 * J.fa_y_x_fb_x_y;
+    D[0][12] = D1_3_2 * J.fa_y_x_fb_x_x - D1_1_4 * J.fa_y_x_fb_x_y - D1_1_3 * J.fa_y_x_fb_x_z;
+    D[0][13] = D1_1_3 * J.fa_y_x_fb_x_y - D1_2_2 * J.fa_y_x_fb_x_x - D1_1_4 * J.fa_y_x_fb_x_z;
+    D[1][3] = -D1_1 * J.fa_z_x_fb_x_x - D1_2 * J.fa_z_x_fb_x_y - D1_3 * J.fa_z_x_fb_x_z;
+    D[1][4] = D1_1_2 * J.fa_z_x_fb_x_x + D1_3 * J.fa_z_x_fb_x_y - D1_2 * J.fa_z_x_fb_x_z;
+    D[1][5] = D1_1_2 * J.fa_z_x_fb_x_y - D1_3 * J.fa_z_x_fb_x_x + D1_1 * J.fa_z_x_fb_x_z;
+    D[1][6] = D1_2 * J.fa_z_x_fb_x_x - D1_1 * J.fa_z_x_fb_x_y + D1_1_2 * J.fa_z_x_fb_x_z;
+    D[1][10] = D1_1_3 * J.fa_z_x_fb_x_x + D1_2_2 * J.fa_z_x_fb_x_y + D1_3_2 * J.fa_z_x_fb_x_z;
+    D[1][11] = D1_2_2 * J.fa_z_x_fb_x_z - D1_1_4 * J.fa_z_x_fb_x_x - D1_3_2 * J.fa_z_x_fb_x_y;
+    D[1][12] = D1_3_2 * J.fa_z_x_fb_x_x - D1_1_4 * J.fa_z_x_fb_x_y - D1_1_3 * J.fa_z_x_fb_x_z;
+    D[1][13] = D1_1_3 * J.fa_z_x_fb_x_y - D1_2_2 * J.fa_z_x_fb_x_x - D1_1_4 * J.fa_z_x_fb_x_z;
     D[2][0] = -J.fa_y_x;
     D[2][1] = -J.fa_y_y;
     D[2][2] = -J.fa_y_z;
-    D[2][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
-    D[2][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
-    D[2][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
-    D[2][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
+    D[2][3] = D1_1 * J.ra_d_x_fa_y_x + D1_2 * J.ra_d_x_fa_y_y + D1_3 * J.ra_d_x_fa_y_z;
+    D[2][4] = D1_2 * J.ra_d_x_fa_y_z - D1_1_2 * J.ra_d_x_fa_y_x - D1_3 * J.ra_d_x_fa_y_y;
+    D[2][5] = D1_3 * J.ra_d_x_fa_y_x - D1_1_2 * J.ra_d_x_fa_y_y - D1_1 * J.ra_d_x_fa_y_z;
+    D[2][6] = D1_1 * J.ra_d_x_fa_y_y - D1_2 * J.ra_d_x_fa_y_x - D1_1_2 * J.ra_d_x_fa_y_z;
     D[2][7] = J.fa_y_x;
     D[2][8] = J.fa_y_y;
     D[2][9] = J.fa_y_z;
-    D[2][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
-    D[2][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
-    D[2][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
-    D[2][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
+    D[2][10] = -D1_1_3 * J.rb_x_fa_y_x - D1_2_2 * J.rb_x_fa_y_y - D1_3_2 * J.rb_x_fa_y_z;
+    D[2][11] = D1_1_4 * J.rb_x_fa_y_x + D1_3_2 * J.rb_x_fa_y_y - D1_2_2 * J.rb_x_fa_y_z;
+    D[2][12] = D1_1_4 * J.rb_x_fa_y_y - D1_3_2 * J.rb_x_fa_y_x + D1_1_3 * J.rb_x_fa_y_z;
+    D[2][13] = D1_2_2 * J.rb_x_fa_y_x - D1_1_3 * J.rb_x_fa_y_y + D1_1_4 * J.rb_x_fa_y_z;
     D[3][0] = -J.fa_z_x;
     D[3][1] = -J.fa_z_y;
     D[3][2] = -J.fa_z_z;
-    D[3][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
-    D[3][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
-    D[3][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
-    D[3][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
+    D[3][3] = D1_1 * J.ra_d_x_fa_z_x + D1_2 * J.ra_d_x_fa_z_y + D1_3 * J.ra_d_x_fa_z_z;
+    D[3][4] = D1_2 * J.ra_d_x_fa_z_z - D1_1_2 * J.ra_d_x_fa_z_x - D1_3 * J.ra_d_x_fa_z_y;
+    D[3][5] = D1_3 * J.ra_d_x_fa_z_x - D1_1_2 * J.ra_d_x_fa_z_y - D1_1 * J.ra_d_x_fa_z_z;
+    D[3][6] = D1_1 * J.ra_d_x_fa_z_y - D1_2 * J.ra_d_x_fa_z_x - D1_1_2 * J.ra_d_x_fa_z_z;
     D[3][7] = J.fa_z_x;
     D[3][8] = J.fa_z_y;
     D[3][9] = J.fa_z_z;
-    D[3][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
-    D[3][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
-    D[3][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
-    D[3][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
+    D[3][10] = -D1_1_3 * J.rb_x_fa_z_x - D1_2_2 * J.rb_x_fa_z_y - D1_3_2 * J.rb_x_fa_z_z;
+    D[3][11] = D1_1_4 * J.rb_x_fa_z_x + D1_3_2 * J.rb_x_fa_z_y - D1_2_2 * J.rb_x_fa_z_z;
+    D[3][12] = D1_1_4 * J.rb_x_fa_z_y - D1_3_2 * J.rb_x_fa_z_x + D1_1_3 * J.rb_x_fa_z_z;
+    D[3][13] = D1_2_2 * J.rb_x_fa_z_x - D1_1_3 * J.rb_x_fa_z_y + D1_1_4 * J.rb_x_fa_z_z;
     D[4][0] = -J.va_5_x;
     D[4][1] = -J.va_5_y;
     D[4][2] = -J.va_5_z;
-    D[4][3] = T(-2) * (J.wa_5_x * a.e1 + J.wa_5_y * a.e2 + J.wa_5_z * a.e3);
-    D[4][4] = T(2) * (J.wa_5_x * a.e0 + J.wa_5_y * a.e3 - J.wa_5_z * a.e2);
-    D[4][5] = T(2) * (J.wa_5_y * a.e0 - J.wa_5_x * a.e3 + J.wa_5_z * a.e1);
-    D[4][6] = T(2) * (J.wa_5_x * a.e2 - J.wa_5_y * a.e1 + J.wa_5_z * a.e0);
+    D[4][3] = -D1_1 * J.wa_5_x - D1_2 * J.wa_5_y - D1_3 * J.wa_5_z;
+    D[4][4] = D1_1_2 * J.wa_5_x + D1_3 * J.wa_5_y - D1_2 * J.wa_5_z;
+    D[4][5] = D1_1_2 * J.wa_5_y - D1_3 * J.wa_5_x + D1_1 * J.wa_5_z;
+    D[4][6] = D1_2 * J.wa_5_x - D1_1 * J.wa_5_y + D1_1_2 * J.wa_5_z;
     D[4][7] = J.va_5_x;
     D[4][8] = J.va_5_y;
     D[4][9] = J.va_5_z;
-    D[4][10] = T(-2) * (J.wb_5_x * b.e1 + J.wb_5_y * b.e2 + J.wb_5_z * b.e3);
-    D[4][11] = T(2) * (J.wb_5_x * b.e0 + J.wb_5_y * b.e3 - J.wb_5_z * b.e2);
-    D[4][12] = T(2) * (J.wb_5_y * b.e0 - J.wb_5_x * b.e3 + J.wb_5_z * b.e1);
-    D[4][13] = T(2) * (J.wb_5_x * b.e2 - J.wb_5_y * b.e1 + J.wb_5_z * b.e0);
+    D[4][10] = -D1_1_3 * J.wb_5_x - D1_2_2 * J.wb_5_y - D1_3_2 * J.wb_5_z;
+    D[4][11] = D1_1_4 * J.wb_5_x + D1_3_2 * J.wb_5_y - D1_2_2 * J.wb_5_z;
+    D[4][12] = D1_1_4 * J.wb_5_y - D1_3_2 * J.wb_5_x + D1_1_3 * J.wb_5_z;
+    D[4][13] = D1_2_2 * J.wb_5_x - D1_1_3 * J.wb_5_y + D1_1_4 * J.wb_5_z;
   }
 
   // -Jdot v - d/dt(dC/dt): 189 +, 267 *, 1 /, 1 <, 2 call
@@ -1617,21 +1625,19 @@ struct screw {
       J.rb_x_fa_x_z = fa_x_y * rb_x - fa_x_x * rb_y;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 19 +, 24 *
+    // K = J M^-1 J^T, lower triangle, from J: 15 +, 26 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.ra_d_x_fa_x_x *
-          (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
-          J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
-          J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
-          (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z) +
-          J.rb_x_fa_x_x * (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz *
-          J.rb_x_fa_x_z) + J.rb_x_fa_x_y *
-          (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz * J.rb_x_fa_x_z) +
-          J.rb_x_fa_x_z * (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz *
-          J.rb_x_fa_x_z);
+      const T K11_1 = J.ra_d_x_fa_x_z * T(2);
+      const T K11_2 = J.rb_x_fa_x_z * T(2);
+      K[0] = ma.Izz * J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z + mb.Izz * J.rb_x_fa_x_z * J.rb_x_fa_x_z +
+          J.ra_d_x_fa_x_x * (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y * T(2) + K11_1 *
+          ma.Ixz) + J.ra_d_x_fa_x_y * (ma.Iyy * J.ra_d_x_fa_x_y + K11_1 * ma.Iyz) + J.rb_x_fa_x_x *
+          (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y * T(2) + K11_2 * mb.Ixz) +
+          J.rb_x_fa_x_y * (mb.Iyy * J.rb_x_fa_x_y + K11_2 * mb.Iyz) +
+          (J.fa_x_x * J.fa_x_x + J.fa_x_y * J.fa_x_y + J.fa_x_z * J.fa_x_z) * (ma.m + mb.m);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1813,7 +1819,7 @@ struct screw {
       D[0][11] = J.rb_x_fa_x_x * b.xz + J.rb_x_fa_x_y * b.yz + J.rb_x_fa_x_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 19 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 20 +, 30 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -1821,20 +1827,26 @@ struct screw {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
+      const T D1_1 = J.ra_d_x_fa_x_x * T(2);
+      const T D1_2 = J.ra_d_x_fa_x_y * T(2);
+      const T D1_3 = J.ra_d_x_fa_x_z * T(2);
+      const T D1_1_2 = T(2) * J.rb_x_fa_x_x;
+      const T D1_2_2 = T(2) * J.rb_x_fa_x_y;
+      const T D1_3_2 = T(2) * J.rb_x_fa_x_z;
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
-      D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
-      D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
-      D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
+      D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+      D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+      D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+      D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
       D[0][7] = J.fa_x_x;
       D[0][8] = J.fa_x_y;
       D[0][9] = J.fa_x_z;
-      D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
-      D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
-      D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
-      D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
+      D[0][10] = -D1_1_2 * b.e1 - D1_2_2 * b.e2 - D1_3_2 * b.e3;
+      D[0][11] = D1_1_2 * b.e0 + D1_2_2 * b.e3 - D1_3_2 * b.e2;
+      D[0][12] = D1_2_2 * b.e0 - D1_1_2 * b.e3 + D1_3_2 * b.e1;
+      D[0][13] = D1_1_2 * b.e2 - D1_2_2 * b.e1 + D1_3_2 * b.e0;
     }
 
     // -Jdot v - d/dt(dC/dt): 56 +, 63 *
@@ -2073,17 +2085,15 @@ struct screw {
       J.wa_z = fa_x_fb_x_z * wa_x_1;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 14 +, 12 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 11 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      const T K11_1 = ma.Ixy + mb.Ixy;
-      const T K11_2 = ma.Ixz + mb.Ixz;
-      const T K11_3 = ma.Iyz + mb.Iyz;
-      K[0] = J.wa_x * (J.wa_x * (ma.Ixx + mb.Ixx) + J.wa_y * K11_1 + J.wa_z * K11_2) + J.wa_y *
-          (J.wa_x * K11_1 + J.wa_y * (ma.Iyy + mb.Iyy) + J.wa_z * K11_3) + J.wa_z *
-          (J.wa_x * K11_2 + J.wa_y * K11_3 + J.wa_z * (ma.Izz + mb.Izz));
+      const T K11_1 = J.wa_z * T(2);
+      K[0] = J.wa_z * J.wa_z * (ma.Izz + mb.Izz) + J.wa_x *
+          (J.wa_x * (ma.Ixx + mb.Ixx) + J.wa_y * T(2) * (ma.Ixy + mb.Ixy) + K11_1 *
+          (ma.Ixz + mb.Ixz)) + J.wa_y * (J.wa_y * (ma.Iyy + mb.Iyy) + K11_1 * (ma.Iyz + mb.Iyz));
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -2216,7 +2226,7 @@ struct screw {
       D[0][11] = J.wa_x * b.xz + J.wa_y * b.yz + J.wa_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 27 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -2224,14 +2234,17 @@ struct screw {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_z * a.e2 - J.wa_x * a.e0 - J.wa_y * a.e3);
-      D[0][5] = T(2) * (J.wa_x * a.e3 - J.wa_y * a.e0 - J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_y * a.e1 - J.wa_x * a.e2 - J.wa_z * a.e0);
-      D[0][10] = T(-2) * (J.wa_x * b.e1 + J.wa_y * b.e2 + J.wa_z * b.e3);
-      D[0][11] = T(2) * (J.wa_x * b.e0 + J.wa_y * b.e3 - J.wa_z * b.e2);
-      D[0][12] = T(2) * (J.wa_y * b.e0 - J.wa_x * b.e3 + J.wa_z * b.e1);
-      D[0][13] = T(2) * (J.wa_x * b.e2 - J.wa_y * b.e1 + J.wa_z * b.e0);
+      const T D1_1 = J.wa_x * T(2);
+      const T D1_2 = J.wa_y * T(2);
+      const T D1_3 = J.wa_z * T(2);
+      D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+      D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+      D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+      D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
+      D[0][10] = -D1_1 * b.e1 - D1_2 * b.e2 - D1_3 * b.e3;
+      D[0][11] = D1_1 * b.e0 + D1_2 * b.e3 - D1_3 * b.e2;
+      D[0][12] = D1_2 * b.e0 - D1_1 * b.e3 + D1_3 * b.e1;
+      D[0][13] = D1_1 * b.e2 - D1_2 * b.e1 + D1_3 * b.e0;
     }
 
     // -Jdot v - d/dt(dC/dt): 40 +, 48 *, 1 /, 1 <
@@ -3411,13 +3424,14 @@ struct screw::angle::a_immovable : screw::angle {
     J.wb_z = fa_x_fb_x_z * wb_x_1;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+    const T K11_1 = J.wb_z * T(2);
+    K[0] = mb.Izz * J.wb_z * J.wb_z + J.wb_x *
+        (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_1 * mb.Ixz) + J.wb_y *
+        (mb.Iyy * J.wb_y + K11_1 * mb.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -3503,13 +3517,14 @@ struct screw::angle::a_immovable : screw::angle {
 struct screw::angle::b_immovable : screw::angle {
   static constexpr int immovable_body = 1;
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    const T K11_1 = J.wa_z * T(2);
+    K[0] = ma.Izz * J.wa_z * J.wa_z + J.wa_x *
+        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+        (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
   }
 
   // J v: 3 +, 3 *

@@ -326,21 +326,19 @@ struct six_dof {
       J.rb_x_fa_x_z = fa_x_y * rb_x - fa_x_x * rb_y;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 19 +, 24 *
+    // K = J M^-1 J^T, lower triangle, from J: 15 +, 26 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.ra_d_x_fa_x_x *
-          (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
-          J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
-          J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
-          (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z) +
-          J.rb_x_fa_x_x * (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz *
-          J.rb_x_fa_x_z) + J.rb_x_fa_x_y *
-          (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz * J.rb_x_fa_x_z) +
-          J.rb_x_fa_x_z * (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz *
-          J.rb_x_fa_x_z);
+      const T K11_1 = J.ra_d_x_fa_x_z * T(2);
+      const T K11_2 = J.rb_x_fa_x_z * T(2);
+      K[0] = ma.Izz * J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z + mb.Izz * J.rb_x_fa_x_z * J.rb_x_fa_x_z +
+          J.ra_d_x_fa_x_x * (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y * T(2) + K11_1 *
+          ma.Ixz) + J.ra_d_x_fa_x_y * (ma.Iyy * J.ra_d_x_fa_x_y + K11_1 * ma.Iyz) + J.rb_x_fa_x_x *
+          (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y * T(2) + K11_2 * mb.Ixz) +
+          J.rb_x_fa_x_y * (mb.Iyy * J.rb_x_fa_x_y + K11_2 * mb.Iyz) +
+          (J.fa_x_x * J.fa_x_x + J.fa_x_y * J.fa_x_y + J.fa_x_z * J.fa_x_z) * (ma.m + mb.m);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -522,7 +520,7 @@ struct six_dof {
       D[0][11] = J.rb_x_fa_x_x * b.xz + J.rb_x_fa_x_y * b.yz + J.rb_x_fa_x_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 19 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 20 +, 30 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -530,20 +528,26 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
+      const T D1_1 = J.ra_d_x_fa_x_x * T(2);
+      const T D1_2 = J.ra_d_x_fa_x_y * T(2);
+      const T D1_3 = J.ra_d_x_fa_x_z * T(2);
+      const T D1_1_2 = T(2) * J.rb_x_fa_x_x;
+      const T D1_2_2 = T(2) * J.rb_x_fa_x_y;
+      const T D1_3_2 = T(2) * J.rb_x_fa_x_z;
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
-      D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
-      D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
-      D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
+      D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+      D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+      D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+      D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
       D[0][7] = J.fa_x_x;
       D[0][8] = J.fa_x_y;
       D[0][9] = J.fa_x_z;
-      D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
-      D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
-      D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
-      D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
+      D[0][10] = -D1_1_2 * b.e1 - D1_2_2 * b.e2 - D1_3_2 * b.e3;
+      D[0][11] = D1_1_2 * b.e0 + D1_2_2 * b.e3 - D1_3_2 * b.e2;
+      D[0][12] = D1_2_2 * b.e0 - D1_1_2 * b.e3 + D1_3_2 * b.e1;
+      D[0][13] = D1_1_2 * b.e2 - D1_2_2 * b.e1 + D1_3_2 * b.e0;
     }
 
     // -Jdot v - d/dt(dC/dt): 56 +, 63 *
@@ -771,21 +775,19 @@ struct six_dof {
       J.rb_x_fa_y_z = fa_y_y * rb_x - fa_y_x * rb_y;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 19 +, 24 *
+    // K = J M^-1 J^T, lower triangle, from J: 15 +, 26 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.ra_d_x_fa_y_x *
-          (ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z) +
-          J.ra_d_x_fa_y_y * (ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz *
-          J.ra_d_x_fa_y_z) + J.ra_d_x_fa_y_z *
-          (ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z) +
-          J.rb_x_fa_y_x * (mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz *
-          J.rb_x_fa_y_z) + J.rb_x_fa_y_y *
-          (mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz * J.rb_x_fa_y_z) +
-          J.rb_x_fa_y_z * (mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz *
-          J.rb_x_fa_y_z);
+      const T K11_1 = J.ra_d_x_fa_y_z * T(2);
+      const T K11_2 = J.rb_x_fa_y_z * T(2);
+      K[0] = ma.Izz * J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z + mb.Izz * J.rb_x_fa_y_z * J.rb_x_fa_y_z +
+          J.ra_d_x_fa_y_x * (ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y * T(2) + K11_1 *
+          ma.Ixz) + J.ra_d_x_fa_y_y * (ma.Iyy * J.ra_d_x_fa_y_y + K11_1 * ma.Iyz) + J.rb_x_fa_y_x *
+          (mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y * T(2) + K11_2 * mb.Ixz) +
+          J.rb_x_fa_y_y * (mb.Iyy * J.rb_x_fa_y_y + K11_2 * mb.Iyz) +
+          (J.fa_y_x * J.fa_y_x + J.fa_y_y * J.fa_y_y + J.fa_y_z * J.fa_y_z) * (ma.m + mb.m);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -967,7 +969,7 @@ struct six_dof {
       D[0][11] = J.rb_x_fa_y_x * b.xz + J.rb_x_fa_y_y * b.yz + J.rb_x_fa_y_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 19 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 20 +, 30 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -975,20 +977,26 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
+      const T D1_1 = J.ra_d_x_fa_y_x * T(2);
+      const T D1_2 = J.ra_d_x_fa_y_y * T(2);
+      const T D1_3 = J.ra_d_x_fa_y_z * T(2);
+      const T D1_1_2 = T(2) * J.rb_x_fa_y_x;
+      const T D1_2_2 = T(2) * J.rb_x_fa_y_y;
+      const T D1_3_2 = T(2) * J.rb_x_fa_y_z;
       D[0][0] = -J.fa_y_x;
       D[0][1] = -J.fa_y_y;
       D[0][2] = -J.fa_y_z;
-      D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
-      D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
-      D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
-      D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
+      D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+      D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+      D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+      D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
       D[0][7] = J.fa_y_x;
       D[0][8] = J.fa_y_y;
       D[0][9] = J.fa_y_z;
-      D[0][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
-      D[0][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
-      D[0][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
-      D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
+      D[0][10] = -D1_1_2 * b.e1 - D1_2_2 * b.e2 - D1_3_2 * b.e3;
+      D[0][11] = D1_1_2 * b.e0 + D1_2_2 * b.e3 - D1_3_2 * b.e2;
+      D[0][12] = D1_2_2 * b.e0 - D1_1_2 * b.e3 + D1_3_2 * b.e1;
+      D[0][13] = D1_1_2 * b.e2 - D1_2_2 * b.e1 + D1_3_2 * b.e0;
     }
 
     // -Jdot v - d/dt(dC/dt): 56 +, 63 *
@@ -1216,21 +1224,19 @@ struct six_dof {
       J.rb_x_fa_z_z = fa_z_y * rb_x - fa_z_x * rb_y;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 19 +, 24 *
+    // K = J M^-1 J^T, lower triangle, from J: 15 +, 26 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.ra_d_x_fa_z_x *
-          (ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z) +
-          J.ra_d_x_fa_z_y * (ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz *
-          J.ra_d_x_fa_z_z) + J.ra_d_x_fa_z_z *
-          (ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z) +
-          J.rb_x_fa_z_x * (mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz *
-          J.rb_x_fa_z_z) + J.rb_x_fa_z_y *
-          (mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz * J.rb_x_fa_z_z) +
-          J.rb_x_fa_z_z * (mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz *
-          J.rb_x_fa_z_z);
+      const T K11_1 = J.ra_d_x_fa_z_z * T(2);
+      const T K11_2 = J.rb_x_fa_z_z * T(2);
+      K[0] = ma.Izz * J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z + mb.Izz * J.rb_x_fa_z_z * J.rb_x_fa_z_z +
+          J.ra_d_x_fa_z_x * (ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y * T(2) + K11_1 *
+          ma.Ixz) + J.ra_d_x_fa_z_y * (ma.Iyy * J.ra_d_x_fa_z_y + K11_1 * ma.Iyz) + J.rb_x_fa_z_x *
+          (mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y * T(2) + K11_2 * mb.Ixz) +
+          J.rb_x_fa_z_y * (mb.Iyy * J.rb_x_fa_z_y + K11_2 * mb.Iyz) +
+          (J.fa_z_x * J.fa_z_x + J.fa_z_y * J.fa_z_y + J.fa_z_z * J.fa_z_z) * (ma.m + mb.m);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1412,7 +1418,7 @@ struct six_dof {
       D[0][11] = J.rb_x_fa_z_x * b.xz + J.rb_x_fa_z_y * b.yz + J.rb_x_fa_z_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 19 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 20 +, 30 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -1420,20 +1426,26 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
+      const T D1_1 = J.ra_d_x_fa_z_x * T(2);
+      const T D1_2 = J.ra_d_x_fa_z_y * T(2);
+      const T D1_3 = J.ra_d_x_fa_z_z * T(2);
+      const T D1_1_2 = T(2) * J.rb_x_fa_z_x;
+      const T D1_2_2 = T(2) * J.rb_x_fa_z_y;
+      const T D1_3_2 = T(2) * J.rb_x_fa_z_z;
       D[0][0] = -J.fa_z_x;
       D[0][1] = -J.fa_z_y;
       D[0][2] = -J.fa_z_z;
-      D[0][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
-      D[0][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
-      D[0][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
-      D[0][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
+      D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+      D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+      D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+      D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
       D[0][7] = J.fa_z_x;
       D[0][8] = J.fa_z_y;
       D[0][9] = J.fa_z_z;
-      D[0][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
-      D[0][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
-      D[0][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
-      D[0][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
+      D[0][10] = -D1_1_2 * b.e1 - D1_2_2 * b.e2 - D1_3_2 * b.e3;
+      D[0][11] = D1_1_2 * b.e0 + D1_2_2 * b.e3 - D1_3_2 * b.e2;
+      D[0][12] = D1_2_2 * b.e0 - D1_1_2 * b.e3 + D1_3_2 * b.e1;
+      D[0][13] = D1_1_2 * b.e2 - D1_2_2 * b.e1 + D1_3_2 * b.e0;
     }
 
     // -Jdot v - d/dt(dC/dt): 56 +, 63 *
@@ -1666,17 +1678,18 @@ struct six_dof {
       J.wb_z = fb_z_x * wb_x_2 - fb_z_y * wb_y_1;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 17 +, 24 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-          (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-          (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+      const T K11_1 = J.wa_z * T(2);
+      const T K11_2 = J.wb_z * T(2);
+      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
+          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
+          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
+          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1832,7 +1845,7 @@ struct six_dof {
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 71 +, 113 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 71 +, 112 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1871,20 +1884,10 @@ struct six_dof {
       const T dot_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_fa_z_x + fb_z_y * w_a_x_fa_z_y + fb_z_z *
           w_a_x_fa_z_z;
       const T rzz_dot = dot_w_b_x_fb_z_fa_z + dot_w_a_x_fa_z_fb_z;
+      const T g1_2 = T(2) * (rzz_dot * ryz - ryz_dot * rzz) * g1_1;
       const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
       const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
       const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-      const T dot_w_b_x_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_w_b_x_fb_z_x + fa_y_y *
-          w_b_x_w_b_x_fb_z_y + fa_y_z * w_b_x_w_b_x_fb_z_z;
-      const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-      const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-      const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-      const T dot_w_a_x_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_w_a_x_fa_y_x + fb_z_y *
-          w_a_x_w_a_x_fa_y_y + fb_z_z * w_a_x_w_a_x_fa_y_z;
-      const T dot_w_a_x_fa_y_w_b_x_fb_z = w_a_x_fa_y_z * w_b_x_fb_z_z + w_a_x_fa_y_y *
-          w_b_x_fb_z_y + w_a_x_fa_y_x * w_b_x_fb_z_x;
-      const T ryz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_y + dot_w_a_x_w_a_x_fa_y_fb_z + T(2) *
-          dot_w_a_x_fa_y_w_b_x_fb_z;
       const T dot_w_b_x_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_w_b_x_fb_z_x + fa_z_y *
           w_b_x_w_b_x_fb_z_y + fa_z_z * w_b_x_w_b_x_fb_z_z;
       const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
@@ -1894,10 +1897,20 @@ struct six_dof {
           w_a_x_w_a_x_fa_z_y + fb_z_z * w_a_x_w_a_x_fa_z_z;
       const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
           w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
-      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z + T(2) *
-          dot_w_a_x_fa_z_w_b_x_fb_z;
-      g[0] = g1_1 * (T(2) * (ryz_dot * ryz + rzz_dot * rzz) * (rzz_dot * ryz - ryz_dot * rzz) *
-          g1_1 + ryz_dot_dot * rzz - rzz_dot_dot * ryz);
+      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z +
+          dot_w_a_x_fa_z_w_b_x_fb_z * T(2);
+      const T dot_w_b_x_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_w_b_x_fb_z_x + fa_y_y *
+          w_b_x_w_b_x_fb_z_y + fa_y_z * w_b_x_w_b_x_fb_z_z;
+      const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
+      const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
+      const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
+      const T dot_w_a_x_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_w_a_x_fa_y_x + fb_z_y *
+          w_a_x_w_a_x_fa_y_y + fb_z_z * w_a_x_w_a_x_fa_y_z;
+      const T dot_w_a_x_fa_y_w_b_x_fb_z = w_a_x_fa_y_z * w_b_x_fb_z_z + w_a_x_fa_y_y *
+          w_b_x_fb_z_y + w_a_x_fa_y_x * w_b_x_fb_z_x;
+      const T ryz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_y + dot_w_a_x_w_a_x_fa_y_fb_z +
+          dot_w_a_x_fa_y_w_b_x_fb_z * T(2);
+      g[0] = g1_1 * (ryz * (g1_2 * ryz_dot - rzz_dot_dot) + rzz * (g1_2 * rzz_dot + ryz_dot_dot));
     }
 
     // dC/dt at fixed q: nothing
@@ -1906,7 +1919,7 @@ struct six_dof {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 179 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 170 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -1934,12 +1947,12 @@ struct six_dof {
       const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
       const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
       const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
-      const T H4_5 = lambda[0] * H4_1 * H4_1 * (rzz * fa_y_x_fb_z_x - ryz * fa_z_x_fb_z_x);
-      const T H4_6 = H4_2 * fa_z_x_fb_z_x + T(2) * H4_5 * ryz;
+      const T H4_5 = lambda[0] * H4_1 * H4_1 * T(2) * (rzz * fa_y_x_fb_z_x - ryz * fa_z_x_fb_z_x);
+      const T H4_6 = H4_2 * fa_z_x_fb_z_x + H4_5 * ryz;
       const T H4_7 = H4_4 + fb_z_z * H4_6;
       const T H4_8 = ryz * H4_2;
       const T H4_9 = H4_8 * fb_z_y;
-      const T H4_10 = T(2) * H4_5 * rzz - H4_2 * fa_y_x_fb_z_x;
+      const T H4_10 = H4_5 * rzz - H4_2 * fa_y_x_fb_z_x;
       const T H4_11 = fb_z_z * H4_10 - H4_9;
       const T H4_12 = H4_3 * fb_z_z;
       const T H4_13 = fb_z_y * H4_6 - H4_12;
@@ -1950,20 +1963,20 @@ struct six_dof {
       const T H4_2_2 = fb_z_x * H4_1_2 - fa_y_x * H4_7 - fa_z_x * H4_11;
       const T H4_1_3 = fa_y_y * H4_6 + fa_z_y * H4_10;
       const T H4_2_3 = fa_y_x * H4_13 + fa_z_x * H4_15 - fb_z_x * H4_1_3;
-      const T H4_1_4 = lambda[0] * H4_1 * (fa_y_y * rzz - fa_z_y * ryz);
+      const T H4_1_4 = H4_3 * fa_y_y - H4_8 * fa_z_y;
       const T H4_2_4 = H4_1_2 - H4_1_4;
-      const T H4_3_2 = lambda[0] * H4_1 * (fa_y_z * rzz - fa_z_z * ryz);
+      const T H4_3_2 = H4_3 * fa_y_z - H4_8 * fa_z_z;
       const T H4_4_2 = H4_1_3 + H4_3_2;
       const T H4_5_2 = fb_z_y * H4_2_4 - fb_z_z * H4_4_2;
       const T H4_1_5 = fa_y_x * H4_6 + fa_z_x * H4_10;
       const T H4_2_5 = fb_z_z * H4_1_5 - fb_z_x * H4_2_4;
       const T H4_1_6 = fb_z_x * H4_4_2 - fb_z_y * H4_1_5;
       const T H5_1 = H4_3 * fb_z_x;
-      const T H5_2 = lambda[0] * H4_1 * H4_1 * (fa_y_x_fb_z_y * rzz - ryz * fa_z_x_fb_z_y);
-      const T H5_3 = H4_2 * fa_z_x_fb_z_y + T(2) * H5_2 * ryz;
+      const T H5_2 = lambda[0] * H4_1 * H4_1 * T(2) * (fa_y_x_fb_z_y * rzz - ryz * fa_z_x_fb_z_y);
+      const T H5_3 = H4_2 * fa_z_x_fb_z_y + H5_2 * ryz;
       const T H5_4 = fb_z_z * H5_3 - H5_1;
       const T H5_5 = H4_8 * fb_z_x;
-      const T H5_6 = T(2) * H5_2 * rzz - H4_2 * fa_y_x_fb_z_y;
+      const T H5_6 = H5_2 * rzz - H4_2 * fa_y_x_fb_z_y;
       const T H5_7 = H5_5 + fb_z_z * H5_6;
       const T H5_8 = fa_y_z * H5_3 + fa_z_z * H5_6;
       const T H5_9 = fa_y_y * H5_4 + fa_z_y * H5_7 - fb_z_y * H5_8;
@@ -1972,7 +1985,7 @@ struct six_dof {
       const T H5_3_2 = fa_y_z * H5_1_2 - fa_y_x * H5_4 - fa_z_x * H5_7 + fa_z_z * H5_2_2;
       const T H5_1_3 = fa_y_x * H5_3 + fa_z_x * H5_6;
       const T H5_2_3 = fb_z_y * H5_1_3 - fa_y_y * H5_1_2 - fa_z_y * H5_2_2;
-      const T H5_1_4 = lambda[0] * H4_1 * (fa_y_x * rzz - fa_z_x * ryz);
+      const T H5_1_4 = H4_3 * fa_y_x - H4_8 * fa_z_x;
       const T H5_2_4 = H5_8 + H5_1_4;
       const T H5_3_3 = fa_y_y * H5_3 + fa_z_y * H5_6;
       const T H5_4_2 = fb_z_y * H5_2_4 - fb_z_z * H5_3_3;
@@ -1981,10 +1994,10 @@ struct six_dof {
       const T H5_1_6 = fb_z_x * H5_3_3 - fb_z_y * H5_1_5;
       const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
       const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
-      const T H6_1 = lambda[0] * H4_1 * H4_1 * (fa_y_x_fb_z_z * rzz - ryz * fa_z_x_fb_z_z);
-      const T H6_2 = H4_2 * fa_z_x_fb_z_z + T(2) * H6_1 * ryz;
+      const T H6_1 = lambda[0] * H4_1 * H4_1 * T(2) * (fa_y_x_fb_z_z * rzz - ryz * fa_z_x_fb_z_z);
+      const T H6_2 = H4_2 * fa_z_x_fb_z_z + H6_1 * ryz;
       const T H6_3 = H5_1 + fb_z_y * H6_2;
-      const T H6_4 = T(2) * H6_1 * rzz - H4_2 * fa_y_x_fb_z_z;
+      const T H6_4 = H6_1 * rzz - H4_2 * fa_y_x_fb_z_z;
       const T H6_5 = fb_z_y * H6_4 - H5_5;
       const T H6_6 = fa_y_y * H6_2 + fa_z_y * H6_4;
       const T H6_7 = fb_z_z * H6_6 - fa_y_z * H6_3 - fa_z_z * H6_5;
@@ -2132,17 +2145,18 @@ struct six_dof {
       J.wb_z = fb_z_x * wb_x_2 - fb_z_y * wb_y_1;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 17 +, 24 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-          (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-          (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+      const T K11_1 = J.wa_z * T(2);
+      const T K11_2 = J.wb_z * T(2);
+      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
+          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
+          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
+          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -2354,6 +2368,7 @@ struct six_dof {
       const T rxz_dot = dot_w_b_x_fb_z_fa_x + dot_w_a_x_fa_x_fb_z;
       const T g1_4 = inverse(g1_1);
       const T g1_5 = g1_3 * g1_4;
+      const T g1_6 = rxz * g1_5;
       const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
       const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
       const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
@@ -2390,10 +2405,9 @@ struct six_dof {
           w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
       const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z + T(2) *
           dot_w_a_x_fa_z_w_b_x_fb_z;
-      g[0] = g1_2 * (T(2) * (g1_3 + rxz_dot * rxz) * (rxz_dot * g1_1 - g1_5 * rxz) * g1_2 -
-          rxz_dot_dot * g1_1 - rxz * g1_4 *
-          (g1_5 * g1_5 - ryz_dot * ryz_dot - ryz_dot_dot * ryz - rzz_dot * rzz_dot - rzz_dot_dot *
-          rzz));
+      g[0] = g1_2 * (T(2) * (g1_3 + rxz_dot * rxz) * (rxz_dot * g1_1 - g1_6) * g1_2 - rxz_dot_dot *
+          g1_1 - g1_4 * (g1_6 * g1_5 -
+          (ryz_dot * ryz_dot + ryz_dot_dot * ryz + rzz_dot * rzz_dot + rzz_dot_dot * rzz) * rxz));
     }
 
     // dC/dt at fixed q: nothing
@@ -2402,7 +2416,7 @@ struct six_dof {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 187 +, 292 *, 2 /, 1 sqrt, 2 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 182 +, 252 *, 2 /, 1 sqrt, 2 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -2432,150 +2446,158 @@ struct six_dof {
       const T H4_3 = lambda[0] * H4_2;
       const T H4_4 = H4_1 * H4_3;
       const T H4_5 = H4_4 * fb_z_y;
-      const T H4_6 = H4_2 * H4_4;
-      const T fa_x_x_fb_z_x = fa_x_y * fb_z_z - fa_x_z * fb_z_y;
-      const T fa_x_x_fb_z_y = fa_x_z * fb_z_x - fa_x_x * fb_z_z;
-      const T H4_7 = inverse(H4_1);
-      const T H4_8 = H4_7 * rxz * H4_3;
-      const T H4_9 = ryz * H4_8;
-      const T H4_10 = H4_2 * H4_9;
-      const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
-      const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
-      const T H4_11 = rzz * H4_8;
-      const T H4_12 = H4_2 * H4_11;
-      const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
-      const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-      const T H4_13 = H4_6 * fa_x_x_fb_z_x - H4_10 * fa_y_x_fb_z_x - H4_12 * fa_z_x_fb_z_x;
-      const T H4_14 = H4_7 * (ryz * fa_y_x_fb_z_x + rzz * fa_z_x_fb_z_x);
-      const T H4_15 = T(-2) * H4_13 * rxz - lambda[0] * H4_2 * H4_14;
-      const T H4_16 = fb_z_z * H4_15 - H4_5;
-      const T H4_17 = H4_9 * fb_z_y;
-      const T H4_18 = lambda[0] * H4_2 * H4_7 * (fa_x_x_fb_z_x + rxz * H4_7 * H4_14) - T(2) * H4_13;
-      const T H4_19 = H4_18 * ryz - H4_8 * fa_y_x_fb_z_x;
-      const T H4_20 = H4_17 + fb_z_z * H4_19;
-      const T H4_21 = H4_11 * fb_z_y;
-      const T H4_22 = H4_18 * rzz - H4_8 * fa_z_x_fb_z_x;
-      const T H4_23 = H4_21 + fb_z_z * H4_22;
-      const T H4_24 = H4_4 * fb_z_z;
-      const T H4_25 = H4_24 + fb_z_y * H4_15;
-      const T H4_26 = H4_9 * fb_z_z;
-      const T H4_27 = fb_z_y * H4_19 - H4_26;
-      const T H4_28 = H4_11 * fb_z_z;
-      const T H4_29 = fb_z_y * H4_22 - H4_28;
-      const T H4_30 = fa_x_y * H4_16 + fa_y_y * H4_20 + fa_z_y * H4_23 - fa_x_z * H4_25 - fa_y_z *
-          H4_27 - fa_z_z * H4_29;
-      const T H4_1_2 = fa_z_z * H4_22 + fa_x_z * H4_15 + fa_y_z * H4_19;
-      const T H4_2_2 = fb_z_x * H4_1_2 - fa_x_x * H4_16 - fa_y_x * H4_20 - fa_z_x * H4_23;
-      const T H4_1_3 = fa_z_y * H4_22 + fa_x_y * H4_15 + fa_y_y * H4_19;
-      const T H4_2_3 = fa_x_x * H4_25 + fa_y_x * H4_27 + fa_z_x * H4_29 - fb_z_x * H4_1_3;
-      const T H4_1_4 = H4_11 * fa_z_y - H4_4 * fa_x_y + H4_9 * fa_y_y;
-      const T H4_2_4 = H4_1_2 - H4_1_4;
-      const T H4_3_2 = H4_11 * fa_z_z - H4_4 * fa_x_z + H4_9 * fa_y_z;
-      const T H4_4_2 = H4_3_2 + H4_1_3;
-      const T H4_1_5 = fa_x_x * H4_15 + fa_y_x * H4_19 + fa_z_x * H4_22;
-      const T H4_2_5 = fb_z_z * H4_1_5;
-      const T H4_1_6 = fb_z_y * H4_1_5;
+      const T H4_6 = inverse(H4_1);
+      const T H4_7 = H4_3 * H4_6;
+      const T H4_8 = ryz * H4_7;
+      const T H4_9 = fa_y_y * fb_z_z;
+      const T H4_10 = fb_z_y * fa_y_z;
+      const T fa_y_x_fb_z_x = H4_9 - H4_10;
+      const T H4_11 = fa_y_x * fb_z_z;
+      const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - H4_11;
+      const T H4_12 = rzz * H4_7;
+      const T H4_13 = fb_z_z * fa_z_y;
+      const T H4_14 = fb_z_y * fa_z_z;
+      const T fa_z_x_fb_z_x = H4_13 - H4_14;
+      const T H4_15 = fb_z_z * fa_z_x;
+      const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - H4_15;
+      const T H4_16 = H4_2 * T(2);
+      const T H4_17 = rxz * H4_16;
+      const T H4_18 = H4_4 * H4_17;
+      const T H4_19 = fa_x_y * fb_z_z;
+      const T H4_20 = fb_z_y * fa_x_z;
+      const T fa_x_x_fb_z_x = H4_19 - H4_20;
+      const T H4_21 = fb_z_z * fa_x_x;
+      const T fa_x_x_fb_z_y = fa_x_z * fb_z_x - H4_21;
+      const T H4_22 = rxz * H4_7;
+      const T H4_23 = ryz * H4_22;
+      const T H4_24 = rzz * H4_22;
+      const T H4_25 = fa_y_x_fb_z_x * H4_23 + fa_z_x_fb_z_x * H4_24;
+      const T H4_26 = H4_17 * H4_25 - H4_8 * fa_y_x_fb_z_x - H4_12 * fa_z_x_fb_z_x - H4_18 *
+          fa_x_x_fb_z_x;
+      const T H4_27 = fb_z_z * H4_26 - H4_5;
+      const T H4_28 = H4_23 * fb_z_y;
+      const T H4_29 = H4_7 - H4_4 * H4_16;
+      const T H4_30 = H4_16 + H4_6 * H4_6;
+      const T H4_31 = fa_x_x_fb_z_x * H4_29 + H4_25 * H4_30;
+      const T H4_32 = H4_31 * ryz - H4_22 * fa_y_x_fb_z_x;
+      const T H4_33 = H4_28 + fb_z_z * H4_32;
+      const T H4_34 = H4_24 * fb_z_y;
+      const T H4_35 = H4_31 * rzz - H4_22 * fa_z_x_fb_z_x;
+      const T H4_36 = H4_34 + fb_z_z * H4_35;
+      const T H4_37 = H4_4 * fb_z_z;
+      const T H4_38 = H4_37 + fb_z_y * H4_26;
+      const T H4_39 = H4_23 * fb_z_z;
+      const T H4_40 = fb_z_y * H4_32 - H4_39;
+      const T H4_41 = H4_24 * fb_z_z;
+      const T H4_42 = fb_z_y * H4_35 - H4_41;
+      const T H4_43 = fa_x_y * H4_27 + fa_y_y * H4_33 + fa_z_y * H4_36 - fa_x_z * H4_38 - fa_y_z *
+          H4_40 - fa_z_z * H4_42;
+      const T H4_1_2 = fb_z_x * H4_26;
+      const T H4_2_2 = fb_z_x * H4_32;
+      const T H4_3_2 = fb_z_x * H4_35;
+      const T H4_4_2 = H4_1_2 * fa_x_z - fa_x_x * H4_27 - fa_y_x * H4_33 - fa_z_x * H4_36 +
+          H4_2_2 * fa_y_z + H4_3_2 * fa_z_z;
+      const T H4_1_3 = fa_x_x * H4_38 + fa_y_x * H4_40 + fa_z_x * H4_42 - H4_1_2 * fa_x_y -
+          H4_2_2 * fa_y_y - H4_3_2 * fa_z_y;
+      const T H4_1_4 = H4_24 * fa_z_y - H4_4 * fa_x_y + H4_23 * fa_y_y;
+      const T H4_2_3 = fa_x_z * H4_26 - H4_1_4 + fa_y_z * H4_32 + fa_z_z * H4_35;
+      const T H4_3_3 = H4_24 * fa_z_z - H4_4 * fa_x_z + H4_23 * fa_y_z;
+      const T H4_4_3 = H4_3_3 + fa_x_y * H4_26 + fa_y_y * H4_32 + fa_z_y * H4_35;
+      const T H4_5_2 = fb_z_y * H4_2_3 - fb_z_z * H4_4_3;
+      const T H4_1_5 = fa_x_x * H4_26 + fa_y_x * H4_32 + fa_z_x * H4_35;
+      const T H4_2_4 = fb_z_z * H4_1_5 - fb_z_x * H4_2_3;
+      const T H4_1_6 = fb_z_x * H4_4_3 - fb_z_y * H4_1_5;
       const T H5_1 = H4_4 * fb_z_x;
-      const T H5_2 = H4_6 * fa_x_x_fb_z_y - H4_10 * fa_y_x_fb_z_y - H4_12 * fa_z_x_fb_z_y;
-      const T H5_3 = H4_7 * (ryz * fa_y_x_fb_z_y + rzz * fa_z_x_fb_z_y);
-      const T H5_4 = T(-2) * H5_2 * rxz - lambda[0] * H4_2 * H5_3;
-      const T H5_5 = H5_1 + fb_z_z * H5_4;
-      const T H5_6 = H4_9 * fb_z_x;
-      const T H5_7 = lambda[0] * H4_2 * H4_7 * (fa_x_x_fb_z_y + rxz * H4_7 * H5_3) - T(2) * H5_2;
-      const T H5_8 = H5_7 * ryz - H4_8 * fa_y_x_fb_z_y;
-      const T H5_9 = fb_z_z * H5_8 - H5_6;
-      const T H5_10 = H4_11 * fb_z_x;
-      const T H5_11 = H5_7 * rzz - H4_8 * fa_z_x_fb_z_y;
-      const T H5_12 = fb_z_z * H5_11 - H5_10;
-      const T H5_13 = fa_z_z * H5_11 + fa_x_z * H5_4 + fa_y_z * H5_8;
-      const T H5_14 = fa_x_y * H5_5 + fa_y_y * H5_9 + fa_z_y * H5_12 - fb_z_y * H5_13;
-      const T H5_1_2 = fb_z_x * H5_4 - H4_24;
-      const T H5_2_2 = H4_26 + fb_z_x * H5_8;
-      const T H5_3_2 = H4_28 + fb_z_x * H5_11;
-      const T H5_4_2 = fa_x_z * H5_1_2 - fa_x_x * H5_5 - fa_y_x * H5_9 - fa_z_x * H5_12 + fa_y_z *
+      const T H5_2 = H4_23 * fa_y_x_fb_z_y + H4_24 * fa_z_x_fb_z_y;
+      const T H5_3 = H4_17 * H5_2 - H4_8 * fa_y_x_fb_z_y - H4_12 * fa_z_x_fb_z_y - H4_18 *
+          fa_x_x_fb_z_y;
+      const T H5_4 = H5_1 + fb_z_z * H5_3;
+      const T H5_5 = H4_23 * fb_z_x;
+      const T H5_6 = fa_x_x_fb_z_y * H4_29 + H5_2 * H4_30;
+      const T H5_7 = H5_6 * ryz - H4_22 * fa_y_x_fb_z_y;
+      const T H5_8 = fb_z_z * H5_7 - H5_5;
+      const T H5_9 = H4_24 * fb_z_x;
+      const T H5_10 = H5_6 * rzz - H4_22 * fa_z_x_fb_z_y;
+      const T H5_11 = fb_z_z * H5_10 - H5_9;
+      const T H5_12 = fa_x_y * H5_4 + fa_y_y * H5_8 + fa_z_y * H5_11 - H4_20 * H5_3 - H4_10 *
+          H5_7 - H4_14 * H5_10;
+      const T H5_1_2 = fb_z_x * H5_3 - H4_37;
+      const T H5_2_2 = H4_39 + fb_z_x * H5_7;
+      const T H5_3_2 = H4_41 + fb_z_x * H5_10;
+      const T H5_4_2 = fa_x_z * H5_1_2 - fa_x_x * H5_4 - fa_y_x * H5_8 - fa_z_x * H5_11 + fa_y_z *
           H5_2_2 + fa_z_z * H5_3_2;
-      const T H5_1_3 = fa_z_x * H5_11 + fa_x_x * H5_4 + fa_y_x * H5_8;
+      const T H5_1_3 = fa_z_x * H5_10 + fa_x_x * H5_3 + fa_y_x * H5_7;
       const T H5_2_3 = fb_z_y * H5_1_3 - fa_x_y * H5_1_2 - fa_y_y * H5_2_2 - fa_z_y * H5_3_2;
-      const T H5_1_4 = H4_11 * fa_z_x - H4_4 * fa_x_x + H4_9 * fa_y_x;
-      const T H5_2_4 = H5_1_4 + H5_13;
-      const T H5_3_3 = fa_x_y * H5_4 + fa_y_y * H5_8 + fa_z_y * H5_11;
-      const T H5_4_3 = fb_z_z * H5_3_3;
-      const T H5_1_5 = H5_1_3 - H4_3_2;
-      const T H5_1_6 = fb_z_x * H5_3_3;
-      const T fa_x_x_fb_z_z = fa_x_x * fb_z_y - fa_x_y * fb_z_x;
+      const T H5_1_4 = H4_24 * fa_z_x - H4_4 * fa_x_x + H4_23 * fa_y_x;
+      const T H5_2_4 = H5_1_4 + fa_x_z * H5_3 + fa_y_z * H5_7 + fa_z_z * H5_10;
+      const T H5_3_3 = fa_x_y * H5_3 + fa_y_y * H5_7 + fa_z_y * H5_10;
+      const T H5_4_3 = fb_z_y * H5_2_4 - fb_z_z * H5_3_3;
+      const T H5_1_5 = H5_1_3 - H4_3_3;
+      const T H5_2_5 = fb_z_z * H5_1_5 - fb_z_x * H5_2_4;
+      const T H5_1_6 = fb_z_x * H5_3_3 - fb_z_y * H5_1_5;
       const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
       const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
-      const T H6_1 = H4_6 * fa_x_x_fb_z_z - H4_10 * fa_y_x_fb_z_z - H4_12 * fa_z_x_fb_z_z;
-      const T H6_2 = H4_7 * (ryz * fa_y_x_fb_z_z + rzz * fa_z_x_fb_z_z);
-      const T H6_3 = T(-2) * H6_1 * rxz - lambda[0] * H4_2 * H6_2;
-      const T H6_4 = fb_z_y * H6_3 - H5_1;
-      const T H6_5 = lambda[0] * H4_2 * H4_7 * (fa_x_x_fb_z_z + rxz * H4_7 * H6_2) - T(2) * H6_1;
-      const T H6_6 = H6_5 * ryz - H4_8 * fa_y_x_fb_z_z;
-      const T H6_7 = H5_6 + fb_z_y * H6_6;
-      const T H6_8 = H6_5 * rzz - H4_8 * fa_z_x_fb_z_z;
-      const T H6_9 = H5_10 + fb_z_y * H6_8;
-      const T H6_10 = fa_z_y * H6_8 + fa_x_y * H6_3 + fa_y_y * H6_6;
-      const T H6_11 = fb_z_z * H6_10 - fa_x_z * H6_4 - fa_y_z * H6_7 - fa_z_z * H6_9;
-      const T H6_1_2 = H4_5 + fb_z_x * H6_3;
-      const T H6_2_2 = fb_z_x * H6_6 - H4_17;
-      const T H6_3_2 = fb_z_x * H6_8 - H4_21;
-      const T H6_4_2 = fa_z_x * H6_8 + fa_x_x * H6_3 + fa_y_x * H6_6;
-      const T H6_5_2 = fa_x_z * H6_1_2 + fa_y_z * H6_2_2 + fa_z_z * H6_3_2 - fb_z_z * H6_4_2;
-      const T H6_1_3 = fa_x_x * H6_4 + fa_y_x * H6_7 + fa_z_x * H6_9 - fa_x_y * H6_1_2 - fa_y_y *
+      const T fa_x_x_fb_z_z = fa_x_x * fb_z_y - fa_x_y * fb_z_x;
+      const T H6_1 = H4_23 * fa_y_x_fb_z_z + H4_24 * fa_z_x_fb_z_z;
+      const T H6_2 = H4_17 * H6_1 - H4_8 * fa_y_x_fb_z_z - H4_12 * fa_z_x_fb_z_z - H4_18 *
+          fa_x_x_fb_z_z;
+      const T H6_3 = fa_x_x_fb_z_z * H4_29 + H6_1 * H4_30;
+      const T H6_4 = H6_3 * ryz - H4_22 * fa_y_x_fb_z_z;
+      const T H6_5 = H6_3 * rzz - H4_22 * fa_z_x_fb_z_z;
+      const T H6_6 = fb_z_y * H6_2 - H5_1;
+      const T H6_7 = H5_5 + fb_z_y * H6_4;
+      const T H6_8 = H5_9 + fb_z_y * H6_5;
+      const T H6_9 = H4_19 * H6_2 + H4_9 * H6_4 + H4_13 * H6_5 - fa_x_z * H6_6 - fa_y_z * H6_7 -
+          fa_z_z * H6_8;
+      const T H6_1_2 = H4_5 + fb_z_x * H6_2;
+      const T H6_2_2 = fb_z_x * H6_4 - H4_28;
+      const T H6_3_2 = fb_z_x * H6_5 - H4_34;
+      const T H6_4_2 = fa_x_z * H6_1_2 - H4_21 * H6_2 - H4_11 * H6_4 - H4_15 * H6_5 + fa_y_z *
+          H6_2_2 + fa_z_z * H6_3_2;
+      const T H6_1_3 = fa_x_x * H6_6 + fa_y_x * H6_7 + fa_z_x * H6_8 - fa_x_y * H6_1_2 - fa_y_y *
           H6_2_2 - fa_z_y * H6_3_2;
-      const T H6_1_4 = fa_x_z * H6_3 + fa_y_z * H6_6 + fa_z_z * H6_8;
-      const T H6_2_3 = fb_z_y * H6_1_4;
-      const T H6_3_3 = H6_10 - H5_1_4;
-      const T H6_1_5 = fb_z_x * H6_1_4;
-      const T H6_2_4 = H4_1_4 + H6_4_2;
-      const T H10_1 = lambda[0] * H4_2 *
-          (rxz * H4_7 * (fa_y_y * ryz + fa_z_y * rzz) - fa_x_y * H4_1);
-      const T H10_2 = H10_1 - H4_1_2;
-      const T H10_3 = lambda[0] * H4_2 *
-          (fa_x_z * H4_1 - rxz * H4_7 * (fa_y_z * ryz + fa_z_z * rzz));
-      const T H10_4 = H10_3 - H4_1_3;
-      const T H11_1 = lambda[0] * H4_2 *
-          (fa_x_x * H4_1 - rxz * H4_7 * (fa_y_x * ryz + fa_z_x * rzz));
-      const T H11_2 = H11_1 - H5_13;
-      const T H11_1_2 = H5_1_3 + H10_3;
-      const T H12_1 = H6_10 + H11_1;
-      const T H12_1_2 = H6_4_2 + H10_1;
-      H[3][3] = H4_30;
-      H[3][4] = H4_2_2;
-      H[3][5] = H4_2_3;
-      H[3][9] = fb_z_y * H4_2_4 - fb_z_z * H4_4_2;
-      H[3][10] = H4_2_5 - fb_z_x * H4_2_4;
-      H[3][11] = fb_z_x * H4_4_2 - H4_1_6;
-      H[4][3] = H5_14;
+      const T H6_1_4 = fa_x_z * H6_2 + fa_y_z * H6_4 + fa_z_z * H6_5;
+      const T H6_2_3 = fa_x_y * H6_2 - H5_1_4 + fa_y_y * H6_4 + fa_z_y * H6_5;
+      const T H6_3_3 = fb_z_y * H6_1_4 - fb_z_z * H6_2_3;
+      const T H6_1_5 = H4_1_4 + fa_x_x * H6_2 + fa_y_x * H6_4 + fa_z_x * H6_5;
+      const T H6_2_4 = fb_z_z * H6_1_5 - fb_z_x * H6_1_4;
+      const T H6_1_6 = fb_z_x * H6_2_3 - fb_z_y * H6_1_5;
+      H[3][3] = H4_43;
+      H[3][4] = H4_4_2;
+      H[3][5] = H4_1_3;
+      H[3][9] = H4_5_2;
+      H[3][10] = H4_2_4;
+      H[3][11] = H4_1_6;
+      H[4][3] = H5_12;
       H[4][4] = H5_4_2;
       H[4][5] = H5_2_3;
-      H[4][9] = fb_z_y * H5_2_4 - H5_4_3;
-      H[4][10] = fb_z_z * H5_1_5 - fb_z_x * H5_2_4;
-      H[4][11] = H5_1_6 - fb_z_y * H5_1_5;
-      H[5][3] = H6_11;
-      H[5][4] = H6_5_2;
+      H[4][9] = H5_4_3;
+      H[4][10] = H5_2_5;
+      H[4][11] = H5_1_6;
+      H[5][3] = H6_9;
+      H[5][4] = H6_4_2;
       H[5][5] = H6_1_3;
-      H[5][9] = H6_2_3 - fb_z_z * H6_3_3;
-      H[5][10] = fb_z_z * H6_2_4 - H6_1_5;
-      H[5][11] = fb_z_x * H6_3_3 - fb_z_y * H6_2_4;
-      H[9][3] = -H4_30;
-      H[9][4] = -H4_2_2;
-      H[9][5] = -H4_2_3;
-      H[9][9] = fb_z_y * H10_2 - fb_z_z * H10_4;
-      H[9][10] = -fb_z_x * H10_2 - H4_2_5;
-      H[9][11] = fb_z_x * H10_4 + H4_1_6;
-      H[10][3] = -H5_14;
+      H[5][9] = H6_3_3;
+      H[5][10] = H6_2_4;
+      H[5][11] = H6_1_6;
+      H[9][3] = -H4_43;
+      H[9][4] = -H4_4_2;
+      H[9][5] = -H4_1_3;
+      H[9][9] = -H4_5_2;
+      H[9][10] = -H4_2_4;
+      H[9][11] = -H4_1_6;
+      H[10][3] = -H5_12;
       H[10][4] = -H5_4_2;
       H[10][5] = -H5_2_3;
-      H[10][9] = fb_z_y * H11_2 + H5_4_3;
-      H[10][10] = -fb_z_x * H11_2 - fb_z_z * H11_1_2;
-      H[10][11] = fb_z_y * H11_1_2 - H5_1_6;
-      H[11][3] = -H6_11;
-      H[11][4] = -H6_5_2;
+      H[10][9] = -H5_4_3;
+      H[10][10] = -H5_2_5;
+      H[10][11] = -H5_1_6;
+      H[11][3] = -H6_9;
+      H[11][4] = -H6_4_2;
       H[11][5] = -H6_1_3;
-      H[11][9] = fb_z_z * H12_1 - H6_2_3;
-      H[11][10] = H6_1_5 - fb_z_z * H12_1_2;
-      H[11][11] = fb_z_y * H12_1_2 - fb_z_x * H12_1;
+      H[11][9] = -H6_3_3;
+      H[11][10] = -H6_2_4;
+      H[11][11] = -H6_1_6;
     }
 
     struct a_immovable;
@@ -2658,17 +2680,18 @@ struct six_dof {
       J.wb_z = wa_x_3 * fa_x_x_fb_y_z - wa_x_2 * fa_x_x_fb_x_z;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 17 +, 24 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-          (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-          (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+      const T K11_1 = J.wa_z * T(2);
+      const T K11_2 = J.wb_z * T(2);
+      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
+          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
+          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
+          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -2898,7 +2921,7 @@ struct six_dof {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 179 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 119 +, 164 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -2909,126 +2932,129 @@ struct six_dof {
       const Pose<T>& b = q[1];
       const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
       const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
       const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
       const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
       const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
       const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
       const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
       const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
       const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
       const T dot_fa_x_fb_y = fa_x_x * fb_y_x + fa_x_y * fb_y_y + fa_x_z * fb_y_z;
       const T H4_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_x_fb_y * dot_fa_x_fb_y);
-      const T H4_2 = lambda[0] * H4_1 * (fb_y_y * dot_fa_x_fb_x - fb_x_y * dot_fa_x_fb_y);
-      const T H4_3 = lambda[0] * H4_1;
-      const T fa_x_x_fb_y_x = fa_x_y * fb_y_z - fa_x_z * fb_y_y;
-      const T fa_x_x_fb_y_y = fa_x_z * fb_y_x - fa_x_x * fb_y_z;
-      const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
-      const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
-      const T H4_4 = lambda[0] * H4_1 * H4_1 *
-          (dot_fa_x_fb_x * fa_x_x_fb_y_x - dot_fa_x_fb_y * fa_x_x_fb_x_x);
-      const T H4_5 = T(2) * H4_4 * dot_fa_x_fb_x - H4_3 * fa_x_x_fb_y_x;
-      const T H4_6 = H4_3 * fa_x_x_fb_x_x + T(2) * H4_4 * dot_fa_x_fb_y;
-      const T H4_7 = fb_x_z * H4_5 + fb_y_z * H4_6;
-      const T H4_8 = H4_2 + H4_7;
-      const T H4_9 = lambda[0] * H4_1 * (fb_x_z * dot_fa_x_fb_y - fb_y_z * dot_fa_x_fb_x);
-      const T H4_10 = fb_x_y * H4_5 + fb_y_y * H4_6;
-      const T H4_11 = H4_9 + H4_10;
-      const T H4_12 = fa_x_y * H4_8 - fa_x_z * H4_11;
-      const T H4_1_2 = fb_x_x * H4_5 + fb_y_x * H4_6;
-      const T H4_2_2 = fa_x_z * H4_1_2 - fa_x_x * H4_8;
-      const T H4_1_3 = fa_x_x * H4_11 - fa_x_y * H4_1_2;
-      const T H4_1_4 = dot_fa_x_fb_y * H4_3;
-      const T H4_2_3 = H4_1_4 * fa_x_y;
-      const T H4_3_2 = H4_2_3 + fa_x_z * H4_5;
-      const T H4_4_2 = dot_fa_x_fb_x * H4_3;
-      const T H4_5_2 = H4_4_2 * fa_x_y;
-      const T H4_6_2 = fa_x_z * H4_6 - H4_5_2;
-      const T H4_7_2 = H4_1_4 * fa_x_z;
-      const T H4_8_2 = fa_x_y * H4_5 - H4_7_2;
-      const T H4_9_2 = H4_4_2 * fa_x_z;
-      const T H4_10_2 = H4_9_2 + fa_x_y * H4_6;
-      const T H4_11_2 = fb_x_y * H4_3_2 + fb_y_y * H4_6_2 - fb_x_z * H4_8_2 - fb_y_z * H4_10_2;
-      const T H4_1_5 = fa_x_x * H4_7 - fb_x_x * H4_3_2 - fb_y_x * H4_6_2;
-      const T H4_1_6 = fb_x_x * H4_8_2 + fb_y_x * H4_10_2 - fa_x_x * H4_10;
-      const T H5_1 = lambda[0] * H4_1 * (fb_x_x * dot_fa_x_fb_y - fb_y_x * dot_fa_x_fb_x);
-      const T H5_2 = lambda[0] * H4_1 * H4_1 *
-          (dot_fa_x_fb_x * fa_x_x_fb_y_y - dot_fa_x_fb_y * fa_x_x_fb_x_y);
-      const T H5_3 = T(2) * H5_2 * dot_fa_x_fb_x - H4_3 * fa_x_x_fb_y_y;
-      const T H5_4 = H4_3 * fa_x_x_fb_x_y + T(2) * H5_2 * dot_fa_x_fb_y;
-      const T H5_5 = fb_x_z * H5_3 + fb_y_z * H5_4;
-      const T H5_6 = H5_1 + H5_5;
-      const T H5_7 = fb_x_y * H5_3 + fb_y_y * H5_4;
-      const T H5_8 = fa_x_y * H5_6 - fa_x_z * H5_7;
+      const T H4_2 = lambda[0] * H4_1;
+      const T H4_3 = fa_x_y * fb_y_z;
+      const T H4_4 = fb_y_y * fa_x_z;
+      const T fa_x_x_fb_y_x = H4_3 - H4_4;
+      const T H4_5 = fb_y_x * fa_x_z;
+      const T fa_x_x_fb_y_y = H4_5 - fa_x_x * fb_y_z;
+      const T H4_6 = dot_fa_x_fb_x * H4_2;
+      const T H4_7 = H4_1 * T(2);
+      const T H4_8 = H4_6 * H4_7;
+      const T H4_9 = dot_fa_x_fb_y * H4_2;
+      const T H4_10 = H4_9 * H4_7;
+      const T H4_11 = fa_x_y * fb_x_z;
+      const T H4_12 = fb_x_y * fa_x_z;
+      const T fa_x_x_fb_x_x = H4_11 - H4_12;
+      const T H4_13 = fa_x_z * fb_x_x;
+      const T fa_x_x_fb_x_y = H4_13 - fa_x_x * fb_x_z;
+      const T H4_14 = H4_8 * fa_x_x_fb_y_x - H4_10 * fa_x_x_fb_x_x;
+      const T H4_15 = H4_14 * dot_fa_x_fb_x - H4_2 * fa_x_x_fb_y_x;
+      const T H4_16 = H4_2 * fa_x_x_fb_x_x + H4_14 * dot_fa_x_fb_y;
+      const T H4_17 = fb_x_z * H4_15 + fb_y_z * H4_16;
+      const T H4_18 = H4_9 * fb_x_y - H4_6 * fb_y_y;
+      const T H4_19 = H4_17 - H4_18;
+      const T H4_20 = fb_x_y * H4_15 + fb_y_y * H4_16;
+      const T H4_21 = H4_9 * fb_x_z - H4_6 * fb_y_z;
+      const T H4_22 = H4_20 + H4_21;
+      const T H4_23 = fa_x_y * H4_19 - fa_x_z * H4_22;
+      const T H4_1_2 = fb_x_x * H4_15 + fb_y_x * H4_16;
+      const T H4_2_2 = fa_x_z * H4_1_2 - fa_x_x * H4_19;
+      const T H4_1_3 = fa_x_x * H4_22 - fa_x_y * H4_1_2;
+      const T H4_1_4 = H4_9 * fa_x_y;
+      const T H4_2_3 = H4_1_4 + fa_x_z * H4_15;
+      const T H4_3_2 = H4_6 * fa_x_y;
+      const T H4_4_2 = fa_x_z * H4_16 - H4_3_2;
+      const T H4_5_2 = H4_9 * fa_x_z;
+      const T H4_6_2 = fa_x_y * H4_15 - H4_5_2;
+      const T H4_7_2 = H4_6 * fa_x_z;
+      const T H4_8_2 = H4_7_2 + fa_x_y * H4_16;
+      const T H4_9_2 = fb_x_y * H4_2_3 + fb_y_y * H4_4_2 - fb_x_z * H4_6_2 - fb_y_z * H4_8_2;
+      const T H4_1_5 = fa_x_x * H4_17 - fb_x_x * H4_2_3 - fb_y_x * H4_4_2;
+      const T H4_1_6 = fb_x_x * H4_6_2 + fb_y_x * H4_8_2 - fa_x_x * H4_20;
+      const T H5_1 = H4_9 * fb_x_x - H4_6 * fb_y_x;
+      const T H5_2 = H4_8 * fa_x_x_fb_y_y - H4_10 * fa_x_x_fb_x_y;
+      const T H5_3 = H5_2 * dot_fa_x_fb_x - H4_2 * fa_x_x_fb_y_y;
+      const T H5_4 = H4_2 * fa_x_x_fb_x_y + H5_2 * dot_fa_x_fb_y;
+      const T H5_5 = H5_1 + fb_x_z * H5_3 + fb_y_z * H5_4;
+      const T H5_6 = fb_x_y * H5_3 + fb_y_y * H5_4;
+      const T H5_7 = fa_x_y * H5_5 - fa_x_z * H5_6;
       const T H5_1_2 = fb_x_x * H5_3 + fb_y_x * H5_4;
-      const T H5_2_2 = H5_1_2 - H4_9;
-      const T H5_3_2 = fa_x_z * H5_2_2 - fa_x_x * H5_6;
-      const T H5_1_3 = fa_x_x * H5_7 - fa_x_y * H5_2_2;
-      const T H5_1_4 = H4_1_4 * fa_x_x;
+      const T H5_2_2 = H5_1_2 - H4_21;
+      const T H5_3_2 = fa_x_z * H5_2_2 - fa_x_x * H5_5;
+      const T H5_1_3 = fa_x_x * H5_6 - fa_x_y * H5_2_2;
+      const T H5_1_4 = H4_9 * fa_x_x;
       const T H5_2_3 = fa_x_z * H5_3 - H5_1_4;
-      const T H5_3_3 = H4_4_2 * fa_x_x;
+      const T H5_3_3 = H4_6 * fa_x_x;
       const T H5_4_2 = H5_3_3 + fa_x_z * H5_4;
-      const T H5_5_2 = fb_x_y * H5_2_3 + fb_y_y * H5_4_2 - fa_x_y * H5_5;
-      const T H5_1_5 = H4_7_2 + fa_x_x * H5_3;
-      const T H5_2_4 = fa_x_x * H5_4 - H4_9_2;
+      const T H5_5_2 = fb_x_y * H5_2_3 - H4_11 * H5_3 - H4_3 * H5_4 + fb_y_y * H5_4_2;
+      const T H5_1_5 = H4_5_2 + fa_x_x * H5_3;
+      const T H5_2_4 = fa_x_x * H5_4 - H4_7_2;
       const T H5_3_4 = fb_x_z * H5_1_5 - fb_x_x * H5_2_3 - fb_y_x * H5_4_2 + fb_y_z * H5_2_4;
       const T H5_1_6 = fa_x_y * H5_1_2 - fb_x_y * H5_1_5 - fb_y_y * H5_2_4;
       const T fa_x_x_fb_y_z = fa_x_x * fb_y_y - fa_x_y * fb_y_x;
       const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
-      const T H6_1 = lambda[0] * H4_1 * H4_1 *
-          (dot_fa_x_fb_x * fa_x_x_fb_y_z - dot_fa_x_fb_y * fa_x_x_fb_x_z);
-      const T H6_2 = T(2) * H6_1 * dot_fa_x_fb_x - H4_3 * fa_x_x_fb_y_z;
-      const T H6_3 = H4_3 * fa_x_x_fb_x_z + T(2) * H6_1 * dot_fa_x_fb_y;
+      const T H6_1 = H4_8 * fa_x_x_fb_y_z - H4_10 * fa_x_x_fb_x_z;
+      const T H6_2 = H6_1 * dot_fa_x_fb_x - H4_2 * fa_x_x_fb_y_z;
+      const T H6_3 = H4_2 * fa_x_x_fb_x_z + H6_1 * dot_fa_x_fb_y;
       const T H6_4 = fb_x_z * H6_2 + fb_y_z * H6_3;
-      const T H6_5 = fb_x_y * H6_2 + fb_y_y * H6_3;
-      const T H6_6 = H6_5 - H5_1;
-      const T H6_7 = fa_x_y * H6_4 - fa_x_z * H6_6;
-      const T H6_1_2 = fb_x_x * H6_2 + fb_y_x * H6_3;
-      const T H6_2_2 = H6_1_2 - H4_2;
-      const T H6_3_2 = fa_x_z * H6_2_2 - fa_x_x * H6_4;
-      const T H6_1_3 = fa_x_x * H6_6 - fa_x_y * H6_2_2;
+      const T H6_5 = fb_x_y * H6_2 - H5_1 + fb_y_y * H6_3;
+      const T H6_6 = fa_x_y * H6_4 - fa_x_z * H6_5;
+      const T H6_1_2 = H4_18 + fb_x_x * H6_2 + fb_y_x * H6_3;
+      const T H6_2_2 = fa_x_z * H6_1_2 - fa_x_x * H6_4;
+      const T H6_1_3 = fa_x_x * H6_5 - fa_x_y * H6_1_2;
       const T H6_1_4 = H5_1_4 + fa_x_y * H6_2;
       const T H6_2_3 = fa_x_y * H6_3 - H5_3_3;
-      const T H6_3_3 = fa_x_z * H6_5 - fb_x_z * H6_1_4 - fb_y_z * H6_2_3;
-      const T H6_1_5 = fa_x_x * H6_2 - H4_2_3;
-      const T H6_2_4 = H4_5_2 + fa_x_x * H6_3;
-      const T H6_3_4 = fb_x_z * H6_1_5 + fb_y_z * H6_2_4 - fa_x_z * H6_1_2;
+      const T H6_3_2 = H4_12 * H6_2 + H4_4 * H6_3 - fb_x_z * H6_1_4 - fb_y_z * H6_2_3;
+      const T H6_1_5 = fa_x_x * H6_2 - H4_1_4;
+      const T H6_2_4 = H4_3_2 + fa_x_x * H6_3;
+      const T H6_3_3 = fb_x_z * H6_1_5 - H4_13 * H6_2 - H4_5 * H6_3 + fb_y_z * H6_2_4;
       const T H6_1_6 = fb_x_x * H6_1_4 + fb_y_x * H6_2_3 - fb_x_y * H6_1_5 - fb_y_y * H6_2_4;
-      H[3][3] = H4_12;
+      H[3][3] = H4_23;
       H[3][4] = H4_2_2;
       H[3][5] = H4_1_3;
-      H[3][9] = H4_11_2;
+      H[3][9] = H4_9_2;
       H[3][10] = H4_1_5;
       H[3][11] = H4_1_6;
-      H[4][3] = H5_8;
+      H[4][3] = H5_7;
       H[4][4] = H5_3_2;
       H[4][5] = H5_1_3;
       H[4][9] = H5_5_2;
       H[4][10] = H5_3_4;
       H[4][11] = H5_1_6;
-      H[5][3] = H6_7;
-      H[5][4] = H6_3_2;
+      H[5][3] = H6_6;
+      H[5][4] = H6_2_2;
       H[5][5] = H6_1_3;
-      H[5][9] = H6_3_3;
-      H[5][10] = H6_3_4;
+      H[5][9] = H6_3_2;
+      H[5][10] = H6_3_3;
       H[5][11] = H6_1_6;
-      H[9][3] = -H4_12;
+      H[9][3] = -H4_23;
       H[9][4] = -H4_2_2;
       H[9][5] = -H4_1_3;
-      H[9][9] = -H4_11_2;
+      H[9][9] = -H4_9_2;
       H[9][10] = -H4_1_5;
       H[9][11] = -H4_1_6;
-      H[10][3] = -H5_8;
+      H[10][3] = -H5_7;
       H[10][4] = -H5_3_2;
       H[10][5] = -H5_1_3;
       H[10][9] = -H5_5_2;
       H[10][10] = -H5_3_4;
       H[10][11] = -H5_1_6;
-      H[11][3] = -H6_7;
-      H[11][4] = -H6_3_2;
+      H[11][3] = -H6_6;
+      H[11][4] = -H6_2_2;
       H[11][5] = -H6_1_3;
-      H[11][9] = -H6_3_3;
-      H[11][10] = -H6_3_4;
+      H[11][9] = -H6_3_2;
+      H[11][10] = -H6_3_3;
       H[11][11] = -H6_1_6;
     }
 
@@ -3127,17 +3153,18 @@ struct six_dof {
       J.wb_z = fb_y_x * wb_x_3 - fb_z_x * wb_x_4 - fb_y_y * wb_y_1 + fb_z_y * wb_y_2;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 17 +, 24 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-          (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-          (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+      const T K11_1 = J.wa_z * T(2);
+      const T K11_2 = J.wb_z * T(2);
+      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
+          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
+          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
+          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -3293,7 +3320,7 @@ struct six_dof {
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 119 +, 172 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 119 +, 171 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -3352,6 +3379,7 @@ struct six_dof {
       const T dot_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_fa_y_x + fb_y_y * w_a_x_fa_y_y + fb_y_z *
           w_a_x_fa_y_z;
       const T g1_5 = rzz_dot + dot_w_b_x_fb_y_fa_y + dot_w_a_x_fa_y_fb_y;
+      const T g1_6 = T(2) * (g1_4 * g1_2 + g1_5 * g1_1) * g1_3;
       const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
       const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
       const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
@@ -3364,8 +3392,8 @@ struct six_dof {
           w_a_x_w_a_x_fa_y_y + fb_z_z * w_a_x_w_a_x_fa_y_z;
       const T dot_w_a_x_fa_y_w_b_x_fb_z = w_a_x_fa_y_z * w_b_x_fb_z_z + w_a_x_fa_y_y *
           w_b_x_fb_z_y + w_a_x_fa_y_x * w_b_x_fb_z_x;
-      const T ryz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_y + dot_w_a_x_w_a_x_fa_y_fb_z + T(2) *
-          dot_w_a_x_fa_y_w_b_x_fb_z;
+      const T ryz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_y + dot_w_a_x_w_a_x_fa_y_fb_z +
+          dot_w_a_x_fa_y_w_b_x_fb_z * T(2);
       const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
       const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
       const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
@@ -3384,19 +3412,18 @@ struct six_dof {
           w_a_x_w_a_x_fa_z_y + fb_z_z * w_a_x_w_a_x_fa_z_z;
       const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
           w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
-      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z + T(2) *
-          dot_w_a_x_fa_z_w_b_x_fb_z;
+      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z +
+          dot_w_a_x_fa_z_w_b_x_fb_z * T(2);
       const T dot_w_b_x_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_w_b_x_fb_y_x + fa_y_y *
           w_b_x_w_b_x_fb_y_y + fa_y_z * w_b_x_w_b_x_fb_y_z;
       const T dot_w_a_x_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_w_a_x_fa_y_x + fb_y_y *
           w_a_x_w_a_x_fa_y_y + fb_y_z * w_a_x_w_a_x_fa_y_z;
       const T dot_w_a_x_fa_y_w_b_x_fb_y = w_a_x_fa_y_z * w_b_x_fb_y_z + w_a_x_fa_y_y *
           w_b_x_fb_y_y + w_a_x_fa_y_x * w_b_x_fb_y_x;
-      g[0] = g1_3 * (T(2) * (g1_4 * g1_1 - g1_5 * g1_2) * (g1_4 * g1_2 + g1_5 * g1_1) * g1_3 -
-          (dot_w_b_x_w_b_x_fb_y_fa_z - ryz_dot_dot + dot_w_a_x_w_a_x_fa_z_fb_y + T(2) *
-          dot_w_a_x_fa_z_w_b_x_fb_y) * g1_1 +
-          (rzz_dot_dot + dot_w_b_x_w_b_x_fb_y_fa_y + dot_w_a_x_w_a_x_fa_y_fb_y + T(2) *
-          dot_w_a_x_fa_y_w_b_x_fb_y) * g1_2);
+      g[0] = g1_3 * (g1_1 * (g1_6 * g1_4 + ryz_dot_dot - dot_w_b_x_w_b_x_fb_y_fa_z -
+          dot_w_a_x_w_a_x_fa_z_fb_y - dot_w_a_x_fa_z_w_b_x_fb_y * T(2)) + g1_2 *
+          (rzz_dot_dot - g1_6 * g1_5 + dot_w_b_x_w_b_x_fb_y_fa_y + dot_w_a_x_w_a_x_fa_y_fb_y +
+          dot_w_a_x_fa_y_w_b_x_fb_y * T(2)));
     }
 
     // dC/dt at fixed q: nothing
@@ -3405,7 +3432,7 @@ struct six_dof {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 206 +, 302 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 206 +, 276 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -3433,100 +3460,109 @@ struct six_dof {
       const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
       const T H4_2 = dot_fa_z_fb_y - ryz;
       const T H4_3 = inverse(H4_1 * H4_1 + H4_2 * H4_2);
-      const T H4_4 = lambda[0] * H4_3 * (H4_1 * fb_z_y + H4_2 * fb_y_y);
+      const T H4_4 = lambda[0] * H4_3;
+      const T H4_5 = H4_1 * H4_4;
+      const T H4_6 = H4_2 * H4_4;
+      const T H4_7 = H4_5 * fb_z_y + H4_6 * fb_y_y;
+      const T H4_8 = T(2) * H4_3 * H4_3;
+      const T H4_9 = H4_1 * H4_8;
       const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
       const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
-      const T H4_5 = lambda[0] * (fa_y_x_fb_z_x - fa_z_y * fb_y_z + fa_z_z * fb_y_y);
+      const T H4_10 = lambda[0] * fb_y_z;
+      const T H4_11 = lambda[0] * fb_y_y;
+      const T H4_12 = lambda[0] * fa_y_x_fb_z_x - H4_10 * fa_z_y + H4_11 * fa_z_z;
+      const T H4_13 = H4_2 * H4_8;
       const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
       const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-      const T H4_6 = lambda[0] * (fa_y_y * fb_y_z - fa_y_z * fb_y_y + fa_z_x_fb_z_x);
-      const T H4_7 = H4_3 * H4_3 * (H4_1 * H4_5 + H4_2 * H4_6);
-      const T H4_8 = T(2) * H4_1 * H4_7 - H4_5 * H4_3;
-      const T H4_9 = H4_6 * H4_3 - T(2) * H4_2 * H4_7;
-      const T H4_10 = H4_4 + fb_y_z * H4_8 + fb_z_z * H4_9;
-      const T H4_11 = lambda[0] * H4_3 * (H4_2 * fb_z_y - H4_1 * fb_y_y);
-      const T H4_12 = H4_11 - fb_y_z * H4_9 + fb_z_z * H4_8;
-      const T H4_13 = lambda[0] * H4_3 * (H4_1 * fb_z_z + H4_2 * fb_y_z);
-      const T H4_14 = H4_13 - fb_y_y * H4_8 - fb_z_y * H4_9;
-      const T H4_15 = lambda[0] * H4_3 * (H4_1 * fb_y_z - H4_2 * fb_z_z);
-      const T H4_16 = H4_15 - fb_y_y * H4_9 + fb_z_y * H4_8;
-      const T H4_17 = fa_y_y * H4_10 + fa_z_y * H4_12 + fa_y_z * H4_14 - fa_z_z * H4_16;
-      const T H4_1_2 = fb_y_x * H4_8 + fb_z_x * H4_9;
-      const T H4_2_2 = fb_z_x * H4_8 - fb_y_x * H4_9;
-      const T H4_3_2 = fa_y_z * H4_1_2 + fa_z_z * H4_2_2 - fa_y_x * H4_10 - fa_z_x * H4_12;
-      const T H4_1_3 = fa_z_x * H4_16 - fa_y_y * H4_1_2 - fa_z_y * H4_2_2 - fa_y_x * H4_14;
-      const T H4_1_4 = lambda[0] * H4_3 * (H4_1 * fa_z_y - H4_2 * fa_y_y);
-      const T H4_2_3 = fa_y_z * H4_8 - fa_z_z * H4_9 + H4_1_4;
-      const T H4_3_3 = lambda[0] * H4_3 * (H4_1 * fa_y_y + H4_2 * fa_z_y);
-      const T H4_4_2 = fa_y_z * H4_9 + fa_z_z * H4_8 - H4_3_3;
-      const T H4_5_2 = lambda[0] * H4_3 * (H4_1 * fa_z_z - H4_2 * fa_y_z);
-      const T H4_6_2 = fa_y_y * H4_8 - fa_z_y * H4_9 - H4_5_2;
-      const T H4_7_2 = lambda[0] * H4_3 * (H4_1 * fa_y_z + H4_2 * fa_z_z);
-      const T H4_8_2 = fa_y_y * H4_9 + fa_z_y * H4_8 + H4_7_2;
+      const T H4_14 = H4_10 * fa_y_y - H4_11 * fa_y_z + lambda[0] * fa_z_x_fb_z_x;
+      const T H4_15 = H4_9 * H4_12 + H4_13 * H4_14;
+      const T H4_16 = H4_1 * H4_15 - H4_12 * H4_3;
+      const T H4_17 = H4_14 * H4_3 - H4_2 * H4_15;
+      const T H4_18 = H4_7 + fb_y_z * H4_16 + fb_z_z * H4_17;
+      const T H4_19 = H4_5 * fb_y_y - H4_6 * fb_z_y;
+      const T H4_20 = fb_z_z * H4_16 - H4_19 - fb_y_z * H4_17;
+      const T H4_21 = H4_5 * fb_z_z + H4_6 * fb_y_z;
+      const T H4_22 = fb_y_y * H4_16 - H4_21 + fb_z_y * H4_17;
+      const T H4_23 = H4_5 * fb_y_z - H4_6 * fb_z_z;
+      const T H4_24 = H4_23 - fb_y_y * H4_17 + fb_z_y * H4_16;
+      const T H4_25 = fa_y_y * H4_18 + fa_z_y * H4_20 - fa_y_z * H4_22 - fa_z_z * H4_24;
+      const T H4_1_2 = fb_y_x * H4_16 + fb_z_x * H4_17;
+      const T H4_2_2 = fb_z_x * H4_16 - fb_y_x * H4_17;
+      const T H4_3_2 = fa_y_z * H4_1_2 - fa_y_x * H4_18 - fa_z_x * H4_20 + fa_z_z * H4_2_2;
+      const T H4_1_3 = fa_y_x * H4_22 + fa_z_x * H4_24 - fa_y_y * H4_1_2 - fa_z_y * H4_2_2;
+      const T H4_1_4 = H4_5 * fa_z_y - H4_6 * fa_y_y;
+      const T H4_2_3 = H4_1_4 + fa_y_z * H4_16 - fa_z_z * H4_17;
+      const T H4_3_3 = H4_5 * fa_y_y + H4_6 * fa_z_y;
+      const T H4_4_2 = fa_y_z * H4_17 - H4_3_3 + fa_z_z * H4_16;
+      const T H4_5_2 = H4_5 * fa_z_z - H4_6 * fa_y_z;
+      const T H4_6_2 = fa_y_y * H4_16 - H4_5_2 - fa_z_y * H4_17;
+      const T H4_7_2 = H4_5 * fa_y_z + H4_6 * fa_z_z;
+      const T H4_8_2 = H4_7_2 + fa_y_y * H4_17 + fa_z_y * H4_16;
       const T H4_9_2 = fb_y_y * H4_2_3 + fb_z_y * H4_4_2 - fb_y_z * H4_6_2 - fb_z_z * H4_8_2;
-      const T H4_1_5 = fa_y_x * H4_8 - fa_z_x * H4_9;
-      const T H4_2_4 = fa_y_x * H4_9 + fa_z_x * H4_8;
-      const T H4_3_4 = fb_y_z * H4_1_5 + fb_z_z * H4_2_4 - fb_y_x * H4_2_3 - fb_z_x * H4_4_2;
-      const T H4_1_6 = fb_y_x * H4_6_2 - fb_y_y * H4_1_5 - fb_z_y * H4_2_4 + fb_z_x * H4_8_2;
-      const T H5_1 = lambda[0] * (fa_y_x_fb_z_y + fa_z_x * fb_y_z - fa_z_z * fb_y_x);
-      const T H5_2 = lambda[0] * (fa_y_z * fb_y_x - fa_y_x * fb_y_z + fa_z_x_fb_z_y);
-      const T H5_3 = H4_3 * H4_3 * (H4_1 * H5_1 + H4_2 * H5_2);
-      const T H5_4 = T(2) * H4_1 * H5_3 - H5_1 * H4_3;
-      const T H5_5 = H5_2 * H4_3 - T(2) * H4_2 * H5_3;
-      const T H5_6 = fb_y_y * H5_4 + fb_z_y * H5_5;
-      const T H5_7 = fb_z_y * H5_4 - fb_y_y * H5_5;
-      const T H5_8 = lambda[0] * H4_3 * (H4_1 * fb_z_x + H4_2 * fb_y_x);
-      const T H5_9 = H5_8 - fb_y_z * H5_4 - fb_z_z * H5_5;
-      const T H5_10 = lambda[0] * H4_3 * (H4_1 * fb_y_x - H4_2 * fb_z_x);
-      const T H5_11 = H5_10 - fb_y_z * H5_5 + fb_z_z * H5_4;
-      const T H5_12 = fa_z_y * H5_11 - fa_y_z * H5_6 - fa_z_z * H5_7 - fa_y_y * H5_9;
-      const T H5_1_2 = fb_y_x * H5_4 + fb_z_x * H5_5 + H4_13;
-      const T H5_2_2 = fb_z_x * H5_4 - fb_y_x * H5_5 - H4_15;
-      const T H5_3_2 = fa_y_x * H5_9 - fa_z_x * H5_11 + fa_y_z * H5_1_2 + fa_z_z * H5_2_2;
-      const T H5_1_3 = fa_y_x * H5_6 + fa_z_x * H5_7 - fa_y_y * H5_1_2 - fa_z_y * H5_2_2;
-      const T H5_1_4 = fa_y_y * H5_4 - fa_z_y * H5_5;
-      const T H5_2_3 = fa_y_y * H5_5 + fa_z_y * H5_4;
-      const T H5_3_3 = lambda[0] * H4_3 * (H4_1 * fa_z_x - H4_2 * fa_y_x);
-      const T H5_4_2 = fa_y_z * H5_4 - fa_z_z * H5_5 - H5_3_3;
-      const T H5_5_2 = lambda[0] * H4_3 * (H4_1 * fa_y_x + H4_2 * fa_z_x);
-      const T H5_6_2 = fa_y_z * H5_5 + fa_z_z * H5_4 + H5_5_2;
-      const T H5_7_2 = fb_y_y * H5_4_2 - fb_y_z * H5_1_4 - fb_z_z * H5_2_3 + fb_z_y * H5_6_2;
-      const T H5_1_5 = fa_y_x * H5_4 - fa_z_x * H5_5 + H4_5_2;
-      const T H5_2_4 = fa_y_x * H5_5 + fa_z_x * H5_4 - H4_7_2;
-      const T H5_3_4 = fb_y_z * H5_1_5 - fb_y_x * H5_4_2 - fb_z_x * H5_6_2 + fb_z_z * H5_2_4;
-      const T H5_1_6 = fb_y_x * H5_1_4 + fb_z_x * H5_2_3 - fb_y_y * H5_1_5 - fb_z_y * H5_2_4;
+      const T H4_1_5 = fa_y_x * H4_16 - fa_z_x * H4_17;
+      const T H4_2_4 = fa_y_x * H4_17 + fa_z_x * H4_16;
+      const T H4_3_4 = fb_y_z * H4_1_5 - fb_y_x * H4_2_3 - fb_z_x * H4_4_2 + fb_z_z * H4_2_4;
+      const T H4_1_6 = fb_y_x * H4_6_2 + fb_z_x * H4_8_2 - fb_y_y * H4_1_5 - fb_z_y * H4_2_4;
+      const T H5_1 = H4_5 * fb_z_x + H4_6 * fb_y_x;
+      const T H5_2 = lambda[0] * fb_y_x;
+      const T H5_3 = lambda[0] * fa_y_x_fb_z_y + H4_10 * fa_z_x - H5_2 * fa_z_z;
+      const T H5_4 = H5_2 * fa_y_z - H4_10 * fa_y_x + lambda[0] * fa_z_x_fb_z_y;
+      const T H5_5 = H4_9 * H5_3 + H4_13 * H5_4;
+      const T H5_6 = H4_1 * H5_5 - H5_3 * H4_3;
+      const T H5_7 = H5_4 * H4_3 - H4_2 * H5_5;
+      const T H5_8 = fb_y_z * H5_6 - H5_1 + fb_z_z * H5_7;
+      const T H5_9 = H4_5 * fb_y_x - H4_6 * fb_z_x;
+      const T H5_10 = H5_9 - fb_y_z * H5_7 + fb_z_z * H5_6;
+      const T H5_11 = fb_y_y * H5_6 + fb_z_y * H5_7;
+      const T H5_12 = fb_z_y * H5_6 - fb_y_y * H5_7;
+      const T H5_13 = fa_y_y * H5_8 + fa_z_y * H5_10 - fa_y_z * H5_11 - fa_z_z * H5_12;
+      const T H5_1_2 = H4_21 + fb_y_x * H5_6 + fb_z_x * H5_7;
+      const T H5_2_2 = fb_z_x * H5_6 - H4_23 - fb_y_x * H5_7;
+      const T H5_3_2 = fa_y_z * H5_1_2 - fa_y_x * H5_8 - fa_z_x * H5_10 + fa_z_z * H5_2_2;
+      const T H5_1_3 = fa_y_x * H5_11 + fa_z_x * H5_12 - fa_y_y * H5_1_2 - fa_z_y * H5_2_2;
+      const T H5_1_4 = H4_5 * fa_z_x - H4_6 * fa_y_x;
+      const T H5_2_3 = fa_y_z * H5_6 - H5_1_4 - fa_z_z * H5_7;
+      const T H5_3_3 = H4_5 * fa_y_x + H4_6 * fa_z_x;
+      const T H5_4_2 = H5_3_3 + fa_y_z * H5_7 + fa_z_z * H5_6;
+      const T H5_5_2 = fa_y_y * H5_6 - fa_z_y * H5_7;
+      const T H5_6_2 = fa_y_y * H5_7 + fa_z_y * H5_6;
+      const T H5_7_2 = fb_y_y * H5_2_3 + fb_z_y * H5_4_2 - fb_y_z * H5_5_2 - fb_z_z * H5_6_2;
+      const T H5_1_5 = H4_5_2 + fa_y_x * H5_6 - fa_z_x * H5_7;
+      const T H5_2_4 = fa_y_x * H5_7 - H4_7_2 + fa_z_x * H5_6;
+      const T H5_3_4 = fb_y_z * H5_1_5 - fb_y_x * H5_2_3 - fb_z_x * H5_4_2 + fb_z_z * H5_2_4;
+      const T H5_1_6 = fb_y_x * H5_5_2 + fb_z_x * H5_6_2 - fb_y_y * H5_1_5 - fb_z_y * H5_2_4;
       const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
-      const T H6_1 = lambda[0] * (fa_y_x_fb_z_z - fa_z_x * fb_y_y + fa_z_y * fb_y_x);
+      const T H6_1 = lambda[0] * fa_y_x_fb_z_z - H4_11 * fa_z_x + H5_2 * fa_z_y;
       const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
-      const T H6_2 = lambda[0] * (fa_y_x * fb_y_y - fa_y_y * fb_y_x + fa_z_x_fb_z_z);
-      const T H6_3 = H4_3 * H4_3 * (H4_1 * H6_1 + H4_2 * H6_2);
-      const T H6_4 = T(2) * H4_1 * H6_3 - H6_1 * H4_3;
-      const T H6_5 = H6_2 * H4_3 - T(2) * H4_2 * H6_3;
+      const T H6_2 = H4_11 * fa_y_x - H5_2 * fa_y_y + lambda[0] * fa_z_x_fb_z_z;
+      const T H6_3 = H4_9 * H6_1 + H4_13 * H6_2;
+      const T H6_4 = H4_1 * H6_3 - H6_1 * H4_3;
+      const T H6_5 = H6_2 * H4_3 - H4_2 * H6_3;
       const T H6_6 = fb_y_z * H6_4 + fb_z_z * H6_5;
       const T H6_7 = fb_z_z * H6_4 - fb_y_z * H6_5;
-      const T H6_8 = fb_y_y * H6_4 + fb_z_y * H6_5 + H5_8;
-      const T H6_9 = fb_z_y * H6_4 - fb_y_y * H6_5 - H5_10;
+      const T H6_8 = H5_1 + fb_y_y * H6_4 + fb_z_y * H6_5;
+      const T H6_9 = fb_z_y * H6_4 - H5_9 - fb_y_y * H6_5;
       const T H6_10 = fa_y_y * H6_6 + fa_z_y * H6_7 - fa_y_z * H6_8 - fa_z_z * H6_9;
-      const T H6_1_2 = fb_y_x * H6_4 + fb_z_x * H6_5 - H4_4;
-      const T H6_2_2 = fb_z_x * H6_4 - fb_y_x * H6_5 - H4_11;
+      const T H6_1_2 = fb_y_x * H6_4 - H4_7 + fb_z_x * H6_5;
+      const T H6_2_2 = H4_19 - fb_y_x * H6_5 + fb_z_x * H6_4;
       const T H6_3_2 = fa_y_z * H6_1_2 - fa_y_x * H6_6 - fa_z_x * H6_7 + fa_z_z * H6_2_2;
       const T H6_1_3 = fa_y_x * H6_8 + fa_z_x * H6_9 - fa_y_y * H6_1_2 - fa_z_y * H6_2_2;
       const T H6_1_4 = fa_y_z * H6_4 - fa_z_z * H6_5;
       const T H6_2_3 = fa_y_z * H6_5 + fa_z_z * H6_4;
-      const T H6_3_3 = fa_y_y * H6_4 - fa_z_y * H6_5 + H5_3_3;
-      const T H6_4_2 = fa_y_y * H6_5 + fa_z_y * H6_4 - H5_5_2;
+      const T H6_3_3 = H5_1_4 + fa_y_y * H6_4 - fa_z_y * H6_5;
+      const T H6_4_2 = fa_y_y * H6_5 - H5_3_3 + fa_z_y * H6_4;
       const T H6_5_2 = fb_y_y * H6_1_4 + fb_z_y * H6_2_3 - fb_y_z * H6_3_3 - fb_z_z * H6_4_2;
-      const T H6_1_5 = fa_y_x * H6_4 - fa_z_x * H6_5 - H4_1_4;
-      const T H6_2_4 = fa_y_x * H6_5 + fa_z_x * H6_4 + H4_3_3;
+      const T H6_1_5 = fa_y_x * H6_4 - H4_1_4 - fa_z_x * H6_5;
+      const T H6_2_4 = H4_3_3 + fa_y_x * H6_5 + fa_z_x * H6_4;
       const T H6_3_4 = fb_y_z * H6_1_5 - fb_y_x * H6_1_4 - fb_z_x * H6_2_3 + fb_z_z * H6_2_4;
       const T H6_1_6 = fb_y_x * H6_3_3 + fb_z_x * H6_4_2 - fb_y_y * H6_1_5 - fb_z_y * H6_2_4;
-      H[3][3] = H4_17;
+      H[3][3] = H4_25;
       H[3][4] = H4_3_2;
       H[3][5] = H4_1_3;
       H[3][9] = H4_9_2;
       H[3][10] = H4_3_4;
       H[3][11] = H4_1_6;
-      H[4][3] = H5_12;
+      H[4][3] = H5_13;
       H[4][4] = H5_3_2;
       H[4][5] = H5_1_3;
       H[4][9] = H5_7_2;
@@ -3538,13 +3574,13 @@ struct six_dof {
       H[5][9] = H6_5_2;
       H[5][10] = H6_3_4;
       H[5][11] = H6_1_6;
-      H[9][3] = -H4_17;
+      H[9][3] = -H4_25;
       H[9][4] = -H4_3_2;
       H[9][5] = -H4_1_3;
       H[9][9] = -H4_9_2;
       H[9][10] = -H4_3_4;
       H[9][11] = -H4_1_6;
-      H[10][3] = -H5_12;
+      H[10][3] = -H5_13;
       H[10][4] = -H5_3_2;
       H[10][5] = -H5_1_3;
       H[10][9] = -H5_7_2;
@@ -3653,17 +3689,18 @@ struct six_dof {
       J.wb_z = fb_z_x * wb_x_4 - fb_x_x * wb_x_3 + fb_x_y * wb_y_1 - fb_z_y * wb_y_2;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 17 +, 24 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-          (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-          (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+      const T K11_1 = J.wa_z * T(2);
+      const T K11_2 = J.wb_z * T(2);
+      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
+          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
+          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
+          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -3819,7 +3856,7 @@ struct six_dof {
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 119 +, 172 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 119 +, 171 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -3878,6 +3915,7 @@ struct six_dof {
       const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
           w_a_x_fa_x_z;
       const T g1_5 = rzz_dot + dot_w_b_x_fb_x_fa_x + dot_w_a_x_fa_x_fb_x;
+      const T g1_6 = T(2) * (g1_4 * g1_2 + g1_5 * g1_1) * g1_3;
       const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
       const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
       const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
@@ -3890,8 +3928,8 @@ struct six_dof {
           w_a_x_w_a_x_fa_x_y + fb_z_z * w_a_x_w_a_x_fa_x_z;
       const T dot_w_a_x_fa_x_w_b_x_fb_z = w_a_x_fa_x_z * w_b_x_fb_z_z + w_a_x_fa_x_y *
           w_b_x_fb_z_y + w_a_x_fa_x_x * w_b_x_fb_z_x;
-      const T rxz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_x + dot_w_a_x_w_a_x_fa_x_fb_z + T(2) *
-          dot_w_a_x_fa_x_w_b_x_fb_z;
+      const T rxz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_x + dot_w_a_x_w_a_x_fa_x_fb_z +
+          dot_w_a_x_fa_x_w_b_x_fb_z * T(2);
       const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
       const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
       const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
@@ -3910,19 +3948,18 @@ struct six_dof {
           w_a_x_w_a_x_fa_z_y + fb_z_z * w_a_x_w_a_x_fa_z_z;
       const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
           w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
-      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z + T(2) *
-          dot_w_a_x_fa_z_w_b_x_fb_z;
+      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z +
+          dot_w_a_x_fa_z_w_b_x_fb_z * T(2);
       const T dot_w_b_x_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_w_b_x_fb_x_x + fa_x_y *
           w_b_x_w_b_x_fb_x_y + fa_x_z * w_b_x_w_b_x_fb_x_z;
       const T dot_w_a_x_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_w_a_x_fa_x_x + fb_x_y *
           w_a_x_w_a_x_fa_x_y + fb_x_z * w_a_x_w_a_x_fa_x_z;
       const T dot_w_a_x_fa_x_w_b_x_fb_x = w_a_x_fa_x_z * w_b_x_fb_x_z + w_a_x_fa_x_y *
           w_b_x_fb_x_y + w_a_x_fa_x_x * w_b_x_fb_x_x;
-      g[0] = g1_3 * (T(2) * (g1_4 * g1_1 - g1_5 * g1_2) * (g1_4 * g1_2 + g1_5 * g1_1) * g1_3 -
-          (rxz_dot_dot - dot_w_b_x_w_b_x_fb_x_fa_z - dot_w_a_x_w_a_x_fa_z_fb_x - T(2) *
-          dot_w_a_x_fa_z_w_b_x_fb_x) * g1_1 +
-          (rzz_dot_dot + dot_w_b_x_w_b_x_fb_x_fa_x + dot_w_a_x_w_a_x_fa_x_fb_x + T(2) *
-          dot_w_a_x_fa_x_w_b_x_fb_x) * g1_2);
+      g[0] = g1_3 * (g1_1 * (g1_6 * g1_4 - rxz_dot_dot + dot_w_b_x_w_b_x_fb_x_fa_z +
+          dot_w_a_x_w_a_x_fa_z_fb_x + dot_w_a_x_fa_z_w_b_x_fb_x * T(2)) + g1_2 *
+          (rzz_dot_dot - g1_6 * g1_5 + dot_w_b_x_w_b_x_fb_x_fa_x + dot_w_a_x_w_a_x_fa_x_fb_x +
+          dot_w_a_x_fa_x_w_b_x_fb_x * T(2)));
     }
 
     // dC/dt at fixed q: nothing
@@ -3931,7 +3968,7 @@ struct six_dof {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 206 +, 302 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 206 +, 275 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -3959,97 +3996,105 @@ struct six_dof {
       const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
       const T H4_2 = rxz - dot_fa_z_fb_x;
       const T H4_3 = inverse(H4_1 * H4_1 + H4_2 * H4_2);
-      const T H4_4 = lambda[0] * H4_3 * (H4_2 * fb_x_y - H4_1 * fb_z_y);
+      const T H4_4 = lambda[0] * H4_3;
+      const T H4_5 = H4_1 * H4_4;
+      const T H4_6 = H4_2 * H4_4;
+      const T H4_7 = H4_5 * fb_z_y - H4_6 * fb_x_y;
+      const T H4_8 = T(2) * H4_3 * H4_3;
+      const T H4_9 = H4_1 * H4_8;
       const T fa_x_x_fb_z_x = fa_x_y * fb_z_z - fa_x_z * fb_z_y;
       const T fa_x_x_fb_z_y = fa_x_z * fb_z_x - fa_x_x * fb_z_z;
-      const T H4_5 = lambda[0] * (fa_z_y * fb_x_z - fa_x_x_fb_z_x - fa_z_z * fb_x_y);
+      const T H4_10 = lambda[0] * fb_x_z;
+      const T H4_11 = lambda[0] * fa_z_z;
+      const T H4_12 = H4_10 * fa_z_y - lambda[0] * fa_x_x_fb_z_x - H4_11 * fb_x_y;
+      const T H4_13 = H4_2 * H4_8;
       const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
       const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
       const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
       const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-      const T H4_6 = lambda[0] * (fa_x_x_fb_x_x + fa_z_x_fb_z_x);
-      const T H4_7 = H4_3 * H4_3 * (H4_1 * H4_5 + H4_2 * H4_6);
-      const T H4_8 = T(2) * H4_1 * H4_7 - H4_5 * H4_3;
-      const T H4_9 = T(2) * H4_2 * H4_7 - H4_6 * H4_3;
-      const T H4_10 = H4_4 + fb_x_z * H4_8 + fb_z_z * H4_9;
-      const T H4_11 = lambda[0] * H4_3 * (H4_1 * fb_x_y + H4_2 * fb_z_y);
-      const T H4_12 = H4_11 - fb_x_z * H4_9 + fb_z_z * H4_8;
-      const T H4_13 = lambda[0] * H4_3 * (H4_1 * fb_z_z - H4_2 * fb_x_z);
-      const T H4_14 = H4_13 + fb_x_y * H4_8 + fb_z_y * H4_9;
-      const T H4_15 = lambda[0] * H4_3 * (H4_1 * fb_x_z + H4_2 * fb_z_z);
-      const T H4_16 = H4_15 + fb_x_y * H4_9 - fb_z_y * H4_8;
-      const T H4_17 = fa_x_y * H4_10 + fa_z_y * H4_12 - fa_x_z * H4_14 + fa_z_z * H4_16;
-      const T H4_1_2 = fb_x_x * H4_8 + fb_z_x * H4_9;
-      const T H4_2_2 = fb_z_x * H4_8 - fb_x_x * H4_9;
-      const T H4_3_2 = fa_x_z * H4_1_2 + fa_z_z * H4_2_2 - fa_x_x * H4_10 - fa_z_x * H4_12;
-      const T H4_1_3 = fa_x_x * H4_14 - fa_x_y * H4_1_2 - fa_z_y * H4_2_2 - fa_z_x * H4_16;
-      const T H4_1_4 = lambda[0] * H4_3 * (H4_1 * fa_z_y + H4_2 * fa_x_y);
-      const T H4_2_3 = fa_x_z * H4_8 - fa_z_z * H4_9 - H4_1_4;
-      const T H4_3_3 = lambda[0] * H4_3 * (H4_1 * fa_x_y - H4_2 * fa_z_y);
-      const T H4_4_2 = fa_x_z * H4_9 + fa_z_z * H4_8 + H4_3_3;
-      const T H4_5_2 = lambda[0] * H4_3 * (H4_1 * fa_z_z + H4_2 * fa_x_z);
-      const T H4_6_2 = fa_x_y * H4_8 - fa_z_y * H4_9 + H4_5_2;
-      const T H4_7_2 = lambda[0] * H4_3 * (H4_1 * fa_x_z - H4_2 * fa_z_z);
-      const T H4_8_2 = fa_x_y * H4_9 + fa_z_y * H4_8 - H4_7_2;
+      const T H4_14 = lambda[0] * (fa_x_x_fb_x_x + fa_z_x_fb_z_x);
+      const T H4_15 = H4_9 * H4_12 + H4_13 * H4_14;
+      const T H4_16 = H4_1 * H4_15 - H4_12 * H4_3;
+      const T H4_17 = H4_2 * H4_15 - H4_14 * H4_3;
+      const T H4_18 = fb_x_z * H4_16 - H4_7 + fb_z_z * H4_17;
+      const T H4_19 = H4_5 * fb_x_y + H4_6 * fb_z_y;
+      const T H4_20 = H4_19 - fb_x_z * H4_17 + fb_z_z * H4_16;
+      const T H4_21 = H4_5 * fb_z_z - H4_6 * fb_x_z;
+      const T H4_22 = H4_21 + fb_x_y * H4_16 + fb_z_y * H4_17;
+      const T H4_23 = H4_5 * fb_x_z + H4_6 * fb_z_z;
+      const T H4_24 = fb_z_y * H4_16 - H4_23 - fb_x_y * H4_17;
+      const T H4_25 = fa_x_y * H4_18 + fa_z_y * H4_20 - fa_x_z * H4_22 - fa_z_z * H4_24;
+      const T H4_1_2 = fb_x_x * H4_16 + fb_z_x * H4_17;
+      const T H4_2_2 = fb_z_x * H4_16 - fb_x_x * H4_17;
+      const T H4_3_2 = fa_x_z * H4_1_2 - fa_x_x * H4_18 - fa_z_x * H4_20 + fa_z_z * H4_2_2;
+      const T H4_1_3 = fa_x_x * H4_22 + fa_z_x * H4_24 - fa_x_y * H4_1_2 - fa_z_y * H4_2_2;
+      const T H4_1_4 = H4_5 * fa_z_y + H4_6 * fa_x_y;
+      const T H4_2_3 = fa_x_z * H4_16 - H4_1_4 - fa_z_z * H4_17;
+      const T H4_3_3 = H4_5 * fa_x_y - H4_6 * fa_z_y;
+      const T H4_4_2 = H4_3_3 + fa_x_z * H4_17 + fa_z_z * H4_16;
+      const T H4_5_2 = H4_5 * fa_z_z + H4_6 * fa_x_z;
+      const T H4_6_2 = H4_5_2 + fa_x_y * H4_16 - fa_z_y * H4_17;
+      const T H4_7_2 = H4_5 * fa_x_z - H4_6 * fa_z_z;
+      const T H4_8_2 = fa_x_y * H4_17 - H4_7_2 + fa_z_y * H4_16;
       const T H4_9_2 = fb_x_y * H4_2_3 + fb_z_y * H4_4_2 - fb_x_z * H4_6_2 - fb_z_z * H4_8_2;
-      const T H4_1_5 = fa_x_x * H4_8 - fa_z_x * H4_9;
-      const T H4_2_4 = fa_x_x * H4_9 + fa_z_x * H4_8;
-      const T H4_3_4 = fb_x_z * H4_1_5 + fb_z_z * H4_2_4 - fb_x_x * H4_2_3 - fb_z_x * H4_4_2;
-      const T H4_1_6 = fb_x_x * H4_6_2 - fb_x_y * H4_1_5 - fb_z_y * H4_2_4 + fb_z_x * H4_8_2;
-      const T H5_1 = lambda[0] * (fa_z_z * fb_x_x - fa_x_x_fb_z_y - fa_z_x * fb_x_z);
-      const T H5_2 = lambda[0] * (fa_x_x_fb_x_y + fa_z_x_fb_z_y);
-      const T H5_3 = H4_3 * H4_3 * (H4_1 * H5_1 + H4_2 * H5_2);
-      const T H5_4 = T(2) * H4_1 * H5_3 - H5_1 * H4_3;
-      const T H5_5 = T(2) * H4_2 * H5_3 - H5_2 * H4_3;
-      const T H5_6 = fb_x_y * H5_4 + fb_z_y * H5_5;
-      const T H5_7 = fb_z_y * H5_4 - fb_x_y * H5_5;
-      const T H5_8 = lambda[0] * H4_3 * (H4_1 * fb_z_x - H4_2 * fb_x_x);
-      const T H5_9 = H5_8 + fb_x_z * H5_4 + fb_z_z * H5_5;
-      const T H5_10 = lambda[0] * H4_3 * (H4_1 * fb_x_x + H4_2 * fb_z_x);
-      const T H5_11 = H5_10 + fb_x_z * H5_5 - fb_z_z * H5_4;
-      const T H5_12 = fa_x_y * H5_9 - fa_x_z * H5_6 - fa_z_z * H5_7 - fa_z_y * H5_11;
-      const T H5_1_2 = fb_x_x * H5_4 + fb_z_x * H5_5 - H4_13;
-      const T H5_2_2 = fb_z_x * H5_4 - fb_x_x * H5_5 + H4_15;
-      const T H5_3_2 = fa_z_x * H5_11 - fa_x_x * H5_9 + fa_x_z * H5_1_2 + fa_z_z * H5_2_2;
-      const T H5_1_3 = fa_x_x * H5_6 + fa_z_x * H5_7 - fa_x_y * H5_1_2 - fa_z_y * H5_2_2;
-      const T H5_1_4 = fa_x_y * H5_4 - fa_z_y * H5_5;
-      const T H5_2_3 = fa_x_y * H5_5 + fa_z_y * H5_4;
-      const T H5_3_3 = lambda[0] * H4_3 * (H4_1 * fa_z_x + H4_2 * fa_x_x);
-      const T H5_4_2 = fa_x_z * H5_4 - fa_z_z * H5_5 + H5_3_3;
-      const T H5_5_2 = lambda[0] * H4_3 * (H4_1 * fa_x_x - H4_2 * fa_z_x);
-      const T H5_6_2 = fa_x_z * H5_5 + fa_z_z * H5_4 - H5_5_2;
-      const T H5_7_2 = fb_x_y * H5_4_2 - fb_x_z * H5_1_4 - fb_z_z * H5_2_3 + fb_z_y * H5_6_2;
-      const T H5_1_5 = fa_x_x * H5_4 - fa_z_x * H5_5 - H4_5_2;
-      const T H5_2_4 = fa_x_x * H5_5 + fa_z_x * H5_4 + H4_7_2;
-      const T H5_3_4 = fb_x_z * H5_1_5 - fb_x_x * H5_4_2 - fb_z_x * H5_6_2 + fb_z_z * H5_2_4;
-      const T H5_1_6 = fb_x_x * H5_1_4 + fb_z_x * H5_2_3 - fb_x_y * H5_1_5 - fb_z_y * H5_2_4;
+      const T H4_1_5 = fa_x_x * H4_16 - fa_z_x * H4_17;
+      const T H4_2_4 = fa_x_x * H4_17 + fa_z_x * H4_16;
+      const T H4_3_4 = fb_x_z * H4_1_5 - fb_x_x * H4_2_3 - fb_z_x * H4_4_2 + fb_z_z * H4_2_4;
+      const T H4_1_6 = fb_x_x * H4_6_2 + fb_z_x * H4_8_2 - fb_x_y * H4_1_5 - fb_z_y * H4_2_4;
+      const T H5_1 = H4_5 * fb_z_x - H4_6 * fb_x_x;
+      const T H5_2 = H4_11 * fb_x_x - lambda[0] * fa_x_x_fb_z_y - H4_10 * fa_z_x;
+      const T H5_3 = lambda[0] * (fa_x_x_fb_x_y + fa_z_x_fb_z_y);
+      const T H5_4 = H4_9 * H5_2 + H4_13 * H5_3;
+      const T H5_5 = H4_1 * H5_4 - H5_2 * H4_3;
+      const T H5_6 = H4_2 * H5_4 - H5_3 * H4_3;
+      const T H5_7 = H5_1 + fb_x_z * H5_5 + fb_z_z * H5_6;
+      const T H5_8 = H4_5 * fb_x_x + H4_6 * fb_z_x;
+      const T H5_9 = fb_z_z * H5_5 - H5_8 - fb_x_z * H5_6;
+      const T H5_10 = fb_x_y * H5_5 + fb_z_y * H5_6;
+      const T H5_11 = fb_z_y * H5_5 - fb_x_y * H5_6;
+      const T H5_12 = fa_x_y * H5_7 + fa_z_y * H5_9 - fa_x_z * H5_10 - fa_z_z * H5_11;
+      const T H5_1_2 = fb_x_x * H5_5 - H4_21 + fb_z_x * H5_6;
+      const T H5_2_2 = H4_23 - fb_x_x * H5_6 + fb_z_x * H5_5;
+      const T H5_3_2 = fa_x_z * H5_1_2 - fa_x_x * H5_7 - fa_z_x * H5_9 + fa_z_z * H5_2_2;
+      const T H5_1_3 = fa_x_x * H5_10 + fa_z_x * H5_11 - fa_x_y * H5_1_2 - fa_z_y * H5_2_2;
+      const T H5_1_4 = H4_5 * fa_z_x + H4_6 * fa_x_x;
+      const T H5_2_3 = H5_1_4 + fa_x_z * H5_5 - fa_z_z * H5_6;
+      const T H5_3_3 = H4_5 * fa_x_x - H4_6 * fa_z_x;
+      const T H5_4_2 = fa_x_z * H5_6 - H5_3_3 + fa_z_z * H5_5;
+      const T H5_5_2 = fa_x_y * H5_5 - fa_z_y * H5_6;
+      const T H5_6_2 = fa_x_y * H5_6 + fa_z_y * H5_5;
+      const T H5_7_2 = fb_x_y * H5_2_3 + fb_z_y * H5_4_2 - fb_x_z * H5_5_2 - fb_z_z * H5_6_2;
+      const T H5_1_5 = fa_x_x * H5_5 - H4_5_2 - fa_z_x * H5_6;
+      const T H5_2_4 = H4_7_2 + fa_x_x * H5_6 + fa_z_x * H5_5;
+      const T H5_3_4 = fb_x_z * H5_1_5 - fb_x_x * H5_2_3 - fb_z_x * H5_4_2 + fb_z_z * H5_2_4;
+      const T H5_1_6 = fb_x_x * H5_5_2 + fb_z_x * H5_6_2 - fb_x_y * H5_1_5 - fb_z_y * H5_2_4;
       const T fa_x_x_fb_z_z = fa_x_x * fb_z_y - fa_x_y * fb_z_x;
       const T H6_1 = lambda[0] * (fa_z_x * fb_x_y - fa_x_x_fb_z_z - fa_z_y * fb_x_x);
       const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
       const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
       const T H6_2 = lambda[0] * (fa_x_x_fb_x_z + fa_z_x_fb_z_z);
-      const T H6_3 = H4_3 * H4_3 * (H4_1 * H6_1 + H4_2 * H6_2);
-      const T H6_4 = T(2) * H4_1 * H6_3 - H6_1 * H4_3;
-      const T H6_5 = T(2) * H4_2 * H6_3 - H6_2 * H4_3;
+      const T H6_3 = H4_9 * H6_1 + H4_13 * H6_2;
+      const T H6_4 = H4_1 * H6_3 - H6_1 * H4_3;
+      const T H6_5 = H4_2 * H6_3 - H6_2 * H4_3;
       const T H6_6 = fb_x_z * H6_4 + fb_z_z * H6_5;
       const T H6_7 = fb_z_z * H6_4 - fb_x_z * H6_5;
-      const T H6_8 = fb_x_y * H6_4 + fb_z_y * H6_5 - H5_8;
-      const T H6_9 = fb_z_y * H6_4 - fb_x_y * H6_5 + H5_10;
+      const T H6_8 = fb_x_y * H6_4 - H5_1 + fb_z_y * H6_5;
+      const T H6_9 = H5_8 - fb_x_y * H6_5 + fb_z_y * H6_4;
       const T H6_10 = fa_x_y * H6_6 + fa_z_y * H6_7 - fa_x_z * H6_8 - fa_z_z * H6_9;
-      const T H6_1_2 = fb_x_x * H6_4 + fb_z_x * H6_5 - H4_4;
-      const T H6_2_2 = fb_z_x * H6_4 - fb_x_x * H6_5 - H4_11;
+      const T H6_1_2 = H4_7 + fb_x_x * H6_4 + fb_z_x * H6_5;
+      const T H6_2_2 = fb_z_x * H6_4 - H4_19 - fb_x_x * H6_5;
       const T H6_3_2 = fa_x_z * H6_1_2 - fa_x_x * H6_6 - fa_z_x * H6_7 + fa_z_z * H6_2_2;
       const T H6_1_3 = fa_x_x * H6_8 + fa_z_x * H6_9 - fa_x_y * H6_1_2 - fa_z_y * H6_2_2;
       const T H6_1_4 = fa_x_z * H6_4 - fa_z_z * H6_5;
       const T H6_2_3 = fa_x_z * H6_5 + fa_z_z * H6_4;
-      const T H6_3_3 = fa_x_y * H6_4 - fa_z_y * H6_5 - H5_3_3;
-      const T H6_4_2 = fa_x_y * H6_5 + fa_z_y * H6_4 + H5_5_2;
+      const T H6_3_3 = fa_x_y * H6_4 - H5_1_4 - fa_z_y * H6_5;
+      const T H6_4_2 = H5_3_3 + fa_x_y * H6_5 + fa_z_y * H6_4;
       const T H6_5_2 = fb_x_y * H6_1_4 + fb_z_y * H6_2_3 - fb_x_z * H6_3_3 - fb_z_z * H6_4_2;
-      const T H6_1_5 = fa_x_x * H6_4 - fa_z_x * H6_5 + H4_1_4;
-      const T H6_2_4 = fa_x_x * H6_5 + fa_z_x * H6_4 - H4_3_3;
+      const T H6_1_5 = H4_1_4 + fa_x_x * H6_4 - fa_z_x * H6_5;
+      const T H6_2_4 = fa_x_x * H6_5 - H4_3_3 + fa_z_x * H6_4;
       const T H6_3_4 = fb_x_z * H6_1_5 - fb_x_x * H6_1_4 - fb_z_x * H6_2_3 + fb_z_z * H6_2_4;
       const T H6_1_6 = fb_x_x * H6_3_3 + fb_z_x * H6_4_2 - fb_x_y * H6_1_5 - fb_z_y * H6_2_4;
-      H[3][3] = H4_17;
+      H[3][3] = H4_25;
       H[3][4] = H4_3_2;
       H[3][5] = H4_1_3;
       H[3][9] = H4_9_2;
@@ -4067,7 +4112,7 @@ struct six_dof {
       H[5][9] = H6_5_2;
       H[5][10] = H6_3_4;
       H[5][11] = H6_1_6;
-      H[9][3] = -H4_17;
+      H[9][3] = -H4_25;
       H[9][4] = -H4_3_2;
       H[9][5] = -H4_1_3;
       H[9][9] = -H4_9_2;
@@ -4182,17 +4227,18 @@ struct six_dof {
       J.wb_z = fb_x_x * wb_x_3 - fb_y_x * wb_x_4 - fb_x_y * wb_y_1 + fb_y_y * wb_y_2;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 17 +, 24 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-          (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-          (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+      const T K11_1 = J.wa_z * T(2);
+      const T K11_2 = J.wb_z * T(2);
+      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
+          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
+          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
+          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -4348,7 +4394,7 @@ struct six_dof {
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 119 +, 172 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 119 +, 169 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -4375,13 +4421,6 @@ struct six_dof {
       const T g1_1 = dot_fa_x_fb_x + dot_fa_y_fb_y;
       const T g1_2 = dot_fa_y_fb_x - dot_fa_x_fb_y;
       const T g1_3 = inverse(g1_1 * g1_1 + g1_2 * g1_2);
-      const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
-      const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
-      const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
-          w_b_x_fb_x_z;
-      const T dot_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_fb_x_x + fa_y_y * w_b_x_fb_x_y + fa_y_z *
-          w_b_x_fb_x_z;
       const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
       const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
       const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
@@ -4389,13 +4428,13 @@ struct six_dof {
           w_b_x_fb_y_z;
       const T dot_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_fb_y_x + fa_y_y * w_b_x_fb_y_y + fa_y_z *
           w_b_x_fb_y_z;
-      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-      const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
-          w_a_x_fa_x_z;
-      const T dot_w_a_x_fa_x_fb_y = fb_y_x * w_a_x_fa_x_x + fb_y_y * w_a_x_fa_x_y + fb_y_z *
-          w_a_x_fa_x_z;
+      const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
+      const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
+      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
+      const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
+          w_b_x_fb_x_z;
+      const T dot_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_fb_x_x + fa_y_y * w_b_x_fb_x_y + fa_y_z *
+          w_b_x_fb_x_z;
       const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
       const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
       const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
@@ -4403,10 +4442,18 @@ struct six_dof {
           w_a_x_fa_y_z;
       const T dot_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_fa_y_x + fb_y_y * w_a_x_fa_y_y + fb_y_z *
           w_a_x_fa_y_z;
-      const T g1_4 = dot_w_b_x_fb_x_fa_x + dot_w_b_x_fb_y_fa_y + dot_w_a_x_fa_x_fb_x +
-          dot_w_a_x_fa_y_fb_y;
-      const T g1_5 = dot_w_b_x_fb_x_fa_y - dot_w_b_x_fb_y_fa_x + dot_w_a_x_fa_y_fb_x -
+      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
+      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
+      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
+      const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
+          w_a_x_fa_x_z;
+      const T dot_w_a_x_fa_x_fb_y = fb_y_x * w_a_x_fa_x_x + fb_y_y * w_a_x_fa_x_y + fb_y_z *
+          w_a_x_fa_x_z;
+      const T g1_4 = dot_w_b_x_fb_x_fa_y - dot_w_b_x_fb_y_fa_x + dot_w_a_x_fa_y_fb_x -
           dot_w_a_x_fa_x_fb_y;
+      const T g1_5 = dot_w_b_x_fb_x_fa_x + dot_w_b_x_fb_y_fa_y + dot_w_a_x_fa_x_fb_x +
+          dot_w_a_x_fa_y_fb_y;
+      const T g1_6 = T(2) * (g1_1 * g1_4 - g1_2 * g1_5) * g1_3;
       const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
       const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
       const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
@@ -4443,13 +4490,12 @@ struct six_dof {
           w_b_x_fb_x_y + w_a_x_fa_y_x * w_b_x_fb_x_x;
       const T dot_w_a_x_fa_y_w_b_x_fb_y = w_a_x_fa_y_z * w_b_x_fb_y_z + w_a_x_fa_y_y *
           w_b_x_fb_y_y + w_a_x_fa_y_x * w_b_x_fb_y_x;
-      g[0] = g1_3 * (T(2) * (g1_1 * g1_4 + g1_2 * g1_5) * (g1_1 * g1_5 - g1_2 * g1_4) * g1_3 -
-          g1_1 * (dot_w_b_x_w_b_x_fb_x_fa_y - dot_w_b_x_w_b_x_fb_y_fa_x +
-          dot_w_a_x_w_a_x_fa_y_fb_x - dot_w_a_x_w_a_x_fa_x_fb_y - T(2) *
-          dot_w_a_x_fa_x_w_b_x_fb_y + T(2) * dot_w_a_x_fa_y_w_b_x_fb_x) + g1_2 *
-          (dot_w_b_x_w_b_x_fb_x_fa_x + dot_w_b_x_w_b_x_fb_y_fa_y + dot_w_a_x_w_a_x_fa_x_fb_x +
-          dot_w_a_x_w_a_x_fa_y_fb_y + T(2) * dot_w_a_x_fa_x_w_b_x_fb_x + T(2) *
-          dot_w_a_x_fa_y_w_b_x_fb_y));
+      g[0] = g1_3 * (g1_1 * (g1_6 * g1_5 + dot_w_b_x_w_b_x_fb_y_fa_x - dot_w_b_x_w_b_x_fb_x_fa_y -
+          dot_w_a_x_w_a_x_fa_y_fb_x + dot_w_a_x_w_a_x_fa_x_fb_y - T(2) *
+          (dot_w_a_x_fa_y_w_b_x_fb_x - dot_w_a_x_fa_x_w_b_x_fb_y)) + g1_2 *
+          (g1_6 * g1_4 + dot_w_b_x_w_b_x_fb_x_fa_x + dot_w_b_x_w_b_x_fb_y_fa_y +
+          dot_w_a_x_w_a_x_fa_x_fb_x + dot_w_a_x_w_a_x_fa_y_fb_y + T(2) *
+          (dot_w_a_x_fa_x_w_b_x_fb_x + dot_w_a_x_fa_y_w_b_x_fb_y)));
     }
 
     // dC/dt at fixed q: nothing
@@ -4458,7 +4504,7 @@ struct six_dof {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 206 +, 302 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 206 +, 276 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -4486,100 +4532,109 @@ struct six_dof {
       const T H4_1 = dot_fa_x_fb_x + dot_fa_y_fb_y;
       const T H4_2 = dot_fa_y_fb_x - dot_fa_x_fb_y;
       const T H4_3 = inverse(H4_1 * H4_1 + H4_2 * H4_2);
-      const T H4_4 = lambda[0] * H4_3 * (H4_1 * fb_y_y + H4_2 * fb_x_y);
+      const T H4_4 = lambda[0] * H4_3;
+      const T H4_5 = H4_1 * H4_4;
+      const T H4_6 = H4_2 * H4_4;
+      const T H4_7 = H4_5 * fb_y_y + H4_6 * fb_x_y;
+      const T H4_8 = T(2) * H4_3 * H4_3;
+      const T H4_9 = H4_1 * H4_8;
       const T fa_x_x_fb_y_x = fa_x_y * fb_y_z - fa_x_z * fb_y_y;
       const T fa_x_x_fb_y_y = fa_x_z * fb_y_x - fa_x_x * fb_y_z;
-      const T H4_5 = lambda[0] * (fa_x_x_fb_y_x - fa_y_y * fb_x_z + fa_y_z * fb_x_y);
+      const T H4_10 = lambda[0] * fa_y_y;
+      const T H4_11 = lambda[0] * fa_y_z;
+      const T H4_12 = lambda[0] * fa_x_x_fb_y_x - H4_10 * fb_x_z + H4_11 * fb_x_y;
+      const T H4_13 = H4_2 * H4_8;
       const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
       const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
-      const T H4_6 = lambda[0] * (fa_x_x_fb_x_x + fa_y_y * fb_y_z - fa_y_z * fb_y_y);
-      const T H4_7 = H4_3 * H4_3 * (H4_1 * H4_5 + H4_2 * H4_6);
-      const T H4_8 = T(2) * H4_1 * H4_7 - H4_5 * H4_3;
-      const T H4_9 = H4_6 * H4_3 - T(2) * H4_2 * H4_7;
-      const T H4_10 = H4_4 + fb_x_z * H4_8 + fb_y_z * H4_9;
-      const T H4_11 = lambda[0] * H4_3 * (H4_2 * fb_y_y - H4_1 * fb_x_y);
-      const T H4_12 = H4_11 - fb_x_z * H4_9 + fb_y_z * H4_8;
-      const T H4_13 = lambda[0] * H4_3 * (H4_1 * fb_y_z + H4_2 * fb_x_z);
-      const T H4_14 = H4_13 - fb_x_y * H4_8 - fb_y_y * H4_9;
-      const T H4_15 = lambda[0] * H4_3 * (H4_1 * fb_x_z - H4_2 * fb_y_z);
-      const T H4_16 = H4_15 - fb_x_y * H4_9 + fb_y_y * H4_8;
-      const T H4_17 = fa_x_y * H4_10 + fa_y_y * H4_12 + fa_x_z * H4_14 - fa_y_z * H4_16;
-      const T H4_1_2 = fb_x_x * H4_8 + fb_y_x * H4_9;
-      const T H4_2_2 = fb_y_x * H4_8 - fb_x_x * H4_9;
-      const T H4_3_2 = fa_x_z * H4_1_2 + fa_y_z * H4_2_2 - fa_x_x * H4_10 - fa_y_x * H4_12;
-      const T H4_1_3 = fa_y_x * H4_16 - fa_x_y * H4_1_2 - fa_y_y * H4_2_2 - fa_x_x * H4_14;
-      const T H4_1_4 = lambda[0] * H4_3 * (H4_1 * fa_y_y - H4_2 * fa_x_y);
-      const T H4_2_3 = fa_x_z * H4_8 - fa_y_z * H4_9 + H4_1_4;
-      const T H4_3_3 = lambda[0] * H4_3 * (H4_1 * fa_x_y + H4_2 * fa_y_y);
-      const T H4_4_2 = fa_x_z * H4_9 + fa_y_z * H4_8 - H4_3_3;
-      const T H4_5_2 = lambda[0] * H4_3 * (H4_1 * fa_y_z - H4_2 * fa_x_z);
-      const T H4_6_2 = fa_x_y * H4_8 - fa_y_y * H4_9 - H4_5_2;
-      const T H4_7_2 = lambda[0] * H4_3 * (H4_1 * fa_x_z + H4_2 * fa_y_z);
-      const T H4_8_2 = fa_x_y * H4_9 + fa_y_y * H4_8 + H4_7_2;
+      const T H4_14 = lambda[0] * fa_x_x_fb_x_x + H4_10 * fb_y_z - H4_11 * fb_y_y;
+      const T H4_15 = H4_9 * H4_12 + H4_13 * H4_14;
+      const T H4_16 = H4_1 * H4_15 - H4_12 * H4_3;
+      const T H4_17 = H4_14 * H4_3 - H4_2 * H4_15;
+      const T H4_18 = H4_7 + fb_x_z * H4_16 + fb_y_z * H4_17;
+      const T H4_19 = H4_5 * fb_x_y - H4_6 * fb_y_y;
+      const T H4_20 = fb_y_z * H4_16 - H4_19 - fb_x_z * H4_17;
+      const T H4_21 = H4_5 * fb_y_z + H4_6 * fb_x_z;
+      const T H4_22 = fb_x_y * H4_16 - H4_21 + fb_y_y * H4_17;
+      const T H4_23 = H4_5 * fb_x_z - H4_6 * fb_y_z;
+      const T H4_24 = H4_23 - fb_x_y * H4_17 + fb_y_y * H4_16;
+      const T H4_25 = fa_x_y * H4_18 + fa_y_y * H4_20 - fa_x_z * H4_22 - fa_y_z * H4_24;
+      const T H4_1_2 = fb_x_x * H4_16 + fb_y_x * H4_17;
+      const T H4_2_2 = fb_y_x * H4_16 - fb_x_x * H4_17;
+      const T H4_3_2 = fa_x_z * H4_1_2 - fa_x_x * H4_18 - fa_y_x * H4_20 + fa_y_z * H4_2_2;
+      const T H4_1_3 = fa_x_x * H4_22 + fa_y_x * H4_24 - fa_x_y * H4_1_2 - fa_y_y * H4_2_2;
+      const T H4_1_4 = H4_5 * fa_y_y - H4_6 * fa_x_y;
+      const T H4_2_3 = H4_1_4 + fa_x_z * H4_16 - fa_y_z * H4_17;
+      const T H4_3_3 = H4_5 * fa_x_y + H4_6 * fa_y_y;
+      const T H4_4_2 = fa_x_z * H4_17 - H4_3_3 + fa_y_z * H4_16;
+      const T H4_5_2 = H4_5 * fa_y_z - H4_6 * fa_x_z;
+      const T H4_6_2 = fa_x_y * H4_16 - H4_5_2 - fa_y_y * H4_17;
+      const T H4_7_2 = H4_5 * fa_x_z + H4_6 * fa_y_z;
+      const T H4_8_2 = H4_7_2 + fa_x_y * H4_17 + fa_y_y * H4_16;
       const T H4_9_2 = fb_x_y * H4_2_3 + fb_y_y * H4_4_2 - fb_x_z * H4_6_2 - fb_y_z * H4_8_2;
-      const T H4_1_5 = fa_x_x * H4_8 - fa_y_x * H4_9;
-      const T H4_2_4 = fa_x_x * H4_9 + fa_y_x * H4_8;
-      const T H4_3_4 = fb_x_z * H4_1_5 + fb_y_z * H4_2_4 - fb_x_x * H4_2_3 - fb_y_x * H4_4_2;
-      const T H4_1_6 = fb_x_x * H4_6_2 - fb_x_y * H4_1_5 - fb_y_y * H4_2_4 + fb_y_x * H4_8_2;
-      const T H5_1 = lambda[0] * (fa_x_x_fb_y_y + fa_y_x * fb_x_z - fa_y_z * fb_x_x);
-      const T H5_2 = lambda[0] * (fa_x_x_fb_x_y - fa_y_x * fb_y_z + fa_y_z * fb_y_x);
-      const T H5_3 = H4_3 * H4_3 * (H4_1 * H5_1 + H4_2 * H5_2);
-      const T H5_4 = T(2) * H4_1 * H5_3 - H5_1 * H4_3;
-      const T H5_5 = H5_2 * H4_3 - T(2) * H4_2 * H5_3;
-      const T H5_6 = fb_x_y * H5_4 + fb_y_y * H5_5;
-      const T H5_7 = fb_y_y * H5_4 - fb_x_y * H5_5;
-      const T H5_8 = lambda[0] * H4_3 * (H4_1 * fb_y_x + H4_2 * fb_x_x);
-      const T H5_9 = H5_8 - fb_x_z * H5_4 - fb_y_z * H5_5;
-      const T H5_10 = lambda[0] * H4_3 * (H4_1 * fb_x_x - H4_2 * fb_y_x);
-      const T H5_11 = H5_10 - fb_x_z * H5_5 + fb_y_z * H5_4;
-      const T H5_12 = fa_y_y * H5_11 - fa_x_z * H5_6 - fa_y_z * H5_7 - fa_x_y * H5_9;
-      const T H5_1_2 = fb_x_x * H5_4 + fb_y_x * H5_5 + H4_13;
-      const T H5_2_2 = fb_y_x * H5_4 - fb_x_x * H5_5 - H4_15;
-      const T H5_3_2 = fa_x_x * H5_9 - fa_y_x * H5_11 + fa_x_z * H5_1_2 + fa_y_z * H5_2_2;
-      const T H5_1_3 = fa_x_x * H5_6 + fa_y_x * H5_7 - fa_x_y * H5_1_2 - fa_y_y * H5_2_2;
-      const T H5_1_4 = fa_x_y * H5_4 - fa_y_y * H5_5;
-      const T H5_2_3 = fa_x_y * H5_5 + fa_y_y * H5_4;
-      const T H5_3_3 = lambda[0] * H4_3 * (H4_1 * fa_y_x - H4_2 * fa_x_x);
-      const T H5_4_2 = fa_x_z * H5_4 - fa_y_z * H5_5 - H5_3_3;
-      const T H5_5_2 = lambda[0] * H4_3 * (H4_1 * fa_x_x + H4_2 * fa_y_x);
-      const T H5_6_2 = fa_x_z * H5_5 + fa_y_z * H5_4 + H5_5_2;
-      const T H5_7_2 = fb_x_y * H5_4_2 - fb_x_z * H5_1_4 - fb_y_z * H5_2_3 + fb_y_y * H5_6_2;
-      const T H5_1_5 = fa_x_x * H5_4 - fa_y_x * H5_5 + H4_5_2;
-      const T H5_2_4 = fa_x_x * H5_5 + fa_y_x * H5_4 - H4_7_2;
-      const T H5_3_4 = fb_x_z * H5_1_5 - fb_x_x * H5_4_2 - fb_y_x * H5_6_2 + fb_y_z * H5_2_4;
-      const T H5_1_6 = fb_x_x * H5_1_4 + fb_y_x * H5_2_3 - fb_x_y * H5_1_5 - fb_y_y * H5_2_4;
+      const T H4_1_5 = fa_x_x * H4_16 - fa_y_x * H4_17;
+      const T H4_2_4 = fa_x_x * H4_17 + fa_y_x * H4_16;
+      const T H4_3_4 = fb_x_z * H4_1_5 - fb_x_x * H4_2_3 - fb_y_x * H4_4_2 + fb_y_z * H4_2_4;
+      const T H4_1_6 = fb_x_x * H4_6_2 + fb_y_x * H4_8_2 - fb_x_y * H4_1_5 - fb_y_y * H4_2_4;
+      const T H5_1 = H4_5 * fb_y_x + H4_6 * fb_x_x;
+      const T H5_2 = lambda[0] * fa_y_x;
+      const T H5_3 = lambda[0] * fa_x_x_fb_y_y + H5_2 * fb_x_z - H4_11 * fb_x_x;
+      const T H5_4 = lambda[0] * fa_x_x_fb_x_y - H5_2 * fb_y_z + H4_11 * fb_y_x;
+      const T H5_5 = H4_9 * H5_3 + H4_13 * H5_4;
+      const T H5_6 = H4_1 * H5_5 - H5_3 * H4_3;
+      const T H5_7 = H5_4 * H4_3 - H4_2 * H5_5;
+      const T H5_8 = fb_x_z * H5_6 - H5_1 + fb_y_z * H5_7;
+      const T H5_9 = H4_5 * fb_x_x - H4_6 * fb_y_x;
+      const T H5_10 = H5_9 - fb_x_z * H5_7 + fb_y_z * H5_6;
+      const T H5_11 = fb_x_y * H5_6 + fb_y_y * H5_7;
+      const T H5_12 = fb_y_y * H5_6 - fb_x_y * H5_7;
+      const T H5_13 = fa_x_y * H5_8 + fa_y_y * H5_10 - fa_x_z * H5_11 - fa_y_z * H5_12;
+      const T H5_1_2 = H4_21 + fb_x_x * H5_6 + fb_y_x * H5_7;
+      const T H5_2_2 = fb_y_x * H5_6 - H4_23 - fb_x_x * H5_7;
+      const T H5_3_2 = fa_x_z * H5_1_2 - fa_x_x * H5_8 - fa_y_x * H5_10 + fa_y_z * H5_2_2;
+      const T H5_1_3 = fa_x_x * H5_11 + fa_y_x * H5_12 - fa_x_y * H5_1_2 - fa_y_y * H5_2_2;
+      const T H5_1_4 = H4_5 * fa_y_x - H4_6 * fa_x_x;
+      const T H5_2_3 = fa_x_z * H5_6 - H5_1_4 - fa_y_z * H5_7;
+      const T H5_3_3 = H4_5 * fa_x_x + H4_6 * fa_y_x;
+      const T H5_4_2 = H5_3_3 + fa_x_z * H5_7 + fa_y_z * H5_6;
+      const T H5_5_2 = fa_x_y * H5_6 - fa_y_y * H5_7;
+      const T H5_6_2 = fa_x_y * H5_7 + fa_y_y * H5_6;
+      const T H5_7_2 = fb_x_y * H5_2_3 + fb_y_y * H5_4_2 - fb_x_z * H5_5_2 - fb_y_z * H5_6_2;
+      const T H5_1_5 = H4_5_2 + fa_x_x * H5_6 - fa_y_x * H5_7;
+      const T H5_2_4 = fa_x_x * H5_7 - H4_7_2 + fa_y_x * H5_6;
+      const T H5_3_4 = fb_x_z * H5_1_5 - fb_x_x * H5_2_3 - fb_y_x * H5_4_2 + fb_y_z * H5_2_4;
+      const T H5_1_6 = fb_x_x * H5_5_2 + fb_y_x * H5_6_2 - fb_x_y * H5_1_5 - fb_y_y * H5_2_4;
       const T fa_x_x_fb_y_z = fa_x_x * fb_y_y - fa_x_y * fb_y_x;
-      const T H6_1 = lambda[0] * (fa_x_x_fb_y_z - fa_y_x * fb_x_y + fa_y_y * fb_x_x);
+      const T H6_1 = lambda[0] * fa_x_x_fb_y_z - H5_2 * fb_x_y + H4_10 * fb_x_x;
       const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
-      const T H6_2 = lambda[0] * (fa_x_x_fb_x_z + fa_y_x * fb_y_y - fa_y_y * fb_y_x);
-      const T H6_3 = H4_3 * H4_3 * (H4_1 * H6_1 + H4_2 * H6_2);
-      const T H6_4 = T(2) * H4_1 * H6_3 - H6_1 * H4_3;
-      const T H6_5 = H6_2 * H4_3 - T(2) * H4_2 * H6_3;
+      const T H6_2 = lambda[0] * fa_x_x_fb_x_z + H5_2 * fb_y_y - H4_10 * fb_y_x;
+      const T H6_3 = H4_9 * H6_1 + H4_13 * H6_2;
+      const T H6_4 = H4_1 * H6_3 - H6_1 * H4_3;
+      const T H6_5 = H6_2 * H4_3 - H4_2 * H6_3;
       const T H6_6 = fb_x_z * H6_4 + fb_y_z * H6_5;
       const T H6_7 = fb_y_z * H6_4 - fb_x_z * H6_5;
-      const T H6_8 = fb_x_y * H6_4 + fb_y_y * H6_5 + H5_8;
-      const T H6_9 = fb_y_y * H6_4 - fb_x_y * H6_5 - H5_10;
+      const T H6_8 = H5_1 + fb_x_y * H6_4 + fb_y_y * H6_5;
+      const T H6_9 = fb_y_y * H6_4 - H5_9 - fb_x_y * H6_5;
       const T H6_10 = fa_x_y * H6_6 + fa_y_y * H6_7 - fa_x_z * H6_8 - fa_y_z * H6_9;
-      const T H6_1_2 = fb_x_x * H6_4 + fb_y_x * H6_5 - H4_4;
-      const T H6_2_2 = fb_y_x * H6_4 - fb_x_x * H6_5 - H4_11;
+      const T H6_1_2 = fb_x_x * H6_4 - H4_7 + fb_y_x * H6_5;
+      const T H6_2_2 = H4_19 - fb_x_x * H6_5 + fb_y_x * H6_4;
       const T H6_3_2 = fa_x_z * H6_1_2 - fa_x_x * H6_6 - fa_y_x * H6_7 + fa_y_z * H6_2_2;
       const T H6_1_3 = fa_x_x * H6_8 + fa_y_x * H6_9 - fa_x_y * H6_1_2 - fa_y_y * H6_2_2;
       const T H6_1_4 = fa_x_z * H6_4 - fa_y_z * H6_5;
       const T H6_2_3 = fa_x_z * H6_5 + fa_y_z * H6_4;
-      const T H6_3_3 = fa_x_y * H6_4 - fa_y_y * H6_5 + H5_3_3;
-      const T H6_4_2 = fa_x_y * H6_5 + fa_y_y * H6_4 - H5_5_2;
+      const T H6_3_3 = H5_1_4 + fa_x_y * H6_4 - fa_y_y * H6_5;
+      const T H6_4_2 = fa_x_y * H6_5 - H5_3_3 + fa_y_y * H6_4;
       const T H6_5_2 = fb_x_y * H6_1_4 + fb_y_y * H6_2_3 - fb_x_z * H6_3_3 - fb_y_z * H6_4_2;
-      const T H6_1_5 = fa_x_x * H6_4 - fa_y_x * H6_5 - H4_1_4;
-      const T H6_2_4 = fa_x_x * H6_5 + fa_y_x * H6_4 + H4_3_3;
+      const T H6_1_5 = fa_x_x * H6_4 - H4_1_4 - fa_y_x * H6_5;
+      const T H6_2_4 = H4_3_3 + fa_x_x * H6_5 + fa_y_x * H6_4;
       const T H6_3_4 = fb_x_z * H6_1_5 - fb_x_x * H6_1_4 - fb_y_x * H6_2_3 + fb_y_z * H6_2_4;
       const T H6_1_6 = fb_x_x * H6_3_3 + fb_y_x * H6_4_2 - fb_x_y * H6_1_5 - fb_y_y * H6_2_4;
-      H[3][3] = H4_17;
+      H[3][3] = H4_25;
       H[3][4] = H4_3_2;
       H[3][5] = H4_1_3;
       H[3][9] = H4_9_2;
       H[3][10] = H4_3_4;
       H[3][11] = H4_1_6;
-      H[4][3] = H5_12;
+      H[4][3] = H5_13;
       H[4][4] = H5_3_2;
       H[4][5] = H5_1_3;
       H[4][9] = H5_7_2;
@@ -4591,13 +4646,13 @@ struct six_dof {
       H[5][9] = H6_5_2;
       H[5][10] = H6_3_4;
       H[5][11] = H6_1_6;
-      H[9][3] = -H4_17;
+      H[9][3] = -H4_25;
       H[9][4] = -H4_3_2;
       H[9][5] = -H4_1_3;
       H[9][9] = -H4_9_2;
       H[9][10] = -H4_3_4;
       H[9][11] = -H4_1_6;
-      H[10][3] = -H5_12;
+      H[10][3] = -H5_13;
       H[10][4] = -H5_3_2;
       H[10][5] = -H5_1_3;
       H[10][9] = -H5_7_2;
@@ -5543,13 +5598,14 @@ struct six_dof::turn_x::a_immovable : six_dof::turn_x {
     J.wb_z = fb_z_x * wb_x_5 - fb_z_y * wb_y_1;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+    const T K11_1 = J.wb_z * T(2);
+    K[0] = mb.Izz * J.wb_z * J.wb_z + J.wb_x *
+        (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_1 * mb.Ixz) + J.wb_y *
+        (mb.Iyy * J.wb_y + K11_1 * mb.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -5673,13 +5729,14 @@ struct six_dof::turn_x::b_immovable : six_dof::turn_x {
     J.wa_z = wa_x_2 * fa_z_x_fb_z_z - wa_x_3 * fa_y_x_fb_z_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    const T K11_1 = J.wa_z * T(2);
+    K[0] = ma.Izz * J.wa_z * J.wa_z + J.wa_x *
+        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+        (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -5808,13 +5865,14 @@ struct six_dof::turn_y::a_immovable : six_dof::turn_y {
     J.wb_z = fb_z_x * wb_x_7 - fb_z_y * wb_y_1;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+    const T K11_1 = J.wb_z * T(2);
+    K[0] = mb.Izz * J.wb_z * J.wb_z + J.wb_x *
+        (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_1 * mb.Ixz) + J.wb_y *
+        (mb.Iyy * J.wb_y + K11_1 * mb.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -5949,13 +6007,14 @@ struct six_dof::turn_y::b_immovable : six_dof::turn_y {
     J.wa_z = wa_x_5 * fa_x_x_fb_z_z - wa_x_3 * fa_y_x_fb_z_z - wa_x_4 * fa_z_x_fb_z_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    const T K11_1 = J.wa_z * T(2);
+    K[0] = ma.Izz * J.wa_z * J.wa_z + J.wa_x *
+        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+        (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -6079,13 +6138,14 @@ struct six_dof::turn_z::a_immovable : six_dof::turn_z {
     J.wb_z = wb_x_2 * fa_x_x_fb_y_z - wb_x_3 * fa_x_x_fb_x_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+    const T K11_1 = J.wb_z * T(2);
+    K[0] = mb.Izz * J.wb_z * J.wb_z + J.wb_x *
+        (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_1 * mb.Ixz) + J.wb_y *
+        (mb.Iyy * J.wb_y + K11_1 * mb.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -6206,13 +6266,14 @@ struct six_dof::turn_z::b_immovable : six_dof::turn_z {
     J.wa_z = fa_x_x * wa_x_5 - fa_x_y * wa_y_1;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    const T K11_1 = J.wa_z * T(2);
+    K[0] = ma.Izz * J.wa_z * J.wa_z + J.wa_x *
+        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+        (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -6343,13 +6404,14 @@ struct six_dof::twist_x::a_immovable : six_dof::twist_x {
     J.wb_z = fb_y_x * wb_x_6 - fb_z_x * wb_x_7 - fb_y_y * wb_y_1 + fb_z_y * wb_y_2;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+    const T K11_1 = J.wb_z * T(2);
+    K[0] = mb.Izz * J.wb_z * J.wb_z + J.wb_x *
+        (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_1 * mb.Ixz) + J.wb_y *
+        (mb.Iyy * J.wb_y + K11_1 * mb.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -6480,13 +6542,14 @@ struct six_dof::twist_x::b_immovable : six_dof::twist_x {
     J.wa_z = fa_z_x * wa_x_7 - fa_y_x * wa_x_6 + fa_y_y * wa_y_1 - fa_z_y * wa_y_2;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    const T K11_1 = J.wa_z * T(2);
+    K[0] = ma.Izz * J.wa_z * J.wa_z + J.wa_x *
+        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+        (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -6617,13 +6680,14 @@ struct six_dof::twist_y::a_immovable : six_dof::twist_y {
     J.wb_z = fb_z_x * wb_x_7 - fb_x_x * wb_x_6 + fb_x_y * wb_y_1 - fb_z_y * wb_y_2;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+    const T K11_1 = J.wb_z * T(2);
+    K[0] = mb.Izz * J.wb_z * J.wb_z + J.wb_x *
+        (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_1 * mb.Ixz) + J.wb_y *
+        (mb.Iyy * J.wb_y + K11_1 * mb.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -6754,13 +6818,14 @@ struct six_dof::twist_y::b_immovable : six_dof::twist_y {
     J.wa_z = fa_x_x * wa_x_6 - fa_z_x * wa_x_7 - fa_x_y * wa_y_1 + fa_z_y * wa_y_2;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    const T K11_1 = J.wa_z * T(2);
+    K[0] = ma.Izz * J.wa_z * J.wa_z + J.wa_x *
+        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+        (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -6891,13 +6956,14 @@ struct six_dof::twist_z::a_immovable : six_dof::twist_z {
     J.wb_z = fb_x_x * wb_x_6 - fb_y_x * wb_x_7 - fb_x_y * wb_y_1 + fb_y_y * wb_y_2;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+    const T K11_1 = J.wb_z * T(2);
+    K[0] = mb.Izz * J.wb_z * J.wb_z + J.wb_x *
+        (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_1 * mb.Ixz) + J.wb_y *
+        (mb.Iyy * J.wb_y + K11_1 * mb.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -7028,13 +7094,14 @@ struct six_dof::twist_z::b_immovable : six_dof::twist_z {
     J.wa_z = fa_y_x * wa_x_7 - fa_x_x * wa_x_6 + fa_x_y * wa_y_1 - fa_y_y * wa_y_2;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    const T K11_1 = J.wa_z * T(2);
+    K[0] = ma.Izz * J.wa_z * J.wa_z + J.wa_x *
+        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+        (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
   }
 
   // J v: 2 +, 3 *

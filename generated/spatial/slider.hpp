@@ -734,7 +734,7 @@ struct slider {
     D[4][11] = J.wb_5_x * b.xz + J.wb_5_y * b.yz + J.wb_5_z * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 86 +, 160 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 94 +, 128 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[5][14]) {
     for (auto& row : D) {
@@ -742,61 +742,69 @@ struct slider {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
+    const T D1_1 = a.e1 * T(2);
+    const T D1_2 = a.e2 * T(2);
+    const T D1_3 = a.e3 * T(2);
+    const T D1_1_2 = T(2) * a.e0;
+    const T D1_1_3 = T(2) * b.e1;
+    const T D1_2_2 = T(2) * b.e2;
+    const T D1_3_2 = T(2) * b.e3;
+    const T D1_1_4 = T(2) * b.e0;
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
-    D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
-    D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
-    D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
+    D[0][3] = D1_1 * J.ra_d_x_fa_y_x + D1_2 * J.ra_d_x_fa_y_y + D1_3 * J.ra_d_x_fa_y_z;
+    D[0][4] = D1_2 * J.ra_d_x_fa_y_z - D1_1_2 * J.ra_d_x_fa_y_x - D1_3 * J.ra_d_x_fa_y_y;
+    D[0][5] = D1_3 * J.ra_d_x_fa_y_x - D1_1_2 * J.ra_d_x_fa_y_y - D1_1 * J.ra_d_x_fa_y_z;
+    D[0][6] = D1_1 * J.ra_d_x_fa_y_y - D1_2 * J.ra_d_x_fa_y_x - D1_1_2 * J.ra_d_x_fa_y_z;
     D[0][7] = J.fa_y_x;
     D[0][8] = J.fa_y_y;
     D[0][9] = J.fa_y_z;
-    D[0][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
-    D[0][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
-    D[0][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
-    D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
+    D[0][10] = -D1_1_3 * J.rb_x_fa_y_x - D1_2_2 * J.rb_x_fa_y_y - D1_3_2 * J.rb_x_fa_y_z;
+    D[0][11] = D1_1_4 * J.rb_x_fa_y_x + D1_3_2 * J.rb_x_fa_y_y - D1_2_2 * J.rb_x_fa_y_z;
+    D[0][12] = D1_1_4 * J.rb_x_fa_y_y - D1_3_2 * J.rb_x_fa_y_x + D1_1_3 * J.rb_x_fa_y_z;
+    D[0][13] = D1_2_2 * J.rb_x_fa_y_x - D1_1_3 * J.rb_x_fa_y_y + D1_1_4 * J.rb_x_fa_y_z;
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
-    D[1][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
-    D[1][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
-    D[1][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
+    D[1][3] = D1_1 * J.ra_d_x_fa_z_x + D1_2 * J.ra_d_x_fa_z_y + D1_3 * J.ra_d_x_fa_z_z;
+    D[1][4] = D1_2 * J.ra_d_x_fa_z_z - D1_1_2 * J.ra_d_x_fa_z_x - D1_3 * J.ra_d_x_fa_z_y;
+    D[1][5] = D1_3 * J.ra_d_x_fa_z_x - D1_1_2 * J.ra_d_x_fa_z_y - D1_1 * J.ra_d_x_fa_z_z;
+    D[1][6] = D1_1 * J.ra_d_x_fa_z_y - D1_2 * J.ra_d_x_fa_z_x - D1_1_2 * J.ra_d_x_fa_z_z;
     D[1][7] = J.fa_z_x;
     D[1][8] = J.fa_z_y;
     D[1][9] = J.fa_z_z;
-    D[1][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
-    D[1][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
-    D[1][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
-    D[1][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
-    D[2][3] = T(-2) * (J.wa_3_x * a.e1 + J.wa_3_y * a.e2 + J.wa_3_z * a.e3);
-    D[2][4] = T(2) * (J.wa_3_x * a.e0 + J.wa_3_y * a.e3 - J.wa_3_z * a.e2);
-    D[2][5] = T(2) * (J.wa_3_y * a.e0 - J.wa_3_x * a.e3 + J.wa_3_z * a.e1);
-    D[2][6] = T(2) * (J.wa_3_x * a.e2 - J.wa_3_y * a.e1 + J.wa_3_z * a.e0);
-    D[2][10] = T(-2) * (J.wb_3_x * b.e1 + J.wb_3_y * b.e2 + J.wb_3_z * b.e3);
-    D[2][11] = T(2) * (J.wb_3_x * b.e0 + J.wb_3_y * b.e3 - J.wb_3_z * b.e2);
-    D[2][12] = T(2) * (J.wb_3_y * b.e0 - J.wb_3_x * b.e3 + J.wb_3_z * b.e1);
-    D[2][13] = T(2) * (J.wb_3_x * b.e2 - J.wb_3_y * b.e1 + J.wb_3_z * b.e0);
-    D[3][3] = T(-2) * (J.wa_4_x * a.e1 + J.wa_4_y * a.e2 + J.wa_4_z * a.e3);
-    D[3][4] = T(2) * (J.wa_4_x * a.e0 + J.wa_4_y * a.e3 - J.wa_4_z * a.e2);
-    D[3][5] = T(2) * (J.wa_4_y * a.e0 - J.wa_4_x * a.e3 + J.wa_4_z * a.e1);
-    D[3][6] = T(2) * (J.wa_4_x * a.e2 - J.wa_4_y * a.e1 + J.wa_4_z * a.e0);
-    D[3][10] = T(-2) * (J.wb_4_x * b.e1 + J.wb_4_y * b.e2 + J.wb_4_z * b.e3);
-    D[3][11] = T(2) * (J.wb_4_x * b.e0 + J.wb_4_y * b.e3 - J.wb_4_z * b.e2);
-    D[3][12] = T(2) * (J.wb_4_y * b.e0 - J.wb_4_x * b.e3 + J.wb_4_z * b.e1);
-    D[3][13] = T(2) * (J.wb_4_x * b.e2 - J.wb_4_y * b.e1 + J.wb_4_z * b.e0);
-    D[4][3] = T(-2) * (J.wa_5_x * a.e1 + J.wa_5_y * a.e2 + J.wa_5_z * a.e3);
-    D[4][4] = T(2) * (J.wa_5_x * a.e0 + J.wa_5_y * a.e3 - J.wa_5_z * a.e2);
-    D[4][5] = T(2) * (J.wa_5_y * a.e0 - J.wa_5_x * a.e3 + J.wa_5_z * a.e1);
-    D[4][6] = T(2) * (J.wa_5_x * a.e2 - J.wa_5_y * a.e1 + J.wa_5_z * a.e0);
-    D[4][10] = T(-2) * (J.wb_5_x * b.e1 + J.wb_5_y * b.e2 + J.wb_5_z * b.e3);
-    D[4][11] = T(2) * (J.wb_5_x * b.e0 + J.wb_5_y * b.e3 - J.wb_5_z * b.e2);
-    D[4][12] = T(2) * (J.wb_5_y * b.e0 - J.wb_5_x * b.e3 + J.wb_5_z * b.e1);
-    D[4][13] = T(2) * (J.wb_5_x * b.e2 - J.wb_5_y * b.e1 + J.wb_5_z * b.e0);
+    D[1][10] = -D1_1_3 * J.rb_x_fa_z_x - D1_2_2 * J.rb_x_fa_z_y - D1_3_2 * J.rb_x_fa_z_z;
+    D[1][11] = D1_1_4 * J.rb_x_fa_z_x + D1_3_2 * J.rb_x_fa_z_y - D1_2_2 * J.rb_x_fa_z_z;
+    D[1][12] = D1_1_4 * J.rb_x_fa_z_y - D1_3_2 * J.rb_x_fa_z_x + D1_1_3 * J.rb_x_fa_z_z;
+    D[1][13] = D1_2_2 * J.rb_x_fa_z_x - D1_1_3 * J.rb_x_fa_z_y + D1_1_4 * J.rb_x_fa_z_z;
+    D[2][3] = -D1_1 * J.wa_3_x - D1_2 * J.wa_3_y - D1_3 * J.wa_3_z;
+    D[2][4] = D1_1_2 * J.wa_3_x + D1_3 * J.wa_3_y - D1_2 * J.wa_3_z;
+    D[2][5] = D1_1_2 * J.wa_3_y - D1_3 * J.wa_3_x + D1_1 * J.wa_3_z;
+    D[2][6] = D1_2 * J.wa_3_x - D1_1 * J.wa_3_y + D1_1_2 * J.wa_3_z;
+    D[2][10] = -D1_1_3 * J.wb_3_x - D1_2_2 * J.wb_3_y - D1_3_2 * J.wb_3_z;
+    D[2][11] = D1_1_4 * J.wb_3_x + D1_3_2 * J.wb_3_y - D1_2_2 * J.wb_3_z;
+    D[2][12] = D1_1_4 * J.wb_3_y - D1_3_2 * J.wb_3_x + D1_1_3 * J.wb_3_z;
+    D[2][13] = D1_2_2 * J.wb_3_x - D1_1_3 * J.wb_3_y + D1_1_4 * J.wb_3_z;
+    D[3][3] = -D1_1 * J.wa_4_x - D1_2 * J.wa_4_y - D1_3 * J.wa_4_z;
+    D[3][4] = D1_1_2 * J.wa_4_x + D1_3 * J.wa_4_y - D1_2 * J.wa_4_z;
+    D[3][5] = D1_1_2 * J.wa_4_y - D1_3 * J.wa_4_x + D1_1 * J.wa_4_z;
+    D[3][6] = D1_2 * J.wa_4_x - D1_1 * J.wa_4_y + D1_1_2 * J.wa_4_z;
+    D[3][10] = -D1_1_3 * J.wb_4_x - D1_2_2 * J.wb_4_y - D1_3_2 * J.wb_4_z;
+    D[3][11] = D1_1_4 * J.wb_4_x + D1_3_2 * J.wb_4_y - D1_2_2 * J.wb_4_z;
+    D[3][12] = D1_1_4 * J.wb_4_y - D1_3_2 * J.wb_4_x + D1_1_3 * J.wb_4_z;
+    D[3][13] = D1_2_2 * J.wb_4_x - D1_1_3 * J.wb_4_y + D1_1_4 * J.wb_4_z;
+    D[4][3] = -D1_1 * J.wa_5_x - D1_2 * J.wa_5_y - D1_3 * J.wa_5_z;
+    D[4][4] = D1_1_2 * J.wa_5_x + D1_3 * J.wa_5_y - D1_2 * J.wa_5_z;
+    D[4][5] = D1_1_2 * J.wa_5_y - D1_3 * J.wa_5_x + D1_1 * J.wa_5_z;
+    D[4][6] = D1_2 * J.wa_5_x - D1_1 * J.wa_5_y + D1_1_2 * J.wa_5_z;
+    D[4][10] = -D1_1_3 * J.wb_5_x - D1_2_2 * J.wb_5_y - D1_3_2 * J.wb_5_z;
+    D[4][11] = D1_1_4 * J.wb_5_x + D1_3_2 * J.wb_5_y - D1_2_2 * J.wb_5_z;
+    D[4][12] = D1_1_4 * J.wb_5_y - D1_3_2 * J.wb_5_x + D1_1_3 * J.wb_5_z;
+    D[4][13] = D1_2_2 * J.wb_5_x - D1_1_3 * J.wb_5_y + D1_1_4 * J.wb_5_z;
   }
 
-  // -Jdot v - d/dt(dC/dt): 190 +, 243 *
+  // -Jdot v - d/dt(dC/dt): 178 +, 249 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[5]) {
@@ -814,26 +822,23 @@ struct slider {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T ra_d_z = b.z - a.z + rb_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
-    const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
+    const T w_a_x_fa_y_x = va.wy * fa_y_z - fa_y_y * va.wz;
+    const T w_a_x_fa_y_y = fa_y_x * va.wz - va.wx * fa_y_z;
     const T ra_d_x_w_a_x_fa_y_x = ra_d_y * w_a_x_fa_y_z - ra_d_z * w_a_x_fa_y_y;
     const T ra_d_x_w_a_x_fa_y_y = ra_d_z * w_a_x_fa_y_x - ra_d_x * w_a_x_fa_y_z;
-    const T g1_1 = va.y - vb.y;
+    const T ra_d_x_w_a_x_fa_y_z = ra_d_x * w_a_x_fa_y_y - ra_d_y * w_a_x_fa_y_x;
+    const T rb_x_w_b_z = vb.wy * rb_x - vb.wx * rb_y;
     const T rb_x_w_b_x = vb.wz * rb_y - vb.wy * rb_z;
     const T rb_x_w_b_y = vb.wx * rb_z - vb.wz * rb_x;
-    const T g1_2 = g1_1 + rb_x_w_b_y;
-    const T g1_3 = va.z - vb.z;
-    const T rb_x_w_b_z = vb.wy * rb_x - vb.wx * rb_y;
-    const T g1_4 = g1_3 + rb_x_w_b_z;
-    const T g1_5 = va.x - vb.x;
-    const T g1_6 = g1_5 + rb_x_w_b_x;
-    const T ra_d_x_w_a_x_fa_y_z = ra_d_x * w_a_x_fa_y_y - ra_d_y * w_a_x_fa_y_x;
     const T rb_x_w_b_x_fa_y_x = fa_y_z * rb_x_w_b_y - fa_y_y * rb_x_w_b_z;
     const T rb_x_w_b_x_fa_y_y = fa_y_x * rb_x_w_b_z - fa_y_z * rb_x_w_b_x;
     const T rb_x_w_a_x_fa_y_x = rb_y * w_a_x_fa_y_z - rb_z * w_a_x_fa_y_y;
     const T rb_x_w_a_x_fa_y_y = rb_z * w_a_x_fa_y_x - rb_x * w_a_x_fa_y_z;
     const T rb_x_w_b_x_fa_y_z = fa_y_y * rb_x_w_b_x - fa_y_x * rb_x_w_b_y;
     const T rb_x_w_a_x_fa_y_z = rb_x * w_a_x_fa_y_y - rb_y * w_a_x_fa_y_x;
+    const T g1_1 = T(2) * (va.y - vb.y) + rb_x_w_b_y;
+    const T g1_2 = T(2) * (va.z - vb.z) + rb_x_w_b_z;
+    const T g1_3 = T(2) * (va.x - vb.x) + rb_x_w_b_x;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
@@ -851,64 +856,78 @@ struct slider {
     const T rb_x_w_a_x_fa_z_z = rb_x * w_a_x_fa_z_y - rb_y * w_a_x_fa_z_x;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+    const T g3_1 = fa_x_x * T(0.5);
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
     const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
     const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
     const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
+    const T g3_2 = fa_y_x * T(0.5);
     const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
     const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
     const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
     const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
+    const T g3_3 = fa_z_x * T(0.5);
     const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
     const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
     const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
     const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
     const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
+    const T g3_4 = fb_x_y * T(0.5);
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
     const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-    const T g3_1 = fa_x_x * w_b_x_fb_x_y + fa_y_x * w_b_x_fb_y_y + fa_z_x * w_b_x_fb_z_y + fb_x_y *
-        w_a_x_fa_x_x + fb_y_y * w_a_x_fa_y_x + fb_z_y * w_a_x_fa_z_x;
+    const T g3_5 = fb_y_y * T(0.5);
+    const T g3_6 = fb_z_y * T(0.5);
+    const T g3_7 = g3_1 * w_b_x_fb_x_y + g3_2 * w_b_x_fb_y_y + g3_3 * w_b_x_fb_z_y + g3_4 *
+        w_a_x_fa_x_x + g3_5 * w_a_x_fa_y_x + g3_6 * w_a_x_fa_z_x;
     const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
     const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
     const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
-    const T g3_2 = fa_x_x * w_b_x_fb_x_z + fa_y_x * w_b_x_fb_y_z + fa_z_x * w_b_x_fb_z_z + fb_x_z *
-        w_a_x_fa_x_x + fb_y_z * w_a_x_fa_y_x + fb_z_z * w_a_x_fa_z_x;
-    const T g3_3 = fa_x_y * w_b_x_fb_x_x + fa_y_y * w_b_x_fb_y_x + fa_z_y * w_b_x_fb_z_x + fb_x_x *
-        w_a_x_fa_x_y + fb_y_x * w_a_x_fa_y_y + fb_z_x * w_a_x_fa_z_y;
+    const T g3_8 = fb_x_z * T(0.5);
+    const T g3_9 = fb_y_z * T(0.5);
+    const T g3_10 = fb_z_z * T(0.5);
+    const T g3_11 = g3_1 * w_b_x_fb_x_z + g3_2 * w_b_x_fb_y_z + g3_3 * w_b_x_fb_z_z + g3_8 *
+        w_a_x_fa_x_x + g3_9 * w_a_x_fa_y_x + g3_10 * w_a_x_fa_z_x;
+    const T g3_12 = fa_x_y * T(0.5);
+    const T g3_13 = fa_y_y * T(0.5);
+    const T g3_14 = fa_z_y * T(0.5);
+    const T g3_15 = fb_x_x * T(0.5);
+    const T g3_16 = fb_y_x * T(0.5);
+    const T g3_17 = fb_z_x * T(0.5);
+    const T g3_18 = g3_12 * w_b_x_fb_x_x + g3_13 * w_b_x_fb_y_x + g3_14 * w_b_x_fb_z_x + g3_15 *
+        w_a_x_fa_x_y + g3_16 * w_a_x_fa_y_y + g3_17 * w_a_x_fa_z_y;
+    const T g3_19 = fa_x_z * T(0.5);
+    const T g3_20 = fa_y_z * T(0.5);
+    const T g3_21 = fa_z_z * T(0.5);
     const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-    const T g3_4 = fa_x_z * w_b_x_fb_x_x + fa_y_z * w_b_x_fb_y_x + fa_z_z * w_b_x_fb_z_x + fb_x_x *
-        w_a_x_fa_x_z + fb_y_x * w_a_x_fa_y_z + fb_z_x * w_a_x_fa_z_z;
-    const T g3_5 = fb_z_y * w_a_x_fa_z_y + fb_y_y * w_a_x_fa_y_y + fb_x_y * w_a_x_fa_x_y + fa_z_y *
-        w_b_x_fb_z_y + fa_x_y * w_b_x_fb_x_y + fa_y_y * w_b_x_fb_y_y;
-    const T g3_6 = fb_z_z * w_a_x_fa_z_z + fb_y_z * w_a_x_fa_y_z + fb_x_z * w_a_x_fa_x_z + fa_z_z *
-        w_b_x_fb_z_z + fa_x_z * w_b_x_fb_x_z + fa_y_z * w_b_x_fb_y_z;
-    const T g4_1 = fa_x_y * w_b_x_fb_x_z + fa_y_y * w_b_x_fb_y_z + fa_z_y * w_b_x_fb_z_z + fb_x_z *
-        w_a_x_fa_x_y + fb_y_z * w_a_x_fa_y_y + fb_z_z * w_a_x_fa_z_y;
-    const T g4_2 = fa_x_z * w_b_x_fb_x_y + fa_y_z * w_b_x_fb_y_y + fa_z_z * w_b_x_fb_z_y + fb_x_y *
-        w_a_x_fa_x_z + fb_y_y * w_a_x_fa_y_z + fb_z_y * w_a_x_fa_z_z;
-    const T g4_3 = fb_z_x * w_a_x_fa_z_x + fb_y_x * w_a_x_fa_y_x + fb_x_x * w_a_x_fa_x_x + fa_z_x *
-        w_b_x_fb_z_x + fa_x_x * w_b_x_fb_x_x + fa_y_x * w_b_x_fb_y_x;
-    g[0] = va.wx * (ra_d_x_w_a_x_fa_y_x - g1_2 * fa_y_z + g1_4 * fa_y_y) + va.wy *
-        (ra_d_x_w_a_x_fa_y_y + g1_6 * fa_y_z - g1_4 * fa_y_x) + va.wz *
-        (ra_d_x_w_a_x_fa_y_z - g1_6 * fa_y_y + g1_2 * fa_y_x) - vb.wx *
-        (rb_x_w_a_x_fa_y_x - rb_x_w_b_x_fa_y_x) - vb.wy * (rb_x_w_a_x_fa_y_y - rb_x_w_b_x_fa_y_y) -
-        vb.wz * (rb_x_w_a_x_fa_y_z - rb_x_w_b_x_fa_y_z) + g1_5 * w_a_x_fa_y_x + g1_1 *
-        w_a_x_fa_y_y + g1_3 * w_a_x_fa_y_z;
-    g[1] = va.wx * (ra_d_x_w_a_x_fa_z_x - g1_2 * fa_z_z + g1_4 * fa_z_y) + va.wy *
-        (ra_d_x_w_a_x_fa_z_y + g1_6 * fa_z_z - g1_4 * fa_z_x) + va.wz *
-        (ra_d_x_w_a_x_fa_z_z - g1_6 * fa_z_y + g1_2 * fa_z_x) - vb.wx *
-        (rb_x_w_a_x_fa_z_x - rb_x_w_b_x_fa_z_x) - vb.wy * (rb_x_w_a_x_fa_z_y - rb_x_w_b_x_fa_z_y) -
-        vb.wz * (rb_x_w_a_x_fa_z_z - rb_x_w_b_x_fa_z_z) + g1_5 * w_a_x_fa_z_x + g1_1 *
-        w_a_x_fa_z_y + g1_3 * w_a_x_fa_z_z;
-    g[2] = T(0.5) * (vb.wy * g3_3 - va.wy * g3_1 - va.wz * g3_2 + vb.wz * g3_4 + (g3_5 + g3_6) *
-        (va.wx - vb.wx));
-    g[3] = T(0.5) * (vb.wx * g3_1 - va.wx * g3_3 - va.wz * g4_1 + vb.wz * g4_2 + (g4_3 + g3_6) *
-        (va.wy - vb.wy));
-    g[4] = T(0.5) * (vb.wx * g3_2 - va.wx * g3_4 - va.wy * g4_2 + vb.wy * g4_1 + (g3_5 + g4_3) *
-        (va.wz - vb.wz));
+    const T g3_22 = g3_19 * w_b_x_fb_x_x + g3_20 * w_b_x_fb_y_x + g3_21 * w_b_x_fb_z_x + g3_15 *
+        w_a_x_fa_x_z + g3_16 * w_a_x_fa_y_z + g3_17 * w_a_x_fa_z_z;
+    const T g3_23 = g3_6 * w_a_x_fa_z_y + g3_5 * w_a_x_fa_y_y + g3_4 * w_a_x_fa_x_y + g3_14 *
+        w_b_x_fb_z_y + g3_12 * w_b_x_fb_x_y + g3_13 * w_b_x_fb_y_y;
+    const T g3_24 = g3_10 * w_a_x_fa_z_z + g3_9 * w_a_x_fa_y_z + g3_8 * w_a_x_fa_x_z + g3_21 *
+        w_b_x_fb_z_z + g3_19 * w_b_x_fb_x_z + g3_20 * w_b_x_fb_y_z;
+    const T g4_1 = g3_12 * w_b_x_fb_x_z + g3_13 * w_b_x_fb_y_z + g3_14 * w_b_x_fb_z_z + g3_8 *
+        w_a_x_fa_x_y + g3_9 * w_a_x_fa_y_y + g3_10 * w_a_x_fa_z_y;
+    const T g4_2 = g3_19 * w_b_x_fb_x_y + g3_20 * w_b_x_fb_y_y + g3_21 * w_b_x_fb_z_y + g3_4 *
+        w_a_x_fa_x_z + g3_5 * w_a_x_fa_y_z + g3_6 * w_a_x_fa_z_z;
+    const T g4_3 = g3_17 * w_a_x_fa_z_x + g3_16 * w_a_x_fa_y_x + g3_15 * w_a_x_fa_x_x + g3_3 *
+        w_b_x_fb_z_x + g3_1 * w_b_x_fb_x_x + g3_2 * w_b_x_fb_y_x;
+    g[0] = va.wx * ra_d_x_w_a_x_fa_y_x + va.wy * ra_d_x_w_a_x_fa_y_y + va.wz *
+        ra_d_x_w_a_x_fa_y_z + vb.wx * (rb_x_w_b_x_fa_y_x - rb_x_w_a_x_fa_y_x) + vb.wz *
+        (rb_x_w_b_x_fa_y_z - rb_x_w_a_x_fa_y_z) + w_a_x_fa_y_y * g1_1 + vb.wy *
+        (rb_x_w_b_x_fa_y_y - rb_x_w_a_x_fa_y_y) + w_a_x_fa_y_z * g1_2 + w_a_x_fa_y_x * g1_3;
+    g[1] = va.wx * ra_d_x_w_a_x_fa_z_x + va.wy * ra_d_x_w_a_x_fa_z_y + va.wz *
+        ra_d_x_w_a_x_fa_z_z + vb.wx * (rb_x_w_b_x_fa_z_x - rb_x_w_a_x_fa_z_x) + vb.wz *
+        (rb_x_w_b_x_fa_z_z - rb_x_w_a_x_fa_z_z) + vb.wy * (rb_x_w_b_x_fa_z_y - rb_x_w_a_x_fa_z_y) +
+        w_a_x_fa_z_z * g1_2 + w_a_x_fa_z_y * g1_1 + w_a_x_fa_z_x * g1_3;
+    g[2] = vb.wy * g3_18 - va.wy * g3_7 - va.wz * g3_11 + vb.wz * g3_22 + (g3_23 + g3_24) *
+        (va.wx - vb.wx);
+    g[3] = vb.wx * g3_7 - va.wx * g3_18 - va.wz * g4_1 + vb.wz * g4_2 + (g4_3 + g3_24) *
+        (va.wy - vb.wy);
+    g[4] = vb.wx * g3_11 - va.wx * g3_22 - va.wy * g4_2 + vb.wy * g4_1 + (g3_23 + g4_3) *
+        (va.wz - vb.wz);
   }
 
   // dC/dt at fixed q: nothing
@@ -921,7 +940,7 @@ struct slider {
     C_t[4] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 253 +, 414 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 268 +, 303 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[5],
       T (&H)[12][12]) {
@@ -943,137 +962,138 @@ struct slider {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T ra_d_x = b.x - a.x + rb_x;
     const T ra_d_y = b.y - a.y + rb_y;
+    const T H4_1 = lambda[2] * T(0.5);
     const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T H4_1 = lambda[2] * fb_z_z;
+    const T H4_2 = H4_1 * fb_z_z;
+    const T H4_3 = lambda[4] * T(0.5);
     const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
     const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T H4_2 = lambda[4] * fb_z_x;
-    const T H4_3 = T(0.5) * H4_2 - lambda[1] * ra_d_y - T(0.5) * H4_1;
+    const T H4_4 = H4_3 * fb_z_x;
+    const T H4_5 = H4_4 - lambda[1] * ra_d_y - H4_2;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T H4_4 = lambda[2] * fb_x_z;
+    const T H4_6 = fb_x_z * H4_1;
     const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T H4_5 = lambda[4] * fb_x_x;
-    const T H4_6 = H4_5 - H4_4;
+    const T H4_7 = fb_x_x * H4_3;
+    const T H4_8 = H4_7 - H4_6;
     const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T H4_7 = lambda[2] * fb_y_z;
+    const T H4_9 = H4_1 * fb_y_z;
     const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T H4_8 = lambda[4] * fb_y_x;
-    const T H4_9 = T(0.5) * H4_8 - lambda[0] * ra_d_y - T(0.5) * H4_7;
-    const T H4_10 = fa_z_y * H4_3 + T(0.5) * (fa_x_y * H4_6 + T(2) * fa_y_y * H4_9);
+    const T H4_10 = H4_3 * fb_y_x;
+    const T H4_11 = H4_10 - lambda[0] * ra_d_y - H4_9;
+    const T H4_12 = fa_z_y * H4_5 + fa_x_y * H4_8 + fa_y_y * H4_11;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T ra_d_z = b.z - a.z + rb_z;
-    const T H4_11 = lambda[2] * fb_z_y;
-    const T H4_12 = lambda[3] * fb_z_x;
-    const T H4_13 = lambda[1] * ra_d_z - T(0.5) * H4_11 + T(0.5) * H4_12;
+    const T H4_13 = H4_1 * fb_z_y;
+    const T H4_14 = T(0.5) * lambda[3];
+    const T H4_15 = fb_z_x * H4_14;
+    const T H4_16 = lambda[1] * ra_d_z - H4_13 + H4_15;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T H4_14 = lambda[2] * fb_x_y;
-    const T H4_15 = fb_x_x * lambda[3];
-    const T H4_16 = H4_15 - H4_14;
-    const T H4_17 = lambda[2] * fb_y_y;
-    const T H4_18 = lambda[3] * fb_y_x;
-    const T H4_19 = lambda[0] * ra_d_z - T(0.5) * H4_17 + T(0.5) * H4_18;
-    const T H4_20 = fa_z_z * H4_13 + T(0.5) * (fa_x_z * H4_16 + T(2) * fa_y_z * H4_19);
+    const T H4_17 = H4_1 * fb_x_y;
+    const T H4_18 = fb_x_x * H4_14;
+    const T H4_19 = H4_18 - H4_17;
+    const T H4_20 = H4_1 * fb_y_y;
+    const T H4_21 = fb_y_x * H4_14;
+    const T H4_22 = lambda[0] * ra_d_z - H4_20 + H4_21;
+    const T H4_23 = fa_z_z * H4_16 + fa_x_z * H4_19 + fa_y_z * H4_22;
     const T H4_1_2 = rb_y * H1_1_2;
     const T H4_2_2 = rb_z * H1_1;
     const T H4_3_2 = H4_1_2 + H4_2_2;
-    const T H4_4_2 = H4_4 * fa_x_y - H4_14 * fa_x_z;
-    const T H4_5_2 = fa_y_y * fb_y_z + fa_z_y * fb_z_z;
-    const T H4_6_2 = fa_y_z * fb_y_y + fa_z_z * fb_z_y;
-    const T H4_1_3 = rb_x * H1_1_2;
-    const T H4_2_3 = lambda[3] * fa_x_y;
-    const T H4_3_3 = lambda[4] * fa_x_z;
-    const T H4_4_3 = H4_2_3 + H4_3_3;
-    const T H4_5_3 = lambda[3] * fa_y_y;
-    const T H4_6_3 = lambda[4] * fa_y_z;
-    const T H4_7_2 = H4_5_3 + H4_6_3;
-    const T H4_8_2 = lambda[3] * fa_z_y;
-    const T H4_9_2 = lambda[4] * fa_z_z;
-    const T H4_10_2 = H4_8_2 + H4_9_2;
-    const T H4_11_2 = fa_y_z * fb_y_x + fa_z_z * fb_z_x;
+    const T H4_4_2 = H4_6 * fa_x_y - H4_17 * fa_x_z;
+    const T H4_5_2 = fa_y_y * H4_1;
+    const T H4_6_2 = fa_z_y * H4_1;
+    const T H4_7_2 = fa_y_z * H4_1;
+    const T H4_8_2 = fa_z_z * H4_1;
+    const T H4_1_3 = fb_x_x * H4_1;
+    const T H4_2_3 = rb_x * H1_1_2;
+    const T H4_3_3 = H4_14 * fa_x_y;
+    const T H4_4_3 = H4_3 * fa_x_z;
+    const T H4_5_3 = H4_3_3 + H4_4_3;
+    const T H4_6_3 = H4_14 * fa_y_y;
+    const T H4_7_3 = H4_3 * fa_y_z;
+    const T H4_8_3 = H4_6_3 + H4_7_3;
+    const T H4_9_2 = H4_14 * fa_z_y;
+    const T H4_10_2 = H4_3 * fa_z_z;
+    const T H4_11_2 = H4_9_2 + H4_10_2;
     const T H4_1_4 = rb_x * H1_1;
-    const T H4_2_4 = fa_y_y * fb_y_x + fa_z_y * fb_z_x;
-    const T H5_1 = fb_x_z * lambda[3];
-    const T H5_2 = lambda[4] * fb_x_y;
+    const T H5_1 = fb_x_z * H4_14;
+    const T H5_2 = H4_3 * fb_x_y;
     const T H5_3 = H5_2 - H5_1;
-    const T H5_4 = lambda[3] * fb_y_z;
-    const T H5_5 = lambda[4] * fb_y_y;
-    const T H5_6 = lambda[0] * ra_d_x - T(0.5) * H5_4 + T(0.5) * H5_5;
-    const T H5_7 = lambda[3] * fb_z_z;
-    const T H5_8 = lambda[4] * fb_z_y;
-    const T H5_9 = lambda[1] * ra_d_x - T(0.5) * H5_7 + T(0.5) * H5_8;
-    const T H5_1_2 = fa_z_x * H5_9 + T(0.5) * (fa_x_x * H5_3 + T(2) * fa_y_x * H5_6);
-    const T H5_1_3 = rb_y * H2_1;
-    const T H5_2_2 = lambda[2] * fa_x_x;
-    const T H5_3_2 = H5_2_2 + H4_3_3;
-    const T H5_4_2 = lambda[2] * fa_y_x;
-    const T H5_5_2 = H5_4_2 + H4_6_3;
-    const T H5_6_2 = lambda[2] * fa_z_x;
-    const T H5_7_2 = H5_6_2 + H4_9_2;
+    const T H5_4 = fb_y_z * H4_14;
+    const T H5_5 = H4_3 * fb_y_y;
+    const T H5_6 = lambda[0] * ra_d_x - H5_4 + H5_5;
+    const T H5_7 = fb_z_z * H4_14;
+    const T H5_8 = H4_3 * fb_z_y;
+    const T H5_9 = lambda[1] * ra_d_x - H5_7 + H5_8;
+    const T H5_1_2 = fa_z_x * H5_9 + fa_x_x * H5_3 + fa_y_x * H5_6;
+    const T H5_1_3 = fb_x_y * H4_14;
+    const T H5_2_2 = H4_14 * fb_y_y;
+    const T H5_3_2 = H4_14 * fb_z_y;
+    const T H5_4_2 = rb_y * H2_1;
+    const T H5_5_2 = H4_1 * fa_x_x;
+    const T H5_6_2 = H5_5_2 + H4_4_3;
+    const T H5_7_2 = H4_1 * fa_y_x;
+    const T H5_8_2 = H5_7_2 + H4_7_3;
+    const T H5_9_2 = H4_1 * fa_z_x;
+    const T H5_10 = H5_9_2 + H4_10_2;
     const T H5_1_4 = rb_x * H2_1;
     const T H5_2_3 = H4_2_2 + H5_1_4;
-    const T H5_3_3 = H5_1 * fa_x_x - H4_15 * fa_x_z;
-    const T H5_4_3 = fa_y_x * fb_y_z + fa_z_x * fb_z_z;
+    const T H5_3_3 = H5_1 * fa_x_x - H4_18 * fa_x_z;
     const T H5_1_5 = rb_y * H1_1;
-    const T H5_2_4 = fa_y_x * fb_y_y + fa_z_x * fb_z_y;
-    const T H6_1 = H5_2_2 + H4_2_3;
-    const T H6_2 = H5_4_2 + H4_5_3;
-    const T H6_3 = H5_6_2 + H4_8_2;
-    const T H6_4 = rb_z * H2_1;
+    const T H6_1 = fb_x_z * H4_3;
+    const T H6_2 = H4_3 * fb_y_z;
+    const T H6_3 = H4_3 * fb_z_z;
+    const T H6_4 = H5_5_2 + H4_3_3;
+    const T H6_5 = H5_7_2 + H4_6_3;
+    const T H6_6 = H5_9_2 + H4_9_2;
+    const T H6_7 = rb_z * H2_1;
     const T H6_1_2 = rb_z * H1_1_2;
     const T H6_1_3 = H4_1_2 + H5_1_4;
-    const T H6_2_2 = H5_2 * fa_x_x - H4_5 * fa_x_y;
+    const T H6_2_2 = H5_2 * fa_x_x - H4_7 * fa_x_y;
     const T H10_1 = lambda[0] * rb_y;
-    const T H10_2 = H10_1 + T(0.5) * H4_7;
+    const T H10_2 = H10_1 + H4_9;
     const T H10_3 = lambda[1] * rb_y;
-    const T H10_4 = H10_3 + T(0.5) * H4_1;
+    const T H10_4 = H10_3 + H4_2;
     const T H10_5 = lambda[0] * rb_z;
-    const T H10_6 = T(0.5) * H4_17 - H10_5;
+    const T H10_6 = H4_20 - H10_5;
     const T H10_7 = lambda[1] * rb_z;
-    const T H10_8 = T(0.5) * H4_11 - H10_7;
-    const T H10_1_2 = lambda[3] * fb_x_y;
-    const T H10_2_2 = lambda[4] * fb_x_z;
-    const T H10_3_2 = H10_1_2 + H10_2_2;
-    const T H10_4_2 = lambda[3] * fb_y_y;
-    const T H10_5_2 = lambda[4] * fb_y_z;
-    const T H10_6_2 = H10_4_2 + H10_5_2;
-    const T H10_7_2 = lambda[3] * fb_z_y;
-    const T H10_8_2 = lambda[4] * fb_z_z;
-    const T H10_9 = H10_7_2 + H10_8_2;
-    const T H10_1_3 = lambda[2] * fa_z_z - lambda[4] * fa_z_x;
-    const T H10_2_3 = lambda[2] * fa_x_z - lambda[4] * fa_x_x;
-    const T H10_3_3 = lambda[2] * fa_y_z - lambda[4] * fa_y_x;
-    const T H10_4_3 = fb_z_y * H10_1_3 + fb_x_y * H10_2_3 + fb_y_y * H10_3_3;
-    const T H10_5_3 = lambda[2] * fa_z_y - lambda[3] * fa_z_x;
-    const T H10_6_3 = lambda[2] * fa_x_y - lambda[3] * fa_x_x;
-    const T H10_7_3 = lambda[2] * fa_y_y - lambda[3] * fa_y_x;
-    const T H10_8_3 = fb_z_z * H10_5_3 + fb_x_z * H10_6_3 + fb_y_z * H10_7_3;
+    const T H10_8 = H4_13 - H10_7;
+    const T H10_1_2 = H5_1_3 + H6_1;
+    const T H10_2_2 = H5_2_2 + H6_2;
+    const T H10_3_2 = H5_3_2 + H6_3;
+    const T H10_1_3 = H4_8_2 - H4_3 * fa_z_x;
+    const T H10_2_3 = H4_1 * fa_x_z - H4_3 * fa_x_x;
+    const T H10_3_3 = H4_7_2 - H4_3 * fa_y_x;
+    const T H10_4_2 = fb_z_y * H10_1_3 + fb_x_y * H10_2_3 + fb_y_y * H10_3_3;
+    const T H10_5_2 = H4_6_2 - H4_14 * fa_z_x;
+    const T H10_6_2 = H4_1 * fa_x_y - H4_14 * fa_x_x;
+    const T H10_7_2 = H4_5_2 - H4_14 * fa_y_x;
+    const T H10_8_2 = fb_z_z * H10_5_2 + fb_x_z * H10_6_2 + fb_y_z * H10_7_2;
     const T H11_1 = lambda[0] * rb_x;
-    const T H11_2 = T(0.5) * H5_4 - H11_1;
+    const T H11_2 = H5_4 - H11_1;
     const T H11_3 = lambda[1] * rb_x;
-    const T H11_4 = T(0.5) * H5_7 - H11_3;
-    const T H11_5 = lambda[2] * fb_x_x;
-    const T H11_6 = H11_5 + H10_2_2;
-    const T H11_7 = lambda[2] * fb_y_x;
-    const T H11_8 = H11_7 + H10_5_2;
-    const T H11_9 = lambda[2] * fb_z_x;
-    const T H11_10 = H11_9 + H10_8_2;
-    const T H11_1_2 = H10_5 + T(0.5) * H4_18;
-    const T H11_2_2 = H10_7 + T(0.5) * H4_12;
-    const T H11_1_3 = lambda[3] * fa_x_z - lambda[4] * fa_x_y;
-    const T H11_2_3 = lambda[3] * fa_y_z - lambda[4] * fa_y_y;
-    const T H11_3_2 = lambda[3] * fa_z_z - lambda[4] * fa_z_y;
+    const T H11_4 = H5_7 - H11_3;
+    const T H11_5 = H4_1_3 + H6_1;
+    const T H11_6 = H4_1 * fb_y_x;
+    const T H11_7 = H11_6 + H6_2;
+    const T H11_8 = H4_1 * fb_z_x;
+    const T H11_9 = H11_8 + H6_3;
+    const T H11_1_2 = H10_5 + H4_21;
+    const T H11_2_2 = H10_7 + H4_15;
+    const T H11_1_3 = H4_14 * fa_x_z - H4_3 * fa_x_y;
+    const T H11_2_3 = H4_14 * fa_y_z - H4_3 * fa_y_y;
+    const T H11_3_2 = H4_14 * fa_z_z - H4_3 * fa_z_y;
     const T H11_1_4 = fb_z_x * H11_3_2 + fb_x_x * H11_1_3 + fb_y_x * H11_2_3;
-    const T H12_1 = H11_5 + H10_1_2;
-    const T H12_2 = H11_7 + H10_4_2;
-    const T H12_3 = H11_9 + H10_7_2;
-    const T H12_4 = H11_1 + T(0.5) * H5_5;
-    const T H12_5 = H11_3 + T(0.5) * H5_8;
-    const T H12_1_2 = T(0.5) * H4_8 - H10_1;
-    const T H12_2_2 = T(0.5) * H4_2 - H10_3;
+    const T H12_1 = H4_1_3 + H5_1_3;
+    const T H12_2 = H11_6 + H5_2_2;
+    const T H12_3 = H11_8 + H5_3_2;
+    const T H12_4 = H11_1 + H5_5;
+    const T H12_5 = H11_3 + H5_8;
+    const T H12_1_2 = H4_10 - H10_1;
+    const T H12_2_2 = H4_4 - H10_3;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -1082,78 +1102,71 @@ struct slider {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = H4_10 - H4_20;
-    H[3][4] = T(-0.5) * fa_x_x * H4_6 - fa_y_x * H4_9 - fa_z_x * H4_3;
-    H[3][5] = T(0.5) * fa_x_x * H4_16 + fa_y_x * H4_19 + fa_z_x * H4_13;
+    H[3][3] = H4_12 - H4_23;
+    H[3][4] = -fa_x_x * H4_8 - fa_y_x * H4_11 - fa_z_x * H4_5;
+    H[3][5] = fa_x_x * H4_19 + fa_y_x * H4_22 + fa_z_x * H4_16;
     H[3][7] = H[0][4];
     H[3][8] = H1_1_2;
-    H[3][9] = H4_3_2 + T(0.5) * H4_4_2 + T(0.5) * lambda[2] * (H4_5_2 - H4_6_2);
-    H[3][10] = T(0.5) * fb_x_z * H4_4_3 - H4_1_3 + T(0.5) * fb_y_z * H4_7_2 + T(0.5) * fb_z_z *
-        H4_10_2 + T(0.5) * lambda[2] * (H4_11_2 + fa_x_z * fb_x_x);
-    H[3][11] = T(-0.5) * fb_x_y * H4_4_3 - H4_1_4 - T(0.5) * fb_y_y * H4_7_2 - T(0.5) * fb_z_y *
-        H4_10_2 - T(0.5) * lambda[2] * (H4_2_4 + fa_x_y * fb_x_x);
+    H[3][9] = H4_3_2 + H4_4_2 + H4_5_2 * fb_y_z + H4_6_2 * fb_z_z - H4_7_2 * fb_y_y - H4_8_2 *
+        fb_z_y;
+    H[3][10] = H4_1_3 * fa_x_z + H4_7_2 * fb_y_x + H4_8_2 * fb_z_x - H4_2_3 + fb_x_z * H4_5_3 +
+        fb_y_z * H4_8_3 + fb_z_z * H4_11_2;
+    H[3][11] = -H4_1_3 * fa_x_y - H4_5_2 * fb_y_x - H4_6_2 * fb_z_x - H4_1_4 - fb_x_y * H4_5_3 -
+        fb_y_y * H4_8_3 - fb_z_y * H4_11_2;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = T(0.5) * fa_x_y * H5_3 + fa_y_y * H5_6 + fa_z_y * H5_9;
-    H[4][4] = -H5_1_2 - H4_20;
-    H[4][5] = T(0.5) * fa_x_y * H4_16 + fa_y_y * H4_19 + fa_z_y * H4_13;
+    H[4][3] = fa_x_y * H5_3 + fa_y_y * H5_6 + fa_z_y * H5_9;
+    H[4][4] = -H5_1_2 - H4_23;
+    H[4][5] = fa_x_y * H4_19 + fa_y_y * H4_22 + fa_z_y * H4_16;
     H[4][6] = H1_1;
     H[4][8] = H[1][5];
-    H[4][9] = T(-0.5) * fb_x_z * H5_3_2 - H5_1_3 - T(0.5) * fb_y_z * H5_5_2 - T(0.5) * fb_z_z *
-        H5_7_2 - T(0.5) * lambda[3] * (H4_6_2 + fa_x_z * fb_x_y);
-    H[4][10] = H5_2_3 - T(0.5) * H5_3_3 + T(0.5) * lambda[3] * (H4_11_2 - H5_4_3);
-    H[4][11] = T(0.5) * fb_x_x * H5_3_2 + T(0.5) * fb_y_x * H5_5_2 + T(0.5) * fb_z_x * H5_7_2 -
-        H5_1_5 + T(0.5) * lambda[3] * (H5_2_4 + fa_x_x * fb_x_y);
+    H[4][9] = -H5_1_3 * fa_x_z - H5_2_2 * fa_y_z - H5_3_2 * fa_z_z - H5_4_2 - fb_x_z * H5_6_2 -
+        fb_y_z * H5_8_2 - fb_z_z * H5_10;
+    H[4][10] = H5_2_3 - H5_3_3 - H5_4 * fa_y_x - H5_7 * fa_z_x + H4_21 * fa_y_z + H4_15 * fa_z_z;
+    H[4][11] = H5_1_3 * fa_x_x + H5_2_2 * fa_y_x + H5_3_2 * fa_z_x + fb_x_x * H5_6_2 + fb_y_x *
+        H5_8_2 + fb_z_x * H5_10 - H5_1_5;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = T(0.5) * fa_x_z * H5_3 + fa_y_z * H5_6 + fa_z_z * H5_9;
-    H[5][4] = T(-0.5) * fa_x_z * H4_6 - fa_y_z * H4_9 - fa_z_z * H4_3;
-    H[5][5] = H4_10 - H5_1_2;
+    H[5][3] = fa_x_z * H5_3 + fa_y_z * H5_6 + fa_z_z * H5_9;
+    H[5][4] = -fa_x_z * H4_8 - fa_y_z * H4_11 - fa_z_z * H4_5;
+    H[5][5] = H4_12 - H5_1_2;
     H[5][6] = H[2][3];
     H[5][7] = H2_1;
-    H[5][9] = T(0.5) * fb_x_y * H6_1 + T(0.5) * fb_y_y * H6_2 + T(0.5) * fb_z_y * H6_3 - H6_4 +
-        T(0.5) * lambda[4] * (H4_5_2 + fa_x_y * fb_x_z);
-    H[5][10] = T(-0.5) * fb_x_x * H6_1 - T(0.5) * fb_y_x * H6_2 - T(0.5) * fb_z_x * H6_3 - H6_1_2 -
-        T(0.5) * lambda[4] * (H5_4_3 + fa_x_x * fb_x_z);
-    H[5][11] = H6_1_3 + T(0.5) * H6_2_2 + T(0.5) * lambda[4] * (H5_2_4 - H4_2_4);
+    H[5][9] = H6_1 * fa_x_y + H6_2 * fa_y_y + H6_3 * fa_z_y + fb_x_y * H6_4 + fb_y_y * H6_5 +
+        fb_z_y * H6_6 - H6_7;
+    H[5][10] = -H6_1 * fa_x_x - H6_2 * fa_y_x - H6_3 * fa_z_x - fb_x_x * H6_4 - fb_y_x * H6_5 -
+        fb_z_x * H6_6 - H6_1_2;
+    H[5][11] = H6_1_3 + H6_2_2 + H5_5 * fa_y_x + H5_8 * fa_z_x - H4_10 * fa_y_y - H4_4 * fa_z_y;
     H[6][4] = H1_1;
     H[6][5] = H[2][3];
     H[7][3] = H[0][4];
     H[7][5] = H2_1;
     H[8][3] = H1_1_2;
     H[8][4] = H[1][5];
-    H[9][3] = T(0.5) * H4_4_2 + fa_y_y * H10_2 + fa_z_y * H10_4 - fa_y_z * H10_6 - fa_z_z * H10_8;
-    H[9][4] = T(-0.5) * H4_4 * fa_x_x - fa_y_x * H10_2 - fa_z_x * H10_4 - T(0.5) * fa_x_z *
-        H10_3_2 - T(0.5) * fa_y_z * H10_6_2 - T(0.5) * fa_z_z * H10_9;
-    H[9][5] = T(0.5) * H4_14 * fa_x_x + fa_y_x * H10_6 + fa_z_x * H10_8 + T(0.5) * fa_x_y *
-        H10_3_2 + T(0.5) * fa_y_y * H10_6_2 + T(0.5) * fa_z_y * H10_9;
-    H[9][9] = T(0.5) * H10_4_3 - T(0.5) * H10_8_3 - H4_3_2;
-    H[9][10] = H4_1_3 - T(0.5) * fb_x_x * H10_2_3 - T(0.5) * fb_y_x * H10_3_3 - T(0.5) * fb_z_x *
-        H10_1_3;
-    H[9][11] = T(0.5) * fb_x_x * H10_6_3 + T(0.5) * fb_y_x * H10_7_3 + T(0.5) * fb_z_x * H10_5_3 +
-        H4_1_4;
-    H[10][3] = T(0.5) * H5_1 * fa_x_y + fa_y_y * H11_2 + fa_z_y * H11_4 + T(0.5) * fa_x_z * H11_6 +
-        T(0.5) * fa_y_z * H11_8 + T(0.5) * fa_z_z * H11_10;
-    H[10][4] = fa_y_z * H11_1_2 - T(0.5) * H5_3_3 - fa_y_x * H11_2 - fa_z_x * H11_4 + fa_z_z *
-        H11_2_2;
-    H[10][5] = T(-0.5) * H4_15 * fa_x_y - T(0.5) * fa_x_x * H11_6 - T(0.5) * fa_y_x * H11_8 -
-        T(0.5) * fa_z_x * H11_10 - fa_y_y * H11_1_2 - fa_z_y * H11_2_2;
-    H[10][9] = T(0.5) * fb_x_y * H11_1_3 + T(0.5) * fb_y_y * H11_2_3 + T(0.5) * fb_z_y * H11_3_2 +
-        H5_1_3;
-    H[10][10] = T(-0.5) * H11_1_4 - T(0.5) * H10_8_3 - H5_2_3;
-    H[10][11] = T(0.5) * fb_x_y * H10_6_3 + T(0.5) * fb_y_y * H10_7_3 + T(0.5) * fb_z_y * H10_5_3 +
-        H5_1_5;
-    H[11][3] = T(-0.5) * H5_2 * fa_x_z - T(0.5) * fa_x_y * H12_1 - T(0.5) * fa_y_y * H12_2 -
-        T(0.5) * fa_z_y * H12_3 - fa_y_z * H12_4 - fa_z_z * H12_5;
-    H[11][4] = T(0.5) * H4_5 * fa_x_z + T(0.5) * fa_x_x * H12_1 + T(0.5) * fa_y_x * H12_2 +
-        T(0.5) * fa_z_x * H12_3 + fa_y_z * H12_1_2 + fa_z_z * H12_2_2;
-    H[11][5] = T(0.5) * H6_2_2 + fa_y_x * H12_4 + fa_z_x * H12_5 - fa_y_y * H12_1_2 - fa_z_y *
-        H12_2_2;
-    H[11][9] = T(0.5) * fb_x_z * H11_1_3 + T(0.5) * fb_y_z * H11_2_3 + T(0.5) * fb_z_z * H11_3_2 +
-        H6_4;
-    H[11][10] = H6_1_2 - T(0.5) * fb_x_z * H10_2_3 - T(0.5) * fb_y_z * H10_3_3 - T(0.5) * fb_z_z *
-        H10_1_3;
-    H[11][11] = T(0.5) * H10_4_3 - H6_1_3 - T(0.5) * H11_1_4;
+    H[9][3] = H4_4_2 + fa_y_y * H10_2 + fa_z_y * H10_4 - fa_y_z * H10_6 - fa_z_z * H10_8;
+    H[9][4] = -H4_6 * fa_x_x - fa_y_x * H10_2 - fa_z_x * H10_4 - fa_x_z * H10_1_2 - fa_y_z *
+        H10_2_2 - fa_z_z * H10_3_2;
+    H[9][5] = H4_17 * fa_x_x + fa_y_x * H10_6 + fa_z_x * H10_8 + fa_x_y * H10_1_2 + fa_y_y *
+        H10_2_2 + fa_z_y * H10_3_2;
+    H[9][9] = H10_4_2 - H10_8_2 - H4_3_2;
+    H[9][10] = H4_2_3 - fb_x_x * H10_2_3 - fb_y_x * H10_3_3 - fb_z_x * H10_1_3;
+    H[9][11] = fb_x_x * H10_6_2 + fb_y_x * H10_7_2 + fb_z_x * H10_5_2 + H4_1_4;
+    H[10][3] = H5_1 * fa_x_y + fa_y_y * H11_2 + fa_z_y * H11_4 + fa_x_z * H11_5 + fa_y_z * H11_7 +
+        fa_z_z * H11_9;
+    H[10][4] = fa_y_z * H11_1_2 - H5_3_3 - fa_y_x * H11_2 - fa_z_x * H11_4 + fa_z_z * H11_2_2;
+    H[10][5] = -H4_18 * fa_x_y - fa_x_x * H11_5 - fa_y_x * H11_7 - fa_z_x * H11_9 - fa_y_y *
+        H11_1_2 - fa_z_y * H11_2_2;
+    H[10][9] = fb_x_y * H11_1_3 + fb_y_y * H11_2_3 + fb_z_y * H11_3_2 + H5_4_2;
+    H[10][10] = -H11_1_4 - H10_8_2 - H5_2_3;
+    H[10][11] = fb_x_y * H10_6_2 + fb_y_y * H10_7_2 + fb_z_y * H10_5_2 + H5_1_5;
+    H[11][3] = -H5_2 * fa_x_z - fa_x_y * H12_1 - fa_y_y * H12_2 - fa_z_y * H12_3 - fa_y_z * H12_4 -
+        fa_z_z * H12_5;
+    H[11][4] = H4_7 * fa_x_z + fa_x_x * H12_1 + fa_y_x * H12_2 + fa_z_x * H12_3 + fa_y_z *
+        H12_1_2 + fa_z_z * H12_2_2;
+    H[11][5] = H6_2_2 + fa_y_x * H12_4 + fa_z_x * H12_5 - fa_y_y * H12_1_2 - fa_z_y * H12_2_2;
+    H[11][9] = fb_x_z * H11_1_3 + fb_y_z * H11_2_3 + fb_z_z * H11_3_2 + H6_7;
+    H[11][10] = H6_1_2 - fb_x_z * H10_2_3 - fb_y_z * H10_3_3 - fb_z_z * H10_1_3;
+    H[11][11] = H10_4_2 - H6_1_3 - H11_1_4;
   }
 
   // The default of parameter `index`, from the initial pose and the parameters before it.
@@ -1270,21 +1283,19 @@ struct slider {
       J.rb_x_fa_x_z = fa_x_y * rb_x - fa_x_x * rb_y;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 19 +, 24 *
+    // K = J M^-1 J^T, lower triangle, from J: 15 +, 26 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.ra_d_x_fa_x_x *
-          (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
-          J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
-          J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
-          (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z) +
-          J.rb_x_fa_x_x * (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz *
-          J.rb_x_fa_x_z) + J.rb_x_fa_x_y *
-          (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz * J.rb_x_fa_x_z) +
-          J.rb_x_fa_x_z * (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz *
-          J.rb_x_fa_x_z);
+      const T K11_1 = J.ra_d_x_fa_x_z * T(2);
+      const T K11_2 = J.rb_x_fa_x_z * T(2);
+      K[0] = ma.Izz * J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z + mb.Izz * J.rb_x_fa_x_z * J.rb_x_fa_x_z +
+          J.ra_d_x_fa_x_x * (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y * T(2) + K11_1 *
+          ma.Ixz) + J.ra_d_x_fa_x_y * (ma.Iyy * J.ra_d_x_fa_x_y + K11_1 * ma.Iyz) + J.rb_x_fa_x_x *
+          (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y * T(2) + K11_2 * mb.Ixz) +
+          J.rb_x_fa_x_y * (mb.Iyy * J.rb_x_fa_x_y + K11_2 * mb.Iyz) +
+          (J.fa_x_x * J.fa_x_x + J.fa_x_y * J.fa_x_y + J.fa_x_z * J.fa_x_z) * (ma.m + mb.m);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1466,7 +1477,7 @@ struct slider {
       D[0][11] = J.rb_x_fa_x_x * b.xz + J.rb_x_fa_x_y * b.yz + J.rb_x_fa_x_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 19 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 20 +, 30 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -1474,20 +1485,26 @@ struct slider {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
+      const T D1_1 = J.ra_d_x_fa_x_x * T(2);
+      const T D1_2 = J.ra_d_x_fa_x_y * T(2);
+      const T D1_3 = J.ra_d_x_fa_x_z * T(2);
+      const T D1_1_2 = T(2) * J.rb_x_fa_x_x;
+      const T D1_2_2 = T(2) * J.rb_x_fa_x_y;
+      const T D1_3_2 = T(2) * J.rb_x_fa_x_z;
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
-      D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
-      D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
-      D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
+      D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+      D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+      D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+      D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
       D[0][7] = J.fa_x_x;
       D[0][8] = J.fa_x_y;
       D[0][9] = J.fa_x_z;
-      D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
-      D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
-      D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
-      D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
+      D[0][10] = -D1_1_2 * b.e1 - D1_2_2 * b.e2 - D1_3_2 * b.e3;
+      D[0][11] = D1_1_2 * b.e0 + D1_2_2 * b.e3 - D1_3_2 * b.e2;
+      D[0][12] = D1_2_2 * b.e0 - D1_1_2 * b.e3 + D1_3_2 * b.e1;
+      D[0][13] = D1_1_2 * b.e2 - D1_2_2 * b.e1 + D1_3_2 * b.e0;
     }
 
     // -Jdot v - d/dt(dC/dt): 56 +, 63 *

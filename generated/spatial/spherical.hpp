@@ -360,7 +360,7 @@ struct spherical {
     D[2][11] = J.rb_x * b.yz - J.rb_y * b.xz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 24 +, 48 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 30 +, 30 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][14]) {
     for (auto& row : D) {
@@ -368,60 +368,66 @@ struct spherical {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T D1_1 = J.ra_y * a.e3;
-    const T D1_2 = J.ra_z * a.e2;
-    const T D1_1_2 = J.ra_y * a.e2;
-    const T D1_2_2 = J.ra_z * a.e3;
-    const T D1_1_3 = J.ra_y * a.e1;
-    const T D1_2_3 = J.ra_z * a.e0;
-    const T D1_1_4 = J.ra_y * a.e0;
-    const T D1_2_4 = J.ra_z * a.e1;
-    const T D1_1_5 = J.rb_y * b.e3;
-    const T D1_2_5 = J.rb_z * b.e2;
-    const T D1_1_6 = J.rb_y * b.e2;
-    const T D1_2_6 = J.rb_z * b.e3;
-    const T D1_1_7 = J.rb_y * b.e1;
-    const T D1_2_7 = J.rb_z * b.e0;
-    const T D1_1_8 = J.rb_y * b.e0;
-    const T D1_2_8 = J.rb_z * b.e1;
-    const T D2_1 = J.ra_x * a.e3;
-    const T D2_1_2 = J.ra_x * a.e2;
-    const T D2_1_3 = J.ra_x * a.e1;
-    const T D2_1_4 = J.ra_x * a.e0;
-    const T D2_1_5 = J.rb_x * b.e3;
-    const T D2_1_6 = J.rb_x * b.e2;
-    const T D2_1_7 = J.rb_x * b.e1;
-    const T D2_1_8 = J.rb_x * b.e0;
+    const T D1_1 = J.ra_y * T(2);
+    const T D1_2 = D1_1 * a.e3;
+    const T D1_3 = J.ra_z * T(2);
+    const T D1_4 = D1_3 * a.e2;
+    const T D1_1_2 = D1_1 * a.e2;
+    const T D1_2_2 = D1_3 * a.e3;
+    const T D1_1_3 = D1_1 * a.e1;
+    const T D1_2_3 = D1_3 * a.e0;
+    const T D1_1_4 = D1_1 * a.e0;
+    const T D1_2_4 = D1_3 * a.e1;
+    const T D1_1_5 = T(2) * J.rb_y;
+    const T D1_2_5 = D1_1_5 * b.e3;
+    const T D1_3_2 = T(2) * J.rb_z;
+    const T D1_4_2 = D1_3_2 * b.e2;
+    const T D1_1_6 = D1_1_5 * b.e2;
+    const T D1_2_6 = D1_3_2 * b.e3;
+    const T D1_1_7 = D1_1_5 * b.e1;
+    const T D1_2_7 = D1_3_2 * b.e0;
+    const T D1_1_8 = D1_1_5 * b.e0;
+    const T D1_2_8 = D1_3_2 * b.e1;
+    const T D2_1 = T(2) * J.ra_x;
+    const T D2_2 = D2_1 * a.e3;
+    const T D2_1_2 = D2_1 * a.e2;
+    const T D2_1_3 = D2_1 * a.e1;
+    const T D2_1_4 = D2_1 * a.e0;
+    const T D2_1_5 = T(2) * J.rb_x;
+    const T D2_2_2 = D2_1_5 * b.e3;
+    const T D2_1_6 = D2_1_5 * b.e2;
+    const T D2_1_7 = D2_1_5 * b.e1;
+    const T D2_1_8 = D2_1_5 * b.e0;
     D[0][0] = T(1);
-    D[0][3] = T(2) * (D1_1 - D1_2);
-    D[0][4] = T(2) * (D1_1_2 + D1_2_2);
-    D[0][5] = T(2) * (D1_2_3 - D1_1_3);
-    D[0][6] = T(-2) * (D1_1_4 + D1_2_4);
+    D[0][3] = D1_2 - D1_4;
+    D[0][4] = D1_1_2 + D1_2_2;
+    D[0][5] = D1_2_3 - D1_1_3;
+    D[0][6] = -D1_1_4 - D1_2_4;
     D[0][7] = T(-1);
-    D[0][10] = T(2) * (D1_2_5 - D1_1_5);
-    D[0][11] = T(-2) * (D1_1_6 + D1_2_6);
-    D[0][12] = T(2) * (D1_1_7 - D1_2_7);
-    D[0][13] = T(2) * (D1_1_8 + D1_2_8);
+    D[0][10] = D1_4_2 - D1_2_5;
+    D[0][11] = -D1_1_6 - D1_2_6;
+    D[0][12] = D1_1_7 - D1_2_7;
+    D[0][13] = D1_1_8 + D1_2_8;
     D[1][1] = T(1);
-    D[1][3] = T(2) * (D1_2_4 - D2_1);
-    D[1][4] = T(-2) * (D2_1_2 + D1_2_3);
-    D[1][5] = T(2) * (D2_1_3 + D1_2_2);
-    D[1][6] = T(2) * (D2_1_4 - D1_2);
+    D[1][3] = D1_2_4 - D2_2;
+    D[1][4] = -D2_1_2 - D1_2_3;
+    D[1][5] = D2_1_3 + D1_2_2;
+    D[1][6] = D2_1_4 - D1_4;
     D[1][8] = T(-1);
-    D[1][10] = T(2) * (D2_1_5 - D1_2_8);
-    D[1][11] = T(2) * (D2_1_6 + D1_2_7);
-    D[1][12] = T(-2) * (D2_1_7 + D1_2_6);
-    D[1][13] = T(2) * (D1_2_5 - D2_1_8);
+    D[1][10] = D2_2_2 - D1_2_8;
+    D[1][11] = D2_1_6 + D1_2_7;
+    D[1][12] = -D2_1_7 - D1_2_6;
+    D[1][13] = D1_4_2 - D2_1_8;
     D[2][2] = T(1);
-    D[2][3] = T(2) * (D2_1_2 - D1_1_3);
-    D[2][4] = T(2) * (D1_1_4 - D2_1);
-    D[2][5] = T(-2) * (D2_1_4 + D1_1);
-    D[2][6] = T(2) * (D2_1_3 + D1_1_2);
+    D[2][3] = D2_1_2 - D1_1_3;
+    D[2][4] = D1_1_4 - D2_2;
+    D[2][5] = -D2_1_4 - D1_2;
+    D[2][6] = D2_1_3 + D1_1_2;
     D[2][9] = T(-1);
-    D[2][10] = T(2) * (D1_1_7 - D2_1_6);
-    D[2][11] = T(2) * (D2_1_5 - D1_1_8);
-    D[2][12] = T(2) * (D2_1_8 + D1_1_5);
-    D[2][13] = T(-2) * (D2_1_7 + D1_1_6);
+    D[2][10] = D1_1_7 - D2_1_6;
+    D[2][11] = D2_2_2 - D1_1_8;
+    D[2][12] = D2_1_8 + D1_2_5;
+    D[2][13] = -D2_1_7 - D1_1_6;
   }
 
   // -Jdot v - d/dt(dC/dt): 27 +, 42 *

@@ -9,25 +9,10 @@
 // s_y = fa_y · d
 // s_z = fa_z · d
 // C = s_z - height sin(k s_x) sin(k s_y)
-// J = [ (height k sin(k s_x) cos(k s_y) fa_y + height k sin(k s_y) cos(k s_x) fa_x - fa_z)'
-//     | (height k sin(k s_x) cos(k s_y) (d × fa_y) + height k sin(k s_y) cos(k s_x) (d × fa_x) -
-//         ra × (fa_z - height k sin(k s_x) cos(k s_y) fa_y - height k sin(k s_y) cos(k s_x) fa_x)
-//         - d × fa_z)'
-//     | (fa_z - height k sin(k s_x) cos(k s_y) fa_y - height k sin(k s_y) cos(k s_x) fa_x)'
-//     | -(rb × (height k sin(k s_x) cos(k s_y) fa_y + height k sin(k s_y) cos(k s_x) fa_x -
-//         fa_z))' ]
-//       (columns v_a | w_a | v_b | w_b)
-// K = inv_m_a |height k sin(k s_x) cos(k s_y) fa_y + height k sin(k s_y) cos(k s_x) fa_x - fa_z|^2
-//     + inv_m_b |fa_z - height k sin(k s_x) cos(k s_y) fa_y - height k sin(k s_y) cos(k s_x)
-//         fa_x|^2
-//     + (height k sin(k s_x) cos(k s_y) (d × fa_y) + height k sin(k s_y) cos(k s_x) (d × fa_x) -
-//         ra × (fa_z - height k sin(k s_x) cos(k s_y) fa_y - height k sin(k s_y) cos(k s_x) fa_x)
-//         - d × fa_z)' inv_I_a (height k sin(k s_x) cos(k s_y) (d × fa_y) + height k sin(k s_y)
-//         cos(k s_x) (d × fa_x) - ra × (fa_z - height k sin(k s_x) cos(k s_y) fa_y - height k
-//         sin(k s_y) cos(k s_x) fa_x) - d × fa_z)
-//     + (rb × (height k sin(k s_x) cos(k s_y) fa_y + height k sin(k s_y) cos(k s_x) fa_x - fa_z))'
-//         inv_I_b (rb × (height k sin(k s_x) cos(k s_y) fa_y + height k sin(k s_y) cos(k s_x) fa_x
-//         - fa_z))
+// n = fa_z - height k sin(k s_x) cos(k s_y) fa_y - height k sin(k s_y) cos(k s_x) fa_x
+// J = [ -n' | -((ra + d) × n)' | n' | (rb × n)' ]                 (columns v_a | w_a | v_b | w_b)
+// K = inv_m_a (n · n) + inv_m_b (n · n) + (rb × n)' inv_I_b (rb × n)
+//     + ((ra + d) × n)' inv_I_a ((ra + d) × n)
 //
 // coordinate x = fa_x · d
 // J_x = [ -fa_x' | -((ra + d) × fa_x)' | fa_x' | (rb × fa_x)' ]   (columns v_a | w_a | v_b | w_b)
@@ -75,40 +60,31 @@ struct surface {
 
   template <class T>
   struct Jacobian {
-    T va_x, va_y, va_z, wa_x, wa_y, wa_z, vb_x, vb_y, vb_z, wb_x, wb_y, wb_z;
+    T n_x, n_y, n_z, ra_d_x_n_x, ra_d_x_n_y, ra_d_x_n_z, rb_x_n_x, rb_x_n_y, rb_x_n_z;
   };
 
-  // C: 46 +, 58 *, 2 call
+  // C: 28 +, 31 *, 2 call
   template <class T>
   static void position(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1]) {
     using std::sin;
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T C1_1 = b.x - a.x + rb_x;
+    const T C1_2 = b.y - a.y + rb_y;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T s_z = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T s_x = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T s_y = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
+    const T C1_3 = b.z - a.z + rb_z;
+    const T d_in_a_x = a.xx * C1_1 - p.pa_x + a.yx * C1_2 + a.zx * C1_3;
+    const T d_in_a_y = a.xy * C1_1 - p.pa_y + a.yy * C1_2 + a.zy * C1_3;
+    const T d_in_a_z = a.xz * C1_1 - p.pa_z + a.yz * C1_2 + a.zz * C1_3;
+    const T s_z = p.fa_z_x * d_in_a_x + p.fa_z_y * d_in_a_y + p.fa_z_z * d_in_a_z;
+    const T s_x = p.fa_x_x * d_in_a_x + p.fa_x_y * d_in_a_y + p.fa_x_z * d_in_a_z;
+    const T s_y = p.fa_y_x * d_in_a_x + p.fa_y_y * d_in_a_y + p.fa_y_z * d_in_a_z;
     C[0] = s_z - p.height * sin(p.k * s_x) * sin(p.k * s_y);
   }
 
-  // C and J: 79 +, 105 *, 4 call
+  // C and J: 46 +, 63 *, 4 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -116,73 +92,56 @@ struct surface {
     using std::sin;
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T s_z = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T s_x = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T s_y = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
+    const T ra_d_z = b.z - a.z + rb_z;
+    const T d_in_a_x = a.xx * ra_d_x - p.pa_x + a.yx * ra_d_y + a.zx * ra_d_z;
+    const T d_in_a_y = a.xy * ra_d_x - p.pa_y + a.yy * ra_d_y + a.zy * ra_d_z;
+    const T d_in_a_z = a.xz * ra_d_x - p.pa_z + a.yz * ra_d_y + a.zz * ra_d_z;
+    const T s_z = p.fa_z_x * d_in_a_x + p.fa_z_y * d_in_a_y + p.fa_z_z * d_in_a_z;
+    const T s_x = p.fa_x_x * d_in_a_x + p.fa_x_y * d_in_a_y + p.fa_x_z * d_in_a_z;
+    const T s_y = p.fa_y_x * d_in_a_x + p.fa_y_y * d_in_a_y + p.fa_y_z * d_in_a_z;
     const T C1_1 = p.k * s_x;
     const T C1_2 = sin(C1_1);
     const T C1_3 = p.k * s_y;
     const T C1_4 = sin(C1_3);
-    const T va_x_1 = p.height * p.k;
-    const T va_x_2 = cos(C1_1) * C1_4 * va_x_1;
-    const T va_x_3 = cos(C1_3) * C1_2 * va_x_1;
-    const T va_x_4 = va_x_2 * fa_x_x - fa_z_x + va_x_3 * fa_y_x;
-    const T va_y_1 = va_x_2 * fa_x_y - fa_z_y + va_x_3 * fa_y_y;
-    const T va_z_1 = va_x_2 * fa_x_z - fa_z_z + va_x_3 * fa_y_z;
-    const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-    const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-    const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-    const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-    const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-    const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-    const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-    const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-    const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
+    const T n_x_1 = p.height * p.k;
+    const T n_x_2 = cos(C1_1) * C1_4 * n_x_1;
+    const T n_x_3 = cos(C1_3) * C1_2 * n_x_1;
+    const T n_in_a_x = p.fa_z_x - n_x_2 * p.fa_x_x - n_x_3 * p.fa_y_x;
+    const T n_in_a_y = p.fa_z_y - n_x_2 * p.fa_x_y - n_x_3 * p.fa_y_y;
+    const T n_in_a_z = p.fa_z_z - n_x_2 * p.fa_x_z - n_x_3 * p.fa_y_z;
+    const T n_x = a.xx * n_in_a_x + a.xy * n_in_a_y + a.xz * n_in_a_z;
+    const T n_y = a.yx * n_in_a_x + a.yy * n_in_a_y + a.yz * n_in_a_z;
+    const T n_z = a.zx * n_in_a_x + a.zy * n_in_a_y + a.zz * n_in_a_z;
     C[0] = s_z - p.height * C1_2 * C1_4;
-    J.va_x = va_x_4;
-    J.va_y = va_y_1;
-    J.va_z = va_z_1;
-    J.wa_x = va_x_2 * d_x_fa_x_x - d_x_fa_z_x + va_x_3 * d_x_fa_y_x - va_y_1 * ra_z + va_z_1 * ra_y;
-    J.wa_y = va_x_2 * d_x_fa_x_y - d_x_fa_z_y + va_x_3 * d_x_fa_y_y + va_x_4 * ra_z - va_z_1 * ra_x;
-    J.wa_z = va_x_2 * d_x_fa_x_z - d_x_fa_z_z + va_x_3 * d_x_fa_y_z - va_x_4 * ra_y + va_y_1 * ra_x;
-    J.vb_x = -va_x_4;
-    J.vb_y = -va_y_1;
-    J.vb_z = -va_z_1;
-    J.wb_x = va_y_1 * rb_z - va_z_1 * rb_y;
-    J.wb_y = va_z_1 * rb_x - va_x_4 * rb_z;
-    J.wb_z = va_x_4 * rb_y - va_y_1 * rb_x;
+    J.n_x = n_x;
+    J.n_y = n_y;
+    J.n_z = n_z;
+    J.ra_d_x_n_x = ra_d_y * n_z - ra_d_z * n_y;
+    J.ra_d_x_n_y = ra_d_z * n_x - ra_d_x * n_z;
+    J.ra_d_x_n_z = ra_d_x * n_y - ra_d_y * n_x;
+    J.rb_x_n_x = n_z * rb_y - n_y * rb_z;
+    J.rb_x_n_y = n_x * rb_z - n_z * rb_x;
+    J.rb_x_n_z = n_y * rb_x - n_x * rb_y;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 21 +, 28 *
+  // K = J M^-1 J^T, lower triangle, from J: 15 +, 26 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
-    K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z) + J.wb_x *
-        (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z) +
-        (J.va_x * J.va_x + J.va_y * J.va_y + J.va_z * J.va_z) * (ma.m + mb.m);
+    const T K11_1 = J.ra_d_x_n_z * T(2);
+    const T K11_2 = J.rb_x_n_z * T(2);
+    K[0] = ma.Izz * J.ra_d_x_n_z * J.ra_d_x_n_z + mb.Izz * J.rb_x_n_z * J.rb_x_n_z + J.ra_d_x_n_x *
+        (ma.Ixx * J.ra_d_x_n_x + ma.Ixy * J.ra_d_x_n_y * T(2) + K11_1 * ma.Ixz) + J.ra_d_x_n_y *
+        (ma.Iyy * J.ra_d_x_n_y + K11_1 * ma.Iyz) + J.rb_x_n_x *
+        (mb.Ixx * J.rb_x_n_x + mb.Ixy * J.rb_x_n_y * T(2) + K11_2 * mb.Ixz) + J.rb_x_n_y *
+        (mb.Iyy * J.rb_x_n_y + K11_2 * mb.Iyz) + (J.n_x * J.n_x + J.n_y * J.n_y + J.n_z * J.n_z) *
+        (ma.m + mb.m);
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -197,14 +156,14 @@ struct surface {
     lambda[0] = F[0] * rhs[0];
   }
 
-  // J v: 11 +, 12 *
+  // J v: 11 +, 9 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
     const Velocity<T>& vb = v[1];
-    Jv[0] = J.va_x * va.x + J.va_y * va.y + J.va_z * va.z + J.vb_x * vb.x + J.vb_y * vb.y +
-        J.vb_z * vb.z + J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.wb_x * vb.wx +
-        J.wb_y * vb.wy + J.wb_z * vb.wz;
+    Jv[0] = J.rb_x_n_x * vb.wx - J.ra_d_x_n_x * va.wx - J.ra_d_x_n_y * va.wy - J.ra_d_x_n_z *
+        va.wz + J.rb_x_n_y * vb.wy + J.rb_x_n_z * vb.wz + J.n_x * (vb.x - va.x) + J.n_y *
+        (vb.y - va.y) + J.n_z * (vb.z - va.z);
   }
 
   // v += M^-1 J^T lambda: 24 +, 32 *
@@ -216,48 +175,48 @@ struct surface {
     const Velocity<T> vb = v[1];
     const InverseMass<T>& mb = m[1];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_n_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_n_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_n_z;
     const T v2_1 = lambda[0] * mb.m;
-    const T v2_1_2 = lambda[0] * J.wb_x;
-    const T v2_2 = lambda[0] * J.wb_y;
-    const T v2_3 = lambda[0] * J.wb_z;
-    v[0].x = va.x + v1_1 * J.va_x;
-    v[0].y = va.y + v1_1 * J.va_y;
-    v[0].z = va.z + v1_1 * J.va_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
-    v[1].x = vb.x + v2_1 * J.vb_x;
-    v[1].y = vb.y + v2_1 * J.vb_y;
-    v[1].z = vb.z + v2_1 * J.vb_z;
+    const T v2_1_2 = lambda[0] * J.rb_x_n_x;
+    const T v2_2 = lambda[0] * J.rb_x_n_y;
+    const T v2_3 = lambda[0] * J.rb_x_n_z;
+    v[0].x = va.x - v1_1 * J.n_x;
+    v[0].y = va.y - v1_1 * J.n_y;
+    v[0].z = va.z - v1_1 * J.n_z;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
+    v[1].x = vb.x + v2_1 * J.n_x;
+    v[1].y = vb.y + v2_1 * J.n_y;
+    v[1].z = vb.z + v2_1 * J.n_z;
     v[1].wx = vb.wx + v2_1_2 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
     v[1].wy = vb.wy + v2_1_2 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
     v[1].wz = vb.wz + v2_1_2 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
   }
 
-  // J with its zeros: v, w of each body: nothing
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][0] = J.va_x;
-    D[0][1] = J.va_y;
-    D[0][2] = J.va_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
-    D[0][6] = J.vb_x;
-    D[0][7] = J.vb_y;
-    D[0][8] = J.vb_z;
-    D[0][9] = J.wb_x;
-    D[0][10] = J.wb_y;
-    D[0][11] = J.wb_z;
+    D[0][0] = -J.n_x;
+    D[0][1] = -J.n_y;
+    D[0][2] = -J.n_z;
+    D[0][3] = -J.ra_d_x_n_x;
+    D[0][4] = -J.ra_d_x_n_y;
+    D[0][5] = -J.ra_d_x_n_z;
+    D[0][6] = J.n_x;
+    D[0][7] = J.n_y;
+    D[0][8] = J.n_z;
+    D[0][9] = J.rb_x_n_x;
+    D[0][10] = J.rb_x_n_y;
+    D[0][11] = J.rb_x_n_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 12 +, 24 *
+  // (M^-1 J^T)^T, laid out like dense: 18 +, 24 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -266,18 +225,18 @@ struct surface {
     }
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
-    D[0][0] = ma.m * J.va_x;
-    D[0][1] = ma.m * J.va_y;
-    D[0][2] = ma.m * J.va_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
-    D[0][6] = mb.m * J.vb_x;
-    D[0][7] = mb.m * J.vb_y;
-    D[0][8] = mb.m * J.vb_z;
-    D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
-    D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
-    D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+    D[0][0] = -ma.m * J.n_x;
+    D[0][1] = -ma.m * J.n_y;
+    D[0][2] = -ma.m * J.n_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_n_x - ma.Ixy * J.ra_d_x_n_y - ma.Ixz * J.ra_d_x_n_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_n_x - ma.Iyy * J.ra_d_x_n_y - ma.Iyz * J.ra_d_x_n_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_n_x - ma.Iyz * J.ra_d_x_n_y - ma.Izz * J.ra_d_x_n_z;
+    D[0][6] = mb.m * J.n_x;
+    D[0][7] = mb.m * J.n_y;
+    D[0][8] = mb.m * J.n_z;
+    D[0][9] = mb.Ixx * J.rb_x_n_x + mb.Ixy * J.rb_x_n_y + mb.Ixz * J.rb_x_n_z;
+    D[0][10] = mb.Ixy * J.rb_x_n_x + mb.Iyy * J.rb_x_n_y + mb.Iyz * J.rb_x_n_z;
+    D[0][11] = mb.Ixz * J.rb_x_n_x + mb.Iyz * J.rb_x_n_y + mb.Izz * J.rb_x_n_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 9 +, 12 *
@@ -286,9 +245,12 @@ struct surface {
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
     const IsotropicInverseMass<T>& mb = m[1];
-    K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-        (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z) +
-        (J.va_x * J.va_x + J.va_y * J.va_y + J.va_z * J.va_z) * (ma.m + mb.m);
+    const T dot_ra_d_x_n_ra_d_x_n = J.ra_d_x_n_x * J.ra_d_x_n_x + J.ra_d_x_n_y * J.ra_d_x_n_y +
+        J.ra_d_x_n_z * J.ra_d_x_n_z;
+    const T dot_rb_x_n_rb_x_n = J.rb_x_n_x * J.rb_x_n_x + J.rb_x_n_y * J.rb_x_n_y + J.rb_x_n_z *
+        J.rb_x_n_z;
+    const T dot_n_n = J.n_x * J.n_x + J.n_y * J.n_y + J.n_z * J.n_z;
+    K[0] = ma.I * dot_ra_d_x_n_ra_d_x_n + mb.I * dot_rb_x_n_rb_x_n + dot_n_n * (ma.m + mb.m);
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 16 *
@@ -303,21 +265,21 @@ struct surface {
     const T v1_1_2 = lambda[0] * ma.I;
     const T v2_1 = lambda[0] * mb.m;
     const T v2_1_2 = lambda[0] * mb.I;
-    v[0].x = va.x + v1_1 * J.va_x;
-    v[0].y = va.y + v1_1 * J.va_y;
-    v[0].z = va.z + v1_1 * J.va_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
-    v[1].x = vb.x + v2_1 * J.vb_x;
-    v[1].y = vb.y + v2_1 * J.vb_y;
-    v[1].z = vb.z + v2_1 * J.vb_z;
-    v[1].wx = vb.wx + v2_1_2 * J.wb_x;
-    v[1].wy = vb.wy + v2_1_2 * J.wb_y;
-    v[1].wz = vb.wz + v2_1_2 * J.wb_z;
+    v[0].x = va.x - v1_1 * J.n_x;
+    v[0].y = va.y - v1_1 * J.n_y;
+    v[0].z = va.z - v1_1 * J.n_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_n_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_n_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_n_z;
+    v[1].x = vb.x + v2_1 * J.n_x;
+    v[1].y = vb.y + v2_1 * J.n_y;
+    v[1].z = vb.z + v2_1 * J.n_z;
+    v[1].wx = vb.wx + v2_1_2 * J.rb_x_n_x;
+    v[1].wy = vb.wy + v2_1_2 * J.rb_x_n_y;
+    v[1].wz = vb.wz + v2_1_2 * J.rb_x_n_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 12 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -326,21 +288,21 @@ struct surface {
     }
     const IsotropicInverseMass<T>& ma = m[0];
     const IsotropicInverseMass<T>& mb = m[1];
-    D[0][0] = ma.m * J.va_x;
-    D[0][1] = ma.m * J.va_y;
-    D[0][2] = ma.m * J.va_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
-    D[0][6] = mb.m * J.vb_x;
-    D[0][7] = mb.m * J.vb_y;
-    D[0][8] = mb.m * J.vb_z;
-    D[0][9] = mb.I * J.wb_x;
-    D[0][10] = mb.I * J.wb_y;
-    D[0][11] = mb.I * J.wb_z;
+    D[0][0] = -ma.m * J.n_x;
+    D[0][1] = -ma.m * J.n_y;
+    D[0][2] = -ma.m * J.n_z;
+    D[0][3] = -ma.I * J.ra_d_x_n_x;
+    D[0][4] = -ma.I * J.ra_d_x_n_y;
+    D[0][5] = -ma.I * J.ra_d_x_n_z;
+    D[0][6] = mb.m * J.n_x;
+    D[0][7] = mb.m * J.n_y;
+    D[0][8] = mb.m * J.n_z;
+    D[0][9] = mb.I * J.rb_x_n_x;
+    D[0][10] = mb.I * J.rb_x_n_y;
+    D[0][11] = mb.I * J.rb_x_n_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -348,21 +310,21 @@ struct surface {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    D[0][0] = J.va_x;
-    D[0][1] = J.va_y;
-    D[0][2] = J.va_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-    D[0][6] = J.vb_x;
-    D[0][7] = J.vb_y;
-    D[0][8] = J.vb_z;
-    D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-    D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-    D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+    D[0][0] = -J.n_x;
+    D[0][1] = -J.n_y;
+    D[0][2] = -J.n_z;
+    D[0][3] = -J.ra_d_x_n_x * a.xx - J.ra_d_x_n_y * a.yx - J.ra_d_x_n_z * a.zx;
+    D[0][4] = -J.ra_d_x_n_x * a.xy - J.ra_d_x_n_y * a.yy - J.ra_d_x_n_z * a.zy;
+    D[0][5] = -J.ra_d_x_n_x * a.xz - J.ra_d_x_n_y * a.yz - J.ra_d_x_n_z * a.zz;
+    D[0][6] = J.n_x;
+    D[0][7] = J.n_y;
+    D[0][8] = J.n_z;
+    D[0][9] = J.rb_x_n_x * b.xx + J.rb_x_n_y * b.yx + J.rb_x_n_z * b.zx;
+    D[0][10] = J.rb_x_n_x * b.xy + J.rb_x_n_y * b.yy + J.rb_x_n_z * b.zy;
+    D[0][11] = J.rb_x_n_x * b.xz + J.rb_x_n_y * b.yz + J.rb_x_n_z * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 20 +, 30 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
     for (auto& row : D) {
@@ -370,23 +332,29 @@ struct surface {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    D[0][0] = J.va_x;
-    D[0][1] = J.va_y;
-    D[0][2] = J.va_z;
-    D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-    D[0][7] = J.vb_x;
-    D[0][8] = J.vb_y;
-    D[0][9] = J.vb_z;
-    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-    D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-    D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-    D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+    const T D1_1 = J.ra_d_x_n_x * T(2);
+    const T D1_2 = J.ra_d_x_n_y * T(2);
+    const T D1_3 = J.ra_d_x_n_z * T(2);
+    const T D1_1_2 = T(2) * J.rb_x_n_x;
+    const T D1_2_2 = T(2) * J.rb_x_n_y;
+    const T D1_3_2 = T(2) * J.rb_x_n_z;
+    D[0][0] = -J.n_x;
+    D[0][1] = -J.n_y;
+    D[0][2] = -J.n_z;
+    D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+    D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+    D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+    D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
+    D[0][7] = J.n_x;
+    D[0][8] = J.n_y;
+    D[0][9] = J.n_z;
+    D[0][10] = -D1_1_2 * b.e1 - D1_2_2 * b.e2 - D1_3_2 * b.e3;
+    D[0][11] = D1_1_2 * b.e0 + D1_2_2 * b.e3 - D1_3_2 * b.e2;
+    D[0][12] = D1_2_2 * b.e0 - D1_1_2 * b.e3 + D1_3_2 * b.e1;
+    D[0][13] = D1_1_2 * b.e2 - D1_2_2 * b.e1 + D1_3_2 * b.e0;
   }
 
-  // -Jdot v - d/dt(dC/dt): 124 +, 170 *, 4 call
+  // -Jdot v - d/dt(dC/dt): 123 +, 159 *, 4 call
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -396,95 +364,99 @@ struct surface {
     const Velocity<T>& va = v[0];
     const Pose<T>& b = q[1];
     const Velocity<T>& vb = v[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
-    const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
-    const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-    const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
-    const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-    const T dot_d_w_a_x_w_a_x_fa_z = d_x * w_a_x_w_a_x_fa_z_x + d_y * w_a_x_w_a_x_fa_z_y + d_z *
-        w_a_x_w_a_x_fa_z_z;
-    const T ra_x_w_a_x = va.wz * ra_y - va.wy * ra_z;
-    const T ra_x_w_a_y = va.wx * ra_z - va.wz * ra_x;
-    const T rb_x_w_b_x = vb.wz * rb_y - vb.wy * rb_z;
-    const T rb_x_w_b_y = vb.wx * rb_z - vb.wz * rb_x;
-    const T d_dot_x = vb.x - va.x + ra_x_w_a_x - rb_x_w_b_x;
-    const T d_dot_y = vb.y - va.y + ra_x_w_a_y - rb_x_w_b_y;
-    const T ra_x_w_a_z = va.wy * ra_x - va.wx * ra_y;
-    const T rb_x_w_b_z = vb.wy * rb_x - vb.wx * rb_y;
-    const T d_dot_z = vb.z - va.z + ra_x_w_a_z - rb_x_w_b_z;
-    const T dot_d_dot_w_a_x_fa_z = d_dot_x * w_a_x_fa_z_x + d_dot_y * w_a_x_fa_z_y + d_dot_z *
-        w_a_x_fa_z_z;
-    const T w_a_x_ra_x_w_a_x = va.wy * ra_x_w_a_z - va.wz * ra_x_w_a_y;
-    const T w_a_x_ra_x_w_a_y = va.wz * ra_x_w_a_x - va.wx * ra_x_w_a_z;
-    const T w_b_x_rb_x_w_b_x = vb.wy * rb_x_w_b_z - vb.wz * rb_x_w_b_y;
-    const T w_b_x_rb_x_w_b_y = vb.wz * rb_x_w_b_x - vb.wx * rb_x_w_b_z;
-    const T d_dot_dot_x = w_a_x_ra_x_w_a_x - w_b_x_rb_x_w_b_x;
-    const T d_dot_dot_y = w_a_x_ra_x_w_a_y - w_b_x_rb_x_w_b_y;
-    const T w_a_x_ra_x_w_a_z = va.wx * ra_x_w_a_y - va.wy * ra_x_w_a_x;
-    const T w_b_x_rb_x_w_b_z = vb.wx * rb_x_w_b_y - vb.wy * rb_x_w_b_x;
-    const T d_dot_dot_z = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
-    const T dot_d_dot_dot_fa_z = d_dot_dot_y * fa_z_y + d_dot_dot_z * fa_z_z + d_dot_dot_x * fa_z_x;
-    const T s_z_dot_dot = dot_d_w_a_x_w_a_x_fa_z + T(2) * dot_d_dot_w_a_x_fa_z + dot_d_dot_dot_fa_z;
+    const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
+    const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
+    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
+    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
+    const T d_x = ra_d_x - ra_x;
+    const T d_y = ra_d_y - ra_y;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
+    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
+    const T ra_d_z = b.z - a.z + rb_z;
+    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T d_z = ra_d_z - ra_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-    const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-    const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-    const T dot_d_w_a_x_w_a_x_fa_x = d_x * w_a_x_w_a_x_fa_x_x + d_y * w_a_x_w_a_x_fa_x_y + d_z *
-        w_a_x_w_a_x_fa_x_z;
+    const T s_x = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T s_y = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
+    const T g1_1 = p.k * s_x;
+    const T g1_2 = cos(g1_1);
+    const T g1_3 = p.k * s_y;
+    const T g1_4 = p.height * p.k;
+    const T g1_5 = sin(g1_3) * g1_4;
+    const T g1_6 = g1_2 * g1_5;
+    const T g1_7 = sin(g1_1);
+    const T g1_8 = g1_4 * cos(g1_3);
+    const T g1_9 = g1_7 * g1_8;
+    const T n_x = fa_z_x - g1_6 * fa_x_x - g1_9 * fa_y_x;
+    const T n_y = fa_z_y - g1_6 * fa_x_y - g1_9 * fa_y_y;
+    const T rb_x_w_b_z = vb.wy * rb_x - vb.wx * rb_y;
+    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+    const T n_z = fa_z_z - g1_6 * fa_x_z - g1_9 * fa_y_z;
+    const T rb_x_w_b_x = vb.wz * rb_y - vb.wy * rb_z;
+    const T rb_x_w_b_y = vb.wx * rb_z - vb.wz * rb_x;
+    const T n_x_rb_x_w_b_x = n_y * rb_x_w_b_z - n_z * rb_x_w_b_y;
+    const T n_x_rb_x_w_b_y = n_z * rb_x_w_b_x - n_x * rb_x_w_b_z;
+    const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
+    const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
+    const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
+    const T g1_10 = g1_7 * p.k * g1_5;
+    const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
+    const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
+    const T dot_d_w_a_x_fa_x = d_x * w_a_x_fa_x_x + d_y * w_a_x_fa_x_y + d_z * w_a_x_fa_x_z;
     const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
     const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-    const T dot_d_w_a_x_w_a_x_fa_y = d_x * w_a_x_w_a_x_fa_y_x + d_y * w_a_x_w_a_x_fa_y_y + d_z *
-        w_a_x_w_a_x_fa_y_z;
-    const T dot_d_dot_w_a_x_fa_x = d_dot_x * w_a_x_fa_x_x + d_dot_y * w_a_x_fa_x_y + d_dot_z *
-        w_a_x_fa_x_z;
-    const T dot_d_dot_w_a_x_fa_y = d_dot_x * w_a_x_fa_y_x + d_dot_y * w_a_x_fa_y_y + d_dot_z *
-        w_a_x_fa_y_z;
-    const T dot_d_dot_dot_fa_x = d_dot_dot_y * fa_x_y + d_dot_dot_z * fa_x_z + d_dot_dot_x * fa_x_x;
-    const T dot_d_dot_dot_fa_y = d_dot_dot_y * fa_y_y + d_dot_dot_z * fa_y_z + d_dot_dot_x * fa_y_x;
-    const T s_x_dot_dot = dot_d_w_a_x_w_a_x_fa_x + T(2) * dot_d_dot_w_a_x_fa_x + dot_d_dot_dot_fa_x;
-    const T s_x = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
-    const T s_y = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
-    const T g1_1 = p.k * s_y;
-    const T g1_2 = sin(g1_1);
-    const T g1_3 = p.k * s_x;
-    const T g1_4 = cos(g1_3);
-    const T s_y_dot_dot = dot_d_w_a_x_w_a_x_fa_y + T(2) * dot_d_dot_w_a_x_fa_y + dot_d_dot_dot_fa_y;
-    const T g1_5 = sin(g1_3);
-    const T g1_6 = cos(g1_1);
-    const T dot_d_w_a_x_fa_x = d_x * w_a_x_fa_x_x + d_y * w_a_x_fa_x_y + d_z * w_a_x_fa_x_z;
     const T dot_d_w_a_x_fa_y = d_x * w_a_x_fa_y_x + d_y * w_a_x_fa_y_y + d_z * w_a_x_fa_y_z;
+    const T g1_11 = va.x - vb.x;
+    const T g1_12 = rb_x_w_b_x + g1_11;
+    const T ra_x_w_a_x = va.wz * ra_y - va.wy * ra_z;
+    const T ra_x_w_a_y = va.wx * ra_z - va.wz * ra_x;
+    const T d_dot_x = ra_x_w_a_x - g1_12;
+    const T g1_13 = va.y - vb.y;
+    const T g1_14 = rb_x_w_b_y + g1_13;
+    const T d_dot_y = ra_x_w_a_y - g1_14;
+    const T g1_15 = va.z - vb.z;
+    const T g1_16 = rb_x_w_b_z + g1_15;
+    const T ra_x_w_a_z = va.wy * ra_x - va.wx * ra_y;
+    const T d_dot_z = ra_x_w_a_z - g1_16;
     const T dot_d_dot_fa_x = d_dot_x * fa_x_x + d_dot_y * fa_x_y + d_dot_z * fa_x_z;
     const T dot_d_dot_fa_y = d_dot_x * fa_y_x + d_dot_y * fa_y_y + d_dot_z * fa_y_z;
     const T s_x_dot = dot_d_w_a_x_fa_x + dot_d_dot_fa_x;
+    const T g1_17 = g1_2 * p.k * g1_8;
     const T s_y_dot = dot_d_w_a_x_fa_y + dot_d_dot_fa_y;
-    g[0] = p.height * p.k * (s_x_dot_dot * g1_2 * g1_4 + s_y_dot_dot * g1_5 * g1_6 + p.k *
-        (T(2) * s_x_dot * s_y_dot * g1_4 * g1_6 - g1_2 * g1_5 *
-        (s_x_dot * s_x_dot + s_y_dot * s_y_dot))) - s_z_dot_dot;
+    const T g1_18 = g1_17 * s_y_dot - g1_10 * s_x_dot;
+    const T g1_19 = g1_17 * s_x_dot - g1_10 * s_y_dot;
+    const T n_dot_z = w_a_x_fa_z_z - g1_6 * w_a_x_fa_x_z - g1_9 * w_a_x_fa_y_z - fa_x_z * g1_18 -
+        fa_y_z * g1_19;
+    const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
+    const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
+    const T n_dot_x = w_a_x_fa_z_x - g1_6 * w_a_x_fa_x_x - g1_9 * w_a_x_fa_y_x - fa_x_x * g1_18 -
+        fa_y_x * g1_19;
+    const T n_dot_y = w_a_x_fa_z_y - g1_6 * w_a_x_fa_x_y - g1_9 * w_a_x_fa_y_y - fa_x_y * g1_18 -
+        fa_y_y * g1_19;
+    const T rb_x_n_dot_x = n_dot_z * rb_y - n_dot_y * rb_z;
+    const T rb_x_n_dot_y = n_dot_x * rb_z - n_dot_z * rb_x;
+    const T rb_x_n_dot_n_x_rb_x_w_b_x = n_x_rb_x_w_b_x + rb_x_n_dot_x;
+    const T rb_x_n_dot_n_x_rb_x_w_b_y = n_x_rb_x_w_b_y + rb_x_n_dot_y;
+    const T n_x_rb_x_w_b_z = n_x * rb_x_w_b_y - n_y * rb_x_w_b_x;
+    const T rb_x_n_dot_z = n_dot_y * rb_x - n_dot_x * rb_y;
+    const T rb_x_n_dot_n_x_rb_x_w_b_z = n_x_rb_x_w_b_z + rb_x_n_dot_z;
+    const T dot_w_b_rb_x_n_dot_n_x_rb_x_w_b = vb.wx * rb_x_n_dot_n_x_rb_x_w_b_x + vb.wy *
+        rb_x_n_dot_n_x_rb_x_w_b_y + vb.wz * rb_x_n_dot_n_x_rb_x_w_b_z;
+    const T ra_d_x_n_dot_x = ra_d_y * n_dot_z - ra_d_z * n_dot_y;
+    const T ra_d_x_n_dot_y = ra_d_z * n_dot_x - ra_d_x * n_dot_z;
+    const T ra_d_x_n_dot_z = ra_d_x * n_dot_y - ra_d_y * n_dot_x;
+    g[0] = va.wx * (ra_d_x_n_dot_x - g1_14 * n_z + g1_16 * n_y) - dot_w_b_rb_x_n_dot_n_x_rb_x_w_b +
+        va.wy * (ra_d_x_n_dot_y + g1_12 * n_z - g1_16 * n_x) + va.wz *
+        (ra_d_x_n_dot_z - g1_12 * n_y + g1_14 * n_x) + g1_11 * n_dot_x + g1_13 * n_dot_y + g1_15 *
+        n_dot_z;
   }
 
   // dC/dt at fixed q: nothing
@@ -493,7 +465,7 @@ struct surface {
     C_t[0] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 411 +, 495 *, 4 call
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 346 +, 499 *, 4 call
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
       T (&H)[12][12]) {
@@ -506,15 +478,18 @@ struct surface {
     const Pose<T>& b = q[1];
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
+    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
+    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
+    const T d_x = ra_d_x - ra_x;
+    const T d_y = ra_d_y - ra_y;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
+    const T ra_d_z = b.z - a.z + rb_z;
+    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T d_z = ra_d_z - ra_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T s_x = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
@@ -523,194 +498,158 @@ struct surface {
     const T s_y = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
     const T H1_1 = p.k * s_x;
     const T H1_2 = sin(H1_1);
-    const T H1_3 = p.height * p.k;
-    const T H1_4 = lambda[0] * H1_3;
+    const T H1_3 = p.k * s_y;
+    const T H1_4 = sin(H1_3);
     const T H1_5 = H1_2 * H1_4;
-    const T H1_6 = p.k * s_y;
-    const T H1_7 = sin(H1_6);
-    const T H1_8 = p.k * H1_7;
-    const T H1_9 = H1_5 * H1_8;
-    const T H1_10 = cos(H1_1);
-    const T H1_11 = H1_4 * H1_10;
-    const T H1_12 = cos(H1_6);
-    const T H1_13 = p.k * H1_12;
-    const T H1_14 = H1_11 * H1_13;
-    const T H1_15 = H1_14 * fa_y_x - H1_9 * fa_x_x;
-    const T H1_16 = H1_14 * fa_x_x - H1_9 * fa_y_x;
-    const T H1_17 = fa_x_x * H1_15 + fa_y_x * H1_16;
-    const T H1_1_2 = fa_x_y * H1_15 + fa_y_y * H1_16;
-    const T H1_1_3 = fa_x_z * H1_15 + fa_y_z * H1_16;
-    const T H1_1_4 = d_y * fa_x_z;
-    const T H1_2_2 = fa_x_y * d_z;
-    const T H1_3_2 = H1_2_2 - H1_1_4;
-    const T H1_4_2 = d_y * fa_y_z;
-    const T H1_5_2 = d_z * fa_y_y;
-    const T H1_6_2 = H1_5_2 - H1_4_2;
-    const T H1_7_2 = ra_z * H1_1_2 - ra_y * H1_1_3 + H1_15 * H1_3_2 + H1_16 * H1_6_2;
+    const T H1_6 = cos(H1_1);
+    const T H1_7 = cos(H1_3);
+    const T H1_8 = H1_6 * H1_7;
+    const T H1_9 = lambda[0] * p.height * p.k * p.k * (H1_8 * fa_y_x - H1_5 * fa_x_x);
+    const T H1_10 = lambda[0] * p.height * p.k * p.k * (H1_8 * fa_x_x - H1_5 * fa_y_x);
+    const T H1_11 = fa_x_x * H1_9 + fa_y_x * H1_10;
+    const T H1_1_2 = fa_x_y * H1_9 + fa_y_y * H1_10;
+    const T H1_1_3 = fa_x_z * H1_9 + fa_y_z * H1_10;
+    const T H1_1_4 = ra_z + d_z;
+    const T H1_2_2 = ra_y + d_y;
+    const T H1_3_2 = H1_1_2 * H1_1_4 - H1_1_3 * H1_2_2;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
     const T H1_1_5 = lambda[0] * fa_z_z;
-    const T H1_2_3 = fa_x_x * d_z;
-    const T H1_3_3 = d_z * fa_y_x;
-    const T H1_4_3 = H1_7 * H1_11;
-    const T H1_5_3 = H1_4_3 + d_x * H1_15;
-    const T H1_6_3 = H1_5 * H1_12;
-    const T H1_7_3 = H1_6_3 + d_x * H1_16;
-    const T H1_8_2 = ra_x * H1_1_3 - H1_1_5 - H1_2_3 * H1_15 - H1_3_3 * H1_16 + fa_x_z * H1_5_3 +
-        fa_y_z * H1_7_3 - ra_z * H1_17;
+    const T H1_2_3 = p.k * lambda[0] * p.height;
+    const T H1_3_3 = H1_4 * H1_6;
+    const T H1_4_2 = H1_2_3 * H1_3_3;
+    const T H1_5_2 = H1_4_2 + d_x * H1_9;
+    const T H1_6_2 = H1_2 * H1_7;
+    const T H1_7_2 = H1_2_3 * H1_6_2;
+    const T H1_8_2 = H1_7_2 + d_x * H1_10;
+    const T H1_9_2 = ra_x * H1_1_3 - H1_1_5 + fa_x_z * H1_5_2 + fa_y_z * H1_8_2 - H1_11 * H1_1_4;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T H1_1_6 = lambda[0] * fa_z_y;
-    const T H1_2_4 = fa_x_x * d_y;
-    const T H1_3_4 = d_y * fa_y_x;
-    const T H1_4_4 = H1_1_6 + H1_2_4 * H1_15 + H1_3_4 * H1_16 - ra_x * H1_1_2 - fa_x_y * H1_5_3 -
-        fa_y_y * H1_7_3 + ra_y * H1_17;
+    const T H1_2_4 = H1_1_6 - ra_x * H1_1_2 - fa_x_y * H1_5_2 - fa_y_y * H1_8_2 + H1_11 * H1_2_2;
     const T H1_1_7 = rb_y * H1_1_3 - rb_z * H1_1_2;
-    const T H1_1_8 = rb_z * H1_17 - rb_x * H1_1_3;
-    const T H1_1_9 = rb_x * H1_1_2 - rb_y * H1_17;
-    const T H2_1 = H1_14 * fa_y_y - H1_9 * fa_x_y;
-    const T H2_2 = H1_14 * fa_x_y - H1_9 * fa_y_y;
+    const T H1_1_8 = rb_z * H1_11 - rb_x * H1_1_3;
+    const T H1_1_9 = rb_x * H1_1_2 - rb_y * H1_11;
+    const T H2_1 = lambda[0] * p.height * p.k * p.k * (H1_8 * fa_y_y - H1_5 * fa_x_y);
+    const T H2_2 = lambda[0] * p.height * p.k * p.k * (H1_8 * fa_x_y - H1_5 * fa_y_y);
     const T H2_3 = fa_x_x * H2_1 + fa_y_x * H2_2;
     const T H2_1_2 = fa_x_y * H2_1 + fa_y_y * H2_2;
     const T H2_1_3 = fa_x_z * H2_1 + fa_y_z * H2_2;
-    const T H2_1_4 = H1_4_3 + d_y * H2_1;
-    const T H2_2_2 = H1_6_3 + d_y * H2_2;
-    const T H2_3_2 = H1_1_5 + H1_2_2 * H2_1 + H1_5_2 * H2_2 - ra_y * H2_1_3 - fa_x_z * H2_1_4 -
-        fa_y_z * H2_2_2 + ra_z * H2_1_2;
-    const T H2_1_5 = d_x * fa_x_z;
-    const T H2_2_3 = H2_1_5 - H1_2_3;
-    const T H2_3_3 = d_x * fa_y_z;
-    const T H2_4 = H2_3_3 - H1_3_3;
-    const T H2_5 = ra_x * H2_1_3 - ra_z * H2_3 + H2_1 * H2_2_3 + H2_2 * H2_4;
+    const T H2_1_4 = H1_4_2 + d_y * H2_1;
+    const T H2_2_2 = H1_7_2 + d_y * H2_2;
+    const T H2_3_2 = H1_1_5 - ra_y * H2_1_3 - fa_x_z * H2_1_4 - fa_y_z * H2_2_2 + H2_1_2 * H1_1_4;
+    const T H2_1_5 = ra_x + d_x;
+    const T H2_2_3 = H2_1_3 * H2_1_5 - H2_3 * H1_1_4;
     const T H2_1_6 = lambda[0] * fa_z_x;
-    const T H2_2_4 = d_x * fa_x_y;
-    const T H2_3_4 = d_x * fa_y_y;
-    const T H2_4_2 = fa_x_x * H2_1_4 - H2_1_6 - H2_2_4 * H2_1 - H2_3_4 * H2_2 + fa_y_x * H2_2_2 -
-        ra_x * H2_1_2 + ra_y * H2_3;
+    const T H2_2_4 = fa_x_x * H2_1_4 - H2_1_6 + fa_y_x * H2_2_2 + ra_y * H2_3 - H2_1_2 * H2_1_5;
     const T H2_1_7 = rb_y * H2_1_3 - rb_z * H2_1_2;
     const T H2_1_8 = rb_z * H2_3 - rb_x * H2_1_3;
     const T H2_1_9 = rb_x * H2_1_2 - rb_y * H2_3;
-    const T H3_1 = H1_14 * fa_y_z - H1_9 * fa_x_z;
-    const T H3_2 = H1_14 * fa_x_z - H1_9 * fa_y_z;
+    const T H3_1 = lambda[0] * p.height * p.k * p.k * (H1_8 * fa_y_z - H1_5 * fa_x_z);
+    const T H3_2 = lambda[0] * p.height * p.k * p.k * (H1_8 * fa_x_z - H1_5 * fa_y_z);
     const T H3_3 = fa_x_x * H3_1 + fa_y_x * H3_2;
     const T H3_1_2 = fa_x_y * H3_1 + fa_y_y * H3_2;
     const T H3_1_3 = fa_x_z * H3_1 + fa_y_z * H3_2;
-    const T H3_1_4 = H1_4_3 + d_z * H3_1;
-    const T H3_2_2 = H1_6_3 + d_z * H3_2;
-    const T H3_3_2 = fa_x_y * H3_1_4 - H1_1_6 - H1_1_4 * H3_1 - H1_4_2 * H3_2 + fa_y_y * H3_2_2 -
-        ra_y * H3_1_3 + ra_z * H3_1_2;
-    const T H3_1_5 = H2_1_6 + H2_1_5 * H3_1 + H2_3_3 * H3_2 - fa_x_x * H3_1_4 - fa_y_x * H3_2_2 +
-        ra_x * H3_1_3 - ra_z * H3_3;
-    const T H3_1_6 = H1_2_4 - H2_2_4;
-    const T H3_2_3 = H1_3_4 - H2_3_4;
-    const T H3_3_3 = ra_y * H3_3 - ra_x * H3_1_2 + H3_1 * H3_1_6 + H3_2 * H3_2_3;
+    const T H3_1_4 = H1_4_2 + d_z * H3_1;
+    const T H3_2_2 = H1_7_2 + d_z * H3_2;
+    const T H3_3_2 = fa_x_y * H3_1_4 - H1_1_6 + fa_y_y * H3_2_2 + ra_z * H3_1_2 - H3_1_3 * H1_2_2;
+    const T H3_1_5 = H2_1_6 - fa_x_x * H3_1_4 - fa_y_x * H3_2_2 - ra_z * H3_3 + H3_1_3 * H2_1_5;
+    const T H3_1_6 = H3_1_2 * H2_1_5 - H3_3 * H1_2_2;
     const T H3_1_7 = rb_y * H3_1_3 - rb_z * H3_1_2;
     const T H3_1_8 = rb_z * H3_3 - rb_x * H3_1_3;
     const T H3_1_9 = rb_x * H3_1_2 - rb_y * H3_3;
-    const T H4_1 = H1_2 * H1_3;
-    const T H4_2 = H1_8 * H4_1;
-    const T H4_3 = lambda[0] * (H1_3_2 + fa_x_y * ra_z - ra_y * fa_x_z);
-    const T H4_4 = H1_3 * H1_10;
-    const T H4_5 = H1_13 * H4_4;
-    const T H4_6 = lambda[0] * (ra_y * fa_y_z - H1_6_2 - fa_y_y * ra_z);
-    const T H4_7 = H4_2 * H4_3 + H4_5 * H4_6;
-    const T H4_8 = H4_5 * H4_3 + H4_2 * H4_6;
-    const T H4_9 = fa_x_x * H4_7 - fa_y_x * H4_8;
-    const T H4_1_2 = H1_1_5 - H1_4_3 * fa_x_z - H1_6_3 * fa_y_z;
-    const T H4_2_2 = fa_y_y * H4_8 - fa_x_y * H4_7 + H4_1_2;
-    const T H4_1_3 = H1_1_6 - H1_4_3 * fa_x_y - H1_6_3 * fa_y_y;
-    const T H4_2_3 = fa_y_z * H4_8 - fa_x_z * H4_7 - H4_1_3;
-    const T H4_1_4 = d_y + ra_y;
-    const T H4_2_4 = H1_4_3 * H4_1_4;
-    const T H4_3_2 = H4_2_4 + d_z * H4_7;
-    const T H4_4_2 = H1_6_3 * H4_1_4;
-    const T H4_5_2 = H4_4_2 - d_z * H4_8;
-    const T H4_6_2 = lambda[0] * H4_1_4;
-    const T H4_7_2 = fa_z_y * H4_6_2;
-    const T H4_8_2 = H1_7 * H4_4;
-    const T H4_9_2 = H1_12 * H4_1;
-    const T H4_10 = lambda[0] * (H4_8_2 * fa_x_y - fa_z_y + H4_9_2 * fa_y_y);
-    const T H4_11 = H4_10 - H4_2_3;
-    const T H4_12 = d_z + ra_z;
-    const T H4_13 = H1_4_3 * H4_12;
-    const T H4_14 = d_y * H4_7 - H4_13;
-    const T H4_15 = H1_6_3 * H4_12;
-    const T H4_16 = H4_15 + d_y * H4_8;
-    const T H4_17 = lambda[0] * H4_12;
-    const T H4_18 = fa_z_z * H4_17;
-    const T H4_19 = lambda[0] * (fa_z_z - H4_8_2 * fa_x_z - H4_9_2 * fa_y_z);
-    const T H4_20 = H4_19 - H4_2_2;
-    const T H5_1 = lambda[0] * (H2_2_3 - fa_x_x * ra_z + ra_x * fa_x_z);
-    const T H5_2 = lambda[0] * (fa_y_x * ra_z - H2_4 - ra_x * fa_y_z);
-    const T H5_3 = H4_5 * H5_1 + H4_2 * H5_2;
-    const T H5_4 = H4_2 * H5_1 + H4_5 * H5_2;
-    const T H5_5 = fa_y_x * H5_3 - H4_1_2 - fa_x_x * H5_4;
-    const T H5_1_2 = fa_x_y * H5_4 - fa_y_y * H5_3;
-    const T H5_1_3 = H2_1_6 - H1_4_3 * fa_x_x - H1_6_3 * fa_y_x;
-    const T H5_2_2 = fa_y_z * H5_3 - fa_x_z * H5_4 + H5_1_3;
-    const T H5_1_4 = d_x + ra_x;
-    const T H5_2_3 = H1_4_3 * H5_1_4;
-    const T H5_3_2 = d_z * H5_4 - H5_2_3;
-    const T H5_4_2 = H1_6_3 * H5_1_4;
-    const T H5_5_2 = H5_4_2 + d_z * H5_3;
-    const T H5_6 = lambda[0] * H5_1_4;
-    const T H5_7 = lambda[0] * (fa_z_x - H4_8_2 * fa_x_x - H4_9_2 * fa_y_x);
-    const T H5_8 = H5_7 - H5_2_2;
-    const T H5_1_5 = fa_z_x * H5_6;
-    const T H5_2_4 = H4_13 + d_x * H5_4;
-    const T H5_3_3 = H4_15 - d_x * H5_3;
-    const T H5_4_3 = H5_5 + H4_19;
-    const T H6_1 = lambda[0] * (H3_1_6 + fa_x_x * ra_y - ra_x * fa_x_y);
-    const T H6_2 = lambda[0] * (ra_x * fa_y_y - H3_2_3 - fa_y_x * ra_y);
-    const T H6_3 = H4_5 * H6_1 + H4_2 * H6_2;
-    const T H6_4 = H4_2 * H6_1 + H4_5 * H6_2;
-    const T H6_5 = fa_y_x * H6_3 + H4_1_3 - fa_x_x * H6_4;
-    const T H6_1_2 = fa_y_y * H6_3 - H5_1_3 - fa_x_y * H6_4;
-    const T H6_1_3 = fa_x_z * H6_4 - fa_y_z * H6_3;
-    const T H6_1_4 = H5_2_3 + d_y * H6_4;
-    const T H6_2_2 = H5_4_2 - d_y * H6_3;
-    const T H6_3_2 = H6_1_2 + H5_7;
-    const T H6_1_5 = d_x * H6_4 - H4_2_4;
-    const T H6_2_3 = H4_4_2 + d_x * H6_3;
-    const T H6_3_3 = H6_5 + H4_10;
+    const T H4_1 = ra_d_z * fa_x_y - ra_d_y * fa_x_z;
+    const T H4_2 = ra_d_z * fa_y_y - ra_d_y * fa_y_z;
+    const T H4_3 = lambda[0] * p.height * p.k * p.k * (H1_5 * H4_1 - H1_8 * H4_2);
+    const T H4_4 = lambda[0] * p.height * p.k * p.k * (H1_5 * H4_2 - H1_8 * H4_1);
+    const T H4_5 = fa_x_x * H4_3 + fa_y_x * H4_4;
+    const T H4_1_2 = fa_x_y * H4_3 + fa_y_y * H4_4;
+    const T n_z = fa_z_z - p.height * p.k * (H1_3_3 * fa_x_z + H1_6_2 * fa_y_z);
+    const T H4_2_2 = lambda[0] * n_z;
+    const T H4_3_2 = H4_2_2 - H4_1_2;
+    const T H4_1_3 = fa_x_z * H4_3 + fa_y_z * H4_4;
+    const T n_x = fa_z_x - p.height * p.k * (H1_3_3 * fa_x_x + H1_6_2 * fa_y_x);
+    const T n_y = fa_z_y - p.height * p.k * (H1_3_3 * fa_x_y + H1_6_2 * fa_y_y);
+    const T H4_2_3 = lambda[0] * n_y;
+    const T H4_3_3 = H4_1_3 + H4_2_3;
+    const T H4_1_4 = ra_d_y * fa_z_y;
+    const T H4_2_4 = ra_d_z * fa_z_z;
+    const T H4_3_4 = H1_4_2 * ra_d_y;
+    const T H4_4_2 = H4_3_4 + d_z * H4_3;
+    const T H4_5_2 = H1_7_2 * ra_d_y;
+    const T H4_6 = H4_5_2 + d_z * H4_4;
+    const T H4_7 = H1_4_2 * ra_d_z;
+    const T H4_8 = d_y * H4_3 - H4_7;
+    const T H4_9 = H1_7_2 * ra_d_z;
+    const T H4_10 = d_y * H4_4 - H4_9;
+    const T H5_1 = ra_d_x * fa_x_z - ra_d_z * fa_x_x;
+    const T H5_2 = ra_d_x * fa_y_z - ra_d_z * fa_y_x;
+    const T H5_3 = lambda[0] * p.height * p.k * p.k * (H1_5 * H5_1 - H1_8 * H5_2);
+    const T H5_4 = lambda[0] * p.height * p.k * p.k * (H1_5 * H5_2 - H1_8 * H5_1);
+    const T H5_5 = fa_x_x * H5_3 + fa_y_x * H5_4;
+    const T H5_6 = H5_5 + H4_2_2;
+    const T H5_1_2 = fa_x_y * H5_3 + fa_y_y * H5_4;
+    const T H5_1_3 = fa_x_z * H5_3 + fa_y_z * H5_4;
+    const T H5_2_2 = lambda[0] * n_x;
+    const T H5_3_2 = H5_2_2 - H5_1_3;
+    const T H5_1_4 = H1_4_2 * ra_d_x;
+    const T H5_2_3 = d_z * H5_3 - H5_1_4;
+    const T H5_3_3 = H1_7_2 * ra_d_x;
+    const T H5_4_2 = d_z * H5_4 - H5_3_3;
+    const T H5_1_5 = ra_d_x * fa_z_x;
+    const T H5_2_4 = H4_7 + d_x * H5_3;
+    const T H5_3_4 = H4_9 + d_x * H5_4;
+    const T H6_1 = ra_d_y * fa_x_x - ra_d_x * fa_x_y;
+    const T H6_2 = ra_d_y * fa_y_x - ra_d_x * fa_y_y;
+    const T H6_3 = lambda[0] * p.height * p.k * p.k * (H1_5 * H6_1 - H1_8 * H6_2);
+    const T H6_4 = lambda[0] * p.height * p.k * p.k * (H1_5 * H6_2 - H1_8 * H6_1);
+    const T H6_5 = fa_x_x * H6_3 + fa_y_x * H6_4;
+    const T H6_6 = H4_2_3 - H6_5;
+    const T H6_1_2 = fa_x_y * H6_3 + fa_y_y * H6_4;
+    const T H6_2_2 = H6_1_2 + H5_2_2;
+    const T H6_1_3 = fa_x_z * H6_3 + fa_y_z * H6_4;
+    const T H6_1_4 = H5_1_4 + d_y * H6_3;
+    const T H6_2_3 = H5_3_3 + d_y * H6_4;
+    const T H6_1_5 = d_x * H6_3 - H4_3_4;
+    const T H6_2_4 = d_x * H6_4 - H4_5_2;
     const T H10_1 = fa_x_y * rb_z - fa_x_z * rb_y;
     const T H10_2 = fa_y_y * rb_z - fa_y_z * rb_y;
-    const T H10_3 = H1_14 * H10_2 - H1_9 * H10_1;
-    const T H10_4 = H1_14 * H10_1 - H1_9 * H10_2;
+    const T H10_3 = lambda[0] * p.height * p.k * p.k * (H1_8 * H10_2 - H1_5 * H10_1);
+    const T H10_4 = lambda[0] * p.height * p.k * p.k * (H1_8 * H10_1 - H1_5 * H10_2);
     const T H10_5 = fa_x_x * H10_3 + fa_y_x * H10_4;
     const T H10_1_2 = fa_x_y * H10_3 + fa_y_y * H10_4;
     const T H10_1_3 = fa_x_z * H10_3 + fa_y_z * H10_4;
     const T H10_1_4 = fa_z_y * rb_y;
     const T H10_2_2 = fa_z_z * rb_z;
-    const T H10_3_2 = H1_4_3 * rb_y;
+    const T H10_3_2 = H1_4_2 * rb_y;
     const T H10_4_2 = d_z * H10_3 - H10_3_2;
-    const T H10_5_2 = H1_6_3 * rb_y;
+    const T H10_5_2 = H1_7_2 * rb_y;
     const T H10_6 = d_z * H10_4 - H10_5_2;
-    const T H10_7 = H1_4_3 * rb_z;
+    const T H10_7 = H1_4_2 * rb_z;
     const T H10_8 = H10_7 + d_y * H10_3;
-    const T H10_9 = H1_6_3 * rb_z;
+    const T H10_9 = H1_7_2 * rb_z;
     const T H10_10 = H10_9 + d_y * H10_4;
-    const T H10_1_5 = H10_1_3 + H4_10;
-    const T H10_2_3 = H10_1_2 + H4_19;
+    const T H10_1_5 = H4_2_3 - H10_1_3;
+    const T H10_2_3 = H10_1_2 + H4_2_2;
     const T H11_1 = fa_x_z * rb_x - fa_x_x * rb_z;
     const T H11_2 = fa_y_z * rb_x - fa_y_x * rb_z;
-    const T H11_3 = H1_14 * H11_2 - H1_9 * H11_1;
-    const T H11_4 = H1_14 * H11_1 - H1_9 * H11_2;
+    const T H11_3 = lambda[0] * p.height * p.k * p.k * (H1_8 * H11_2 - H1_5 * H11_1);
+    const T H11_4 = lambda[0] * p.height * p.k * p.k * (H1_8 * H11_1 - H1_5 * H11_2);
     const T H11_5 = fa_x_x * H11_3 + fa_y_x * H11_4;
     const T H11_1_2 = fa_x_y * H11_3 + fa_y_y * H11_4;
     const T H11_1_3 = fa_x_z * H11_3 + fa_y_z * H11_4;
-    const T H11_1_4 = H1_4_3 * rb_x;
+    const T H11_1_4 = H1_4_2 * rb_x;
     const T H11_2_2 = H11_1_4 + d_z * H11_3;
-    const T H11_3_2 = H1_6_3 * rb_x;
+    const T H11_3_2 = H1_7_2 * rb_x;
     const T H11_4_2 = H11_3_2 + d_z * H11_4;
     const T H11_1_5 = fa_z_x * rb_x;
     const T H11_2_3 = d_x * H11_3 - H10_7;
     const T H11_3_3 = d_x * H11_4 - H10_9;
-    const T H11_1_6 = H11_1_3 + H5_7;
-    const T H11_1_7 = H4_19 - H11_5;
+    const T H11_1_6 = H11_1_3 + H5_2_2;
+    const T H11_1_7 = H4_2_2 - H11_5;
     const T H12_1 = fa_x_x * rb_y - fa_x_y * rb_x;
     const T H12_2 = fa_y_x * rb_y - fa_y_y * rb_x;
-    const T H12_3 = H1_14 * H12_2 - H1_9 * H12_1;
-    const T H12_4 = H1_14 * H12_1 - H1_9 * H12_2;
+    const T H12_3 = lambda[0] * p.height * p.k * p.k * (H1_8 * H12_2 - H1_5 * H12_1);
+    const T H12_4 = lambda[0] * p.height * p.k * p.k * (H1_8 * H12_1 - H1_5 * H12_2);
     const T H12_5 = fa_x_x * H12_3 + fa_y_x * H12_4;
     const T H12_1_2 = fa_x_y * H12_3 + fa_y_y * H12_4;
     const T H12_1_3 = fa_x_z * H12_3 + fa_y_z * H12_4;
@@ -718,15 +657,15 @@ struct surface {
     const T H12_2_2 = d_y * H12_4 - H11_3_2;
     const T H12_1_5 = H10_3_2 + d_x * H12_3;
     const T H12_2_3 = H10_5_2 + d_x * H12_4;
-    const T H12_1_6 = H5_7 - H12_1_2;
-    const T H12_1_7 = H4_10 - H12_5;
-    H[0][0] = -H1_17;
+    const T H12_1_6 = H5_2_2 - H12_1_2;
+    const T H12_1_7 = H12_5 + H4_2_3;
+    H[0][0] = -H1_11;
     H[0][1] = -H1_1_2;
     H[0][2] = -H1_1_3;
-    H[0][3] = H1_7_2;
-    H[0][4] = H1_8_2;
-    H[0][5] = H1_4_4;
-    H[0][6] = H1_17;
+    H[0][3] = H1_3_2;
+    H[0][4] = H1_9_2;
+    H[0][5] = H1_2_4;
+    H[0][6] = H1_11;
     H[0][7] = H1_1_2;
     H[0][8] = H1_1_3;
     H[0][9] = H1_1_7;
@@ -736,8 +675,8 @@ struct surface {
     H[1][1] = -H2_1_2;
     H[1][2] = -H2_1_3;
     H[1][3] = H2_3_2;
-    H[1][4] = H2_5;
-    H[1][5] = H2_4_2;
+    H[1][4] = H2_2_3;
+    H[1][5] = H2_2_4;
     H[1][6] = H2_3;
     H[1][7] = H2_1_2;
     H[1][8] = H2_1_3;
@@ -749,64 +688,58 @@ struct surface {
     H[2][2] = -H3_1_3;
     H[2][3] = H3_3_2;
     H[2][4] = H3_1_5;
-    H[2][5] = H3_3_3;
+    H[2][5] = -H3_1_6;
     H[2][6] = H3_3;
     H[2][7] = H3_1_2;
     H[2][8] = H3_1_3;
     H[2][9] = H3_1_7;
     H[2][10] = H3_1_8;
     H[2][11] = H3_1_9;
-    H[3][0] = -H4_9;
-    H[3][1] = H4_2_2;
-    H[3][2] = H4_2_3;
-    H[3][3] = fa_x_y * H4_3_2 + fa_y_y * H4_5_2 - H4_7_2 - ra_y * H4_11 - fa_x_z * H4_14 + fa_y_z *
-        H4_16 - H4_18 + ra_z * H4_20;
-    H[3][4] = H2_1_5 * H4_7 - H2_3_3 * H4_8 - fa_x_x * H4_3_2 - fa_y_x * H4_5_2 + fa_z_x * H4_6_2 +
-        ra_x * H4_11 - ra_z * H4_9;
-    H[3][5] = H2_3_4 * H4_8 - H2_2_4 * H4_7 + fa_x_x * H4_14 - fa_y_x * H4_16 + fa_z_x * H4_17 -
-        ra_x * H4_20 + ra_y * H4_9;
-    H[3][6] = H4_9;
-    H[3][7] = -H4_2_2;
-    H[3][8] = -H4_2_3;
-    H[3][9] = rb_z * H4_2_2 - rb_y * H4_2_3;
-    H[3][10] = rb_x * H4_2_3 + rb_z * H4_9;
-    H[3][11] = -rb_x * H4_2_2 - rb_y * H4_9;
-    H[4][0] = H5_5;
+    H[3][0] = -H4_5;
+    H[3][1] = H4_3_2;
+    H[3][2] = -H4_3_3;
+    H[3][3] = fa_x_y * H4_4_2 - lambda[0] * (H4_1_4 + H4_2_4) + fa_y_y * H4_6 - ra_y * H4_1_3 -
+        fa_x_z * H4_8 - fa_y_z * H4_10 + ra_z * H4_1_2;
+    H[3][4] = H2_1_6 * ra_d_y - fa_x_x * H4_4_2 - fa_y_x * H4_6 - ra_z * H4_5 + H4_1_3 * H2_1_5;
+    H[3][5] = H2_1_6 * ra_d_z + fa_x_x * H4_8 + fa_y_x * H4_10 + ra_y * H4_5 - H4_1_2 * H2_1_5;
+    H[3][6] = H4_5;
+    H[3][7] = -H4_3_2;
+    H[3][8] = H4_3_3;
+    H[3][9] = rb_y * H4_3_3 + rb_z * H4_3_2;
+    H[3][10] = rb_z * H4_5 - rb_x * H4_3_3;
+    H[3][11] = -rb_x * H4_3_2 - rb_y * H4_5;
+    H[4][0] = -H5_6;
     H[4][1] = -H5_1_2;
-    H[4][2] = H5_2_2;
-    H[4][3] = H1_4_2 * H5_3 - H1_1_4 * H5_4 + fa_x_y * H5_3_2 - fa_y_y * H5_5_2 + fa_z_y * H5_6 -
-        ra_y * H5_8 + ra_z * H5_1_2;
-    H[4][4] = fa_y_x * H5_5_2 - fa_x_x * H5_3_2 - H5_1_5 + ra_x * H5_8 + fa_x_z * H5_2_4 + fa_y_z *
-        H5_3_3 - H4_18 + ra_z * H5_4_3;
-    H[4][5] = H1_2_4 * H5_4 - H1_3_4 * H5_3 - ra_x * H5_1_2 - fa_x_y * H5_2_4 - fa_y_y * H5_3_3 +
-        fa_z_y * H4_17 - ra_y * H5_4_3;
-    H[4][6] = -H5_5;
+    H[4][2] = H5_3_2;
+    H[4][3] = H1_1_6 * ra_d_x + fa_x_y * H5_2_3 + fa_y_y * H5_4_2 + ra_z * H5_1_2 - H5_1_3 * H1_2_2;
+    H[4][4] = ra_x * H5_1_3 - lambda[0] * (H5_1_5 + H4_2_4) - fa_x_x * H5_2_3 - fa_y_x * H5_4_2 +
+        fa_x_z * H5_2_4 + fa_y_z * H5_3_4 - ra_z * H5_5;
+    H[4][5] = H1_1_6 * ra_d_z - ra_x * H5_1_2 - fa_x_y * H5_2_4 - fa_y_y * H5_3_4 + H5_5 * H1_2_2;
+    H[4][6] = H5_6;
     H[4][7] = H5_1_2;
-    H[4][8] = -H5_2_2;
-    H[4][9] = -rb_y * H5_2_2 - rb_z * H5_1_2;
-    H[4][10] = rb_x * H5_2_2 - rb_z * H5_5;
-    H[4][11] = rb_x * H5_1_2 + rb_y * H5_5;
-    H[5][0] = H6_5;
-    H[5][1] = H6_1_2;
+    H[4][8] = -H5_3_2;
+    H[4][9] = -rb_y * H5_3_2 - rb_z * H5_1_2;
+    H[4][10] = rb_x * H5_3_2 + rb_z * H5_6;
+    H[4][11] = rb_x * H5_1_2 - rb_y * H5_6;
+    H[5][0] = H6_6;
+    H[5][1] = -H6_2_2;
     H[5][2] = -H6_1_3;
-    H[5][3] = H1_2_2 * H6_4 - H1_5_2 * H6_3 - ra_y * H6_1_3 - fa_x_z * H6_1_4 - fa_y_z * H6_2_2 +
-        fa_z_z * H5_6 - ra_z * H6_3_2;
-    H[5][4] = H1_3_3 * H6_3 - H1_2_3 * H6_4 + ra_x * H6_1_3 + fa_x_z * H6_1_5 - fa_y_z * H6_2_3 +
-        fa_z_z * H4_6_2 + ra_z * H6_3_3;
-    H[5][5] = fa_x_x * H6_1_4 + fa_y_x * H6_2_2 - H5_1_5 + ra_x * H6_3_2 - fa_x_y * H6_1_5 +
-        fa_y_y * H6_2_3 - H4_7_2 - ra_y * H6_3_3;
-    H[5][6] = -H6_5;
-    H[5][7] = -H6_1_2;
+    H[5][3] = H1_1_5 * ra_d_x - ra_y * H6_1_3 - fa_x_z * H6_1_4 - fa_y_z * H6_2_3 + H6_1_2 * H1_1_4;
+    H[5][4] = H1_1_5 * ra_d_y + ra_x * H6_1_3 + fa_x_z * H6_1_5 + fa_y_z * H6_2_4 - H6_5 * H1_1_4;
+    H[5][5] = fa_x_x * H6_1_4 - lambda[0] * (H5_1_5 + H4_1_4) + fa_y_x * H6_2_3 - ra_x * H6_1_2 -
+        fa_x_y * H6_1_5 - fa_y_y * H6_2_4 + ra_y * H6_5;
+    H[5][6] = -H6_6;
+    H[5][7] = H6_2_2;
     H[5][8] = H6_1_3;
-    H[5][9] = rb_y * H6_1_3 + rb_z * H6_1_2;
-    H[5][10] = -rb_x * H6_1_3 - rb_z * H6_5;
-    H[5][11] = rb_y * H6_5 - rb_x * H6_1_2;
-    H[6][0] = H1_17;
+    H[5][9] = rb_y * H6_1_3 - rb_z * H6_2_2;
+    H[5][10] = -rb_x * H6_1_3 - rb_z * H6_6;
+    H[5][11] = rb_x * H6_2_2 + rb_y * H6_6;
+    H[6][0] = H1_11;
     H[6][1] = H1_1_2;
     H[6][2] = H1_1_3;
-    H[6][3] = -H1_7_2;
-    H[6][4] = -H1_8_2;
-    H[6][5] = -H1_4_4;
+    H[6][3] = -H1_3_2;
+    H[6][4] = -H1_9_2;
+    H[6][5] = -H1_2_4;
     H[6][6] = H[0][0];
     H[6][7] = H[0][1];
     H[6][8] = H[0][2];
@@ -817,8 +750,8 @@ struct surface {
     H[7][1] = H2_1_2;
     H[7][2] = H2_1_3;
     H[7][3] = -H2_3_2;
-    H[7][4] = -H2_5;
-    H[7][5] = -H2_4_2;
+    H[7][4] = -H2_2_3;
+    H[7][5] = -H2_2_4;
     H[7][6] = H[1][0];
     H[7][7] = H[1][1];
     H[7][8] = H[1][2];
@@ -830,7 +763,7 @@ struct surface {
     H[8][2] = H3_1_3;
     H[8][3] = -H3_3_2;
     H[8][4] = -H3_1_5;
-    H[8][5] = -H3_3_3;
+    H[8][5] = H3_1_6;
     H[8][6] = H[2][0];
     H[8][7] = H[2][1];
     H[8][8] = H[2][2];
@@ -842,25 +775,23 @@ struct surface {
     H[9][2] = -H10_1_3;
     H[9][3] = lambda[0] * (H10_1_4 + H10_2_2) + fa_x_y * H10_4_2 + fa_y_y * H10_6 - ra_y *
         H10_1_3 - fa_x_z * H10_8 - fa_y_z * H10_10 + ra_z * H10_1_2;
-    H[9][4] = H2_1_5 * H10_3 - H2_1_6 * rb_y + H2_3_3 * H10_4 - fa_x_x * H10_4_2 - fa_y_x * H10_6 +
-        ra_x * H10_1_3 - ra_z * H10_5;
-    H[9][5] = fa_x_x * H10_8 - H2_1_6 * rb_z - H2_2_4 * H10_3 - H2_3_4 * H10_4 + fa_y_x * H10_10 -
-        ra_x * H10_1_2 + ra_y * H10_5;
+    H[9][4] = H10_1_3 * H2_1_5 - H2_1_6 * rb_y - fa_x_x * H10_4_2 - fa_y_x * H10_6 - ra_z * H10_5;
+    H[9][5] = fa_x_x * H10_8 - H2_1_6 * rb_z + fa_y_x * H10_10 + ra_y * H10_5 - H10_1_2 * H2_1_5;
     H[9][6] = H10_5;
     H[9][7] = H10_1_2;
     H[9][8] = H10_1_3;
-    H[9][9] = rb_y * H10_1_5 - rb_z * H10_2_3;
-    H[9][10] = rb_z * H10_5 - rb_x * H10_1_5;
+    H[9][9] = -rb_y * H10_1_5 - rb_z * H10_2_3;
+    H[9][10] = rb_x * H10_1_5 + rb_z * H10_5;
     H[9][11] = rb_x * H10_2_3 - rb_y * H10_5;
     H[10][0] = -H11_5;
     H[10][1] = -H11_1_2;
     H[10][2] = -H11_1_3;
-    H[10][3] = fa_x_y * H11_2_2 - H1_1_6 * rb_x - H1_1_4 * H11_3 - H1_4_2 * H11_4 + fa_y_y *
-        H11_4_2 - ra_y * H11_1_3 + ra_z * H11_1_2;
+    H[10][3] = fa_x_y * H11_2_2 - H1_1_6 * rb_x + fa_y_y * H11_4_2 + ra_z * H11_1_2 - H11_1_3 *
+        H1_2_2;
     H[10][4] = lambda[0] * (H11_1_5 + H10_2_2) - fa_x_x * H11_2_2 - fa_y_x * H11_4_2 + ra_x *
         H11_1_3 + fa_x_z * H11_2_3 + fa_y_z * H11_3_3 - ra_z * H11_5;
-    H[10][5] = H1_2_4 * H11_3 - H1_1_6 * rb_z + H1_3_4 * H11_4 - ra_x * H11_1_2 - fa_x_y *
-        H11_2_3 - fa_y_y * H11_3_3 + ra_y * H11_5;
+    H[10][5] = H11_5 * H1_2_2 - H1_1_6 * rb_z - ra_x * H11_1_2 - fa_x_y * H11_2_3 - fa_y_y *
+        H11_3_3;
     H[10][6] = H11_5;
     H[10][7] = H11_1_2;
     H[10][8] = H11_1_3;
@@ -870,18 +801,18 @@ struct surface {
     H[11][0] = -H12_5;
     H[11][1] = -H12_1_2;
     H[11][2] = -H12_1_3;
-    H[11][3] = H1_2_2 * H12_3 - H1_1_5 * rb_x + H1_5_2 * H12_4 - ra_y * H12_1_3 - fa_x_z *
-        H12_1_4 - fa_y_z * H12_2_2 + ra_z * H12_1_2;
-    H[11][4] = ra_x * H12_1_3 - H1_1_5 * rb_y - H1_2_3 * H12_3 - H1_3_3 * H12_4 + fa_x_z *
-        H12_1_5 + fa_y_z * H12_2_3 - ra_z * H12_5;
+    H[11][3] = H12_1_2 * H1_1_4 - H1_1_5 * rb_x - ra_y * H12_1_3 - fa_x_z * H12_1_4 - fa_y_z *
+        H12_2_2;
+    H[11][4] = ra_x * H12_1_3 - H1_1_5 * rb_y + fa_x_z * H12_1_5 + fa_y_z * H12_2_3 - H12_5 *
+        H1_1_4;
     H[11][5] = lambda[0] * (H11_1_5 + H10_1_4) + fa_x_x * H12_1_4 + fa_y_x * H12_2_2 - ra_x *
         H12_1_2 - fa_x_y * H12_1_5 - fa_y_y * H12_2_3 + ra_y * H12_5;
     H[11][6] = H12_5;
     H[11][7] = H12_1_2;
     H[11][8] = H12_1_3;
     H[11][9] = rb_y * H12_1_3 + rb_z * H12_1_6;
-    H[11][10] = -rb_x * H12_1_3 - rb_z * H12_1_7;
-    H[11][11] = rb_y * H12_1_7 - rb_x * H12_1_6;
+    H[11][10] = rb_z * H12_1_7 - rb_x * H12_1_3;
+    H[11][11] = -rb_x * H12_1_6 - rb_y * H12_1_7;
   }
 
   // The default of parameter `index`, from the initial pose and the parameters before it.
@@ -958,21 +889,19 @@ struct surface {
       J.rb_x_fa_x_z = fa_x_y * rb_x - fa_x_x * rb_y;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 19 +, 24 *
+    // K = J M^-1 J^T, lower triangle, from J: 15 +, 26 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.ra_d_x_fa_x_x *
-          (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
-          J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
-          J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
-          (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z) +
-          J.rb_x_fa_x_x * (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz *
-          J.rb_x_fa_x_z) + J.rb_x_fa_x_y *
-          (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz * J.rb_x_fa_x_z) +
-          J.rb_x_fa_x_z * (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz *
-          J.rb_x_fa_x_z);
+      const T K11_1 = J.ra_d_x_fa_x_z * T(2);
+      const T K11_2 = J.rb_x_fa_x_z * T(2);
+      K[0] = ma.Izz * J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z + mb.Izz * J.rb_x_fa_x_z * J.rb_x_fa_x_z +
+          J.ra_d_x_fa_x_x * (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y * T(2) + K11_1 *
+          ma.Ixz) + J.ra_d_x_fa_x_y * (ma.Iyy * J.ra_d_x_fa_x_y + K11_1 * ma.Iyz) + J.rb_x_fa_x_x *
+          (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y * T(2) + K11_2 * mb.Ixz) +
+          J.rb_x_fa_x_y * (mb.Iyy * J.rb_x_fa_x_y + K11_2 * mb.Iyz) +
+          (J.fa_x_x * J.fa_x_x + J.fa_x_y * J.fa_x_y + J.fa_x_z * J.fa_x_z) * (ma.m + mb.m);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1154,7 +1083,7 @@ struct surface {
       D[0][11] = J.rb_x_fa_x_x * b.xz + J.rb_x_fa_x_y * b.yz + J.rb_x_fa_x_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 19 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 20 +, 30 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -1162,20 +1091,26 @@ struct surface {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
+      const T D1_1 = J.ra_d_x_fa_x_x * T(2);
+      const T D1_2 = J.ra_d_x_fa_x_y * T(2);
+      const T D1_3 = J.ra_d_x_fa_x_z * T(2);
+      const T D1_1_2 = T(2) * J.rb_x_fa_x_x;
+      const T D1_2_2 = T(2) * J.rb_x_fa_x_y;
+      const T D1_3_2 = T(2) * J.rb_x_fa_x_z;
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
-      D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
-      D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
-      D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
+      D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+      D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+      D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+      D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
       D[0][7] = J.fa_x_x;
       D[0][8] = J.fa_x_y;
       D[0][9] = J.fa_x_z;
-      D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
-      D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
-      D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
-      D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
+      D[0][10] = -D1_1_2 * b.e1 - D1_2_2 * b.e2 - D1_3_2 * b.e3;
+      D[0][11] = D1_1_2 * b.e0 + D1_2_2 * b.e3 - D1_3_2 * b.e2;
+      D[0][12] = D1_2_2 * b.e0 - D1_1_2 * b.e3 + D1_3_2 * b.e1;
+      D[0][13] = D1_1_2 * b.e2 - D1_2_2 * b.e1 + D1_3_2 * b.e0;
     }
 
     // -Jdot v - d/dt(dC/dt): 56 +, 63 *
@@ -1403,21 +1338,19 @@ struct surface {
       J.rb_x_fa_y_z = fa_y_y * rb_x - fa_y_x * rb_y;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 19 +, 24 *
+    // K = J M^-1 J^T, lower triangle, from J: 15 +, 26 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.ra_d_x_fa_y_x *
-          (ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z) +
-          J.ra_d_x_fa_y_y * (ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz *
-          J.ra_d_x_fa_y_z) + J.ra_d_x_fa_y_z *
-          (ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z) +
-          J.rb_x_fa_y_x * (mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz *
-          J.rb_x_fa_y_z) + J.rb_x_fa_y_y *
-          (mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz * J.rb_x_fa_y_z) +
-          J.rb_x_fa_y_z * (mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz *
-          J.rb_x_fa_y_z);
+      const T K11_1 = J.ra_d_x_fa_y_z * T(2);
+      const T K11_2 = J.rb_x_fa_y_z * T(2);
+      K[0] = ma.Izz * J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z + mb.Izz * J.rb_x_fa_y_z * J.rb_x_fa_y_z +
+          J.ra_d_x_fa_y_x * (ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y * T(2) + K11_1 *
+          ma.Ixz) + J.ra_d_x_fa_y_y * (ma.Iyy * J.ra_d_x_fa_y_y + K11_1 * ma.Iyz) + J.rb_x_fa_y_x *
+          (mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y * T(2) + K11_2 * mb.Ixz) +
+          J.rb_x_fa_y_y * (mb.Iyy * J.rb_x_fa_y_y + K11_2 * mb.Iyz) +
+          (J.fa_y_x * J.fa_y_x + J.fa_y_y * J.fa_y_y + J.fa_y_z * J.fa_y_z) * (ma.m + mb.m);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1599,7 +1532,7 @@ struct surface {
       D[0][11] = J.rb_x_fa_y_x * b.xz + J.rb_x_fa_y_y * b.yz + J.rb_x_fa_y_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 19 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 20 +, 30 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -1607,20 +1540,26 @@ struct surface {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
+      const T D1_1 = J.ra_d_x_fa_y_x * T(2);
+      const T D1_2 = J.ra_d_x_fa_y_y * T(2);
+      const T D1_3 = J.ra_d_x_fa_y_z * T(2);
+      const T D1_1_2 = T(2) * J.rb_x_fa_y_x;
+      const T D1_2_2 = T(2) * J.rb_x_fa_y_y;
+      const T D1_3_2 = T(2) * J.rb_x_fa_y_z;
       D[0][0] = -J.fa_y_x;
       D[0][1] = -J.fa_y_y;
       D[0][2] = -J.fa_y_z;
-      D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
-      D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
-      D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
-      D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
+      D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+      D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+      D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+      D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
       D[0][7] = J.fa_y_x;
       D[0][8] = J.fa_y_y;
       D[0][9] = J.fa_y_z;
-      D[0][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
-      D[0][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
-      D[0][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
-      D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
+      D[0][10] = -D1_1_2 * b.e1 - D1_2_2 * b.e2 - D1_3_2 * b.e3;
+      D[0][11] = D1_1_2 * b.e0 + D1_2_2 * b.e3 - D1_3_2 * b.e2;
+      D[0][12] = D1_2_2 * b.e0 - D1_1_2 * b.e3 + D1_3_2 * b.e1;
+      D[0][13] = D1_1_2 * b.e2 - D1_2_2 * b.e1 + D1_3_2 * b.e0;
     }
 
     // -Jdot v - d/dt(dC/dt): 56 +, 63 *
@@ -1792,10 +1731,10 @@ struct surface::a_immovable : surface {
 
   template <class T>
   struct Jacobian {
-    T vb_x, vb_y, vb_z, wb_x, wb_y, wb_z;
+    T n_x, n_y, n_z, rb_x_n_x, rb_x_n_y, rb_x_n_z;
   };
 
-  // C and J: 55 +, 75 *, 4 call
+  // C and J: 43 +, 57 *, 4 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -1803,62 +1742,57 @@ struct surface::a_immovable : surface {
     using std::sin;
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T C1_1 = b.x - a.x + rb_x;
+    const T C1_2 = b.y - a.y + rb_y;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T s_z = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T s_x = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T s_y = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
-    const T C1_1 = p.k * s_x;
-    const T C1_2 = sin(C1_1);
-    const T C1_3 = p.k * s_y;
-    const T C1_4 = sin(C1_3);
-    const T vb_x_1 = p.height * p.k;
-    const T vb_x_2 = cos(C1_1) * C1_4 * vb_x_1;
-    const T vb_x_3 = cos(C1_3) * C1_2 * vb_x_1;
-    const T vb_x_4 = fa_z_x - vb_x_2 * fa_x_x - vb_x_3 * fa_y_x;
-    const T vb_y_1 = fa_z_y - vb_x_2 * fa_x_y - vb_x_3 * fa_y_y;
-    const T vb_z_1 = fa_z_z - vb_x_2 * fa_x_z - vb_x_3 * fa_y_z;
-    C[0] = s_z - p.height * C1_2 * C1_4;
-    J.vb_x = vb_x_4;
-    J.vb_y = vb_y_1;
-    J.vb_z = vb_z_1;
-    J.wb_x = vb_z_1 * rb_y - vb_y_1 * rb_z;
-    J.wb_y = vb_x_4 * rb_z - vb_z_1 * rb_x;
-    J.wb_z = vb_y_1 * rb_x - vb_x_4 * rb_y;
+    const T C1_3 = b.z - a.z + rb_z;
+    const T d_in_a_x = a.xx * C1_1 - p.pa_x + a.yx * C1_2 + a.zx * C1_3;
+    const T d_in_a_y = a.xy * C1_1 - p.pa_y + a.yy * C1_2 + a.zy * C1_3;
+    const T d_in_a_z = a.xz * C1_1 - p.pa_z + a.yz * C1_2 + a.zz * C1_3;
+    const T s_z = p.fa_z_x * d_in_a_x + p.fa_z_y * d_in_a_y + p.fa_z_z * d_in_a_z;
+    const T s_x = p.fa_x_x * d_in_a_x + p.fa_x_y * d_in_a_y + p.fa_x_z * d_in_a_z;
+    const T s_y = p.fa_y_x * d_in_a_x + p.fa_y_y * d_in_a_y + p.fa_y_z * d_in_a_z;
+    const T C1_4 = p.k * s_x;
+    const T C1_5 = sin(C1_4);
+    const T C1_6 = p.k * s_y;
+    const T C1_7 = sin(C1_6);
+    const T n_x_1 = p.height * p.k;
+    const T n_x_2 = cos(C1_4) * C1_7 * n_x_1;
+    const T n_x_3 = cos(C1_6) * C1_5 * n_x_1;
+    const T n_in_a_x = p.fa_z_x - n_x_2 * p.fa_x_x - n_x_3 * p.fa_y_x;
+    const T n_in_a_y = p.fa_z_y - n_x_2 * p.fa_x_y - n_x_3 * p.fa_y_y;
+    const T n_in_a_z = p.fa_z_z - n_x_2 * p.fa_x_z - n_x_3 * p.fa_y_z;
+    const T n_x = a.xx * n_in_a_x + a.xy * n_in_a_y + a.xz * n_in_a_z;
+    const T n_y = a.yx * n_in_a_x + a.yy * n_in_a_y + a.yz * n_in_a_z;
+    const T n_z = a.zx * n_in_a_x + a.zy * n_in_a_y + a.zz * n_in_a_z;
+    C[0] = s_z - p.height * C1_5 * C1_7;
+    J.n_x = n_x;
+    J.n_y = n_y;
+    J.n_z = n_z;
+    J.rb_x_n_x = n_z * rb_y - n_y * rb_z;
+    J.rb_x_n_y = n_x * rb_z - n_z * rb_x;
+    J.rb_x_n_z = n_y * rb_x - n_x * rb_y;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 11 +, 16 *
+  // K = J M^-1 J^T, lower triangle, from J: 8 +, 15 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = mb.m * (J.vb_x * J.vb_x + J.vb_y * J.vb_y + J.vb_z * J.vb_z) + J.wb_x *
-        (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+    const T K11_1 = J.rb_x_n_z * T(2);
+    K[0] = mb.Izz * J.rb_x_n_z * J.rb_x_n_z + J.rb_x_n_x *
+        (mb.Ixx * J.rb_x_n_x + mb.Ixy * J.rb_x_n_y * T(2) + K11_1 * mb.Ixz) + J.rb_x_n_y *
+        (mb.Iyy * J.rb_x_n_y + K11_1 * mb.Iyz) + mb.m *
+        (J.n_x * J.n_x + J.n_y * J.n_y + J.n_z * J.n_z);
   }
 
   // J v: 5 +, 6 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& vb = v[1];
-    Jv[0] = J.vb_x * vb.x + J.vb_y * vb.y + J.vb_z * vb.z + J.wb_x * vb.wx + J.wb_y * vb.wy +
-        J.wb_z * vb.wz;
+    Jv[0] = J.n_x * vb.x + J.n_y * vb.y + J.n_z * vb.z + J.rb_x_n_x * vb.wx + J.rb_x_n_y * vb.wy +
+        J.rb_x_n_z * vb.wz;
   }
 
   // v += M^-1 J^T lambda: 12 +, 16 *
@@ -1868,12 +1802,12 @@ struct surface::a_immovable : surface {
     const Velocity<T> vb = v[1];
     const InverseMass<T>& mb = m[1];
     const T v2_1 = mb.m * lambda[0];
-    const T v2_1_2 = lambda[0] * J.wb_x;
-    const T v2_2 = lambda[0] * J.wb_y;
-    const T v2_3 = lambda[0] * J.wb_z;
-    v[1].x = vb.x + v2_1 * J.vb_x;
-    v[1].y = vb.y + v2_1 * J.vb_y;
-    v[1].z = vb.z + v2_1 * J.vb_z;
+    const T v2_1_2 = lambda[0] * J.rb_x_n_x;
+    const T v2_2 = lambda[0] * J.rb_x_n_y;
+    const T v2_3 = lambda[0] * J.rb_x_n_z;
+    v[1].x = vb.x + v2_1 * J.n_x;
+    v[1].y = vb.y + v2_1 * J.n_y;
+    v[1].z = vb.z + v2_1 * J.n_z;
     v[1].wx = vb.wx + v2_1_2 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
     v[1].wy = vb.wy + v2_1_2 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
     v[1].wz = vb.wz + v2_1_2 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
@@ -1885,12 +1819,12 @@ struct surface::a_immovable : surface {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][6] = J.vb_x;
-    D[0][7] = J.vb_y;
-    D[0][8] = J.vb_z;
-    D[0][9] = J.wb_x;
-    D[0][10] = J.wb_y;
-    D[0][11] = J.wb_z;
+    D[0][6] = J.n_x;
+    D[0][7] = J.n_y;
+    D[0][8] = J.n_z;
+    D[0][9] = J.rb_x_n_x;
+    D[0][10] = J.rb_x_n_y;
+    D[0][11] = J.rb_x_n_z;
   }
 
   // (M^-1 J^T)^T, laid out like dense: 6 +, 12 *
@@ -1901,12 +1835,12 @@ struct surface::a_immovable : surface {
       for (T& entry : row) entry = T(0);
     }
     const InverseMass<T>& mb = m[1];
-    D[0][6] = mb.m * J.vb_x;
-    D[0][7] = mb.m * J.vb_y;
-    D[0][8] = mb.m * J.vb_z;
-    D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
-    D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
-    D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+    D[0][6] = mb.m * J.n_x;
+    D[0][7] = mb.m * J.n_y;
+    D[0][8] = mb.m * J.n_z;
+    D[0][9] = mb.Ixx * J.rb_x_n_x + mb.Ixy * J.rb_x_n_y + mb.Ixz * J.rb_x_n_z;
+    D[0][10] = mb.Ixy * J.rb_x_n_x + mb.Iyy * J.rb_x_n_y + mb.Iyz * J.rb_x_n_z;
+    D[0][11] = mb.Ixz * J.rb_x_n_x + mb.Iyz * J.rb_x_n_y + mb.Izz * J.rb_x_n_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
@@ -1914,8 +1848,10 @@ struct surface::a_immovable : surface {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& mb = m[1];
-    K[0] = mb.m * (J.vb_x * J.vb_x + J.vb_y * J.vb_y + J.vb_z * J.vb_z) + mb.I *
-        (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+    const T dot_n_n = J.n_x * J.n_x + J.n_y * J.n_y + J.n_z * J.n_z;
+    const T dot_rb_x_n_rb_x_n = J.rb_x_n_x * J.rb_x_n_x + J.rb_x_n_y * J.rb_x_n_y + J.rb_x_n_z *
+        J.rb_x_n_z;
+    K[0] = mb.m * dot_n_n + mb.I * dot_rb_x_n_rb_x_n;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -1926,12 +1862,12 @@ struct surface::a_immovable : surface {
     const IsotropicInverseMass<T>& mb = m[1];
     const T v2_1 = mb.m * lambda[0];
     const T v2_1_2 = lambda[0] * mb.I;
-    v[1].x = vb.x + v2_1 * J.vb_x;
-    v[1].y = vb.y + v2_1 * J.vb_y;
-    v[1].z = vb.z + v2_1 * J.vb_z;
-    v[1].wx = vb.wx + v2_1_2 * J.wb_x;
-    v[1].wy = vb.wy + v2_1_2 * J.wb_y;
-    v[1].wz = vb.wz + v2_1_2 * J.wb_z;
+    v[1].x = vb.x + v2_1 * J.n_x;
+    v[1].y = vb.y + v2_1 * J.n_y;
+    v[1].z = vb.z + v2_1 * J.n_z;
+    v[1].wx = vb.wx + v2_1_2 * J.rb_x_n_x;
+    v[1].wy = vb.wy + v2_1_2 * J.rb_x_n_y;
+    v[1].wz = vb.wz + v2_1_2 * J.rb_x_n_z;
   }
 
   // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
@@ -1942,12 +1878,12 @@ struct surface::a_immovable : surface {
       for (T& entry : row) entry = T(0);
     }
     const IsotropicInverseMass<T>& mb = m[1];
-    D[0][6] = mb.m * J.vb_x;
-    D[0][7] = mb.m * J.vb_y;
-    D[0][8] = mb.m * J.vb_z;
-    D[0][9] = mb.I * J.wb_x;
-    D[0][10] = mb.I * J.wb_y;
-    D[0][11] = mb.I * J.wb_z;
+    D[0][6] = mb.m * J.n_x;
+    D[0][7] = mb.m * J.n_y;
+    D[0][8] = mb.m * J.n_z;
+    D[0][9] = mb.I * J.rb_x_n_x;
+    D[0][10] = mb.I * J.rb_x_n_y;
+    D[0][11] = mb.I * J.rb_x_n_z;
   }
 };
 
@@ -1957,10 +1893,10 @@ struct surface::b_immovable : surface {
 
   template <class T>
   struct Jacobian {
-    T va_x, va_y, va_z, wa_x, wa_y, wa_z;
+    T n_x, n_y, n_z, ra_d_x_n_x, ra_d_x_n_y, ra_d_x_n_z;
   };
 
-  // C and J: 73 +, 99 *, 4 call
+  // C and J: 43 +, 57 *, 4 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -1968,71 +1904,57 @@ struct surface::b_immovable : surface {
     using std::sin;
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T s_z = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T s_x = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T s_y = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
+    const T ra_d_z = b.z - a.z + rb_z;
+    const T d_in_a_x = a.xx * ra_d_x - p.pa_x + a.yx * ra_d_y + a.zx * ra_d_z;
+    const T d_in_a_y = a.xy * ra_d_x - p.pa_y + a.yy * ra_d_y + a.zy * ra_d_z;
+    const T d_in_a_z = a.xz * ra_d_x - p.pa_z + a.yz * ra_d_y + a.zz * ra_d_z;
+    const T s_z = p.fa_z_x * d_in_a_x + p.fa_z_y * d_in_a_y + p.fa_z_z * d_in_a_z;
+    const T s_x = p.fa_x_x * d_in_a_x + p.fa_x_y * d_in_a_y + p.fa_x_z * d_in_a_z;
+    const T s_y = p.fa_y_x * d_in_a_x + p.fa_y_y * d_in_a_y + p.fa_y_z * d_in_a_z;
     const T C1_1 = p.k * s_x;
     const T C1_2 = sin(C1_1);
     const T C1_3 = p.k * s_y;
     const T C1_4 = sin(C1_3);
-    const T va_x_1 = p.height * p.k;
-    const T va_x_2 = cos(C1_1) * C1_4 * va_x_1;
-    const T va_x_3 = cos(C1_3) * C1_2 * va_x_1;
-    const T va_x_4 = va_x_2 * fa_x_x - fa_z_x + va_x_3 * fa_y_x;
-    const T va_y_1 = va_x_2 * fa_x_y - fa_z_y + va_x_3 * fa_y_y;
-    const T va_z_1 = va_x_2 * fa_x_z - fa_z_z + va_x_3 * fa_y_z;
-    const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-    const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-    const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-    const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-    const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-    const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-    const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-    const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-    const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
+    const T n_x_1 = p.height * p.k;
+    const T n_x_2 = cos(C1_1) * C1_4 * n_x_1;
+    const T n_x_3 = cos(C1_3) * C1_2 * n_x_1;
+    const T n_in_a_x = p.fa_z_x - n_x_2 * p.fa_x_x - n_x_3 * p.fa_y_x;
+    const T n_in_a_y = p.fa_z_y - n_x_2 * p.fa_x_y - n_x_3 * p.fa_y_y;
+    const T n_in_a_z = p.fa_z_z - n_x_2 * p.fa_x_z - n_x_3 * p.fa_y_z;
+    const T n_x = a.xx * n_in_a_x + a.xy * n_in_a_y + a.xz * n_in_a_z;
+    const T n_y = a.yx * n_in_a_x + a.yy * n_in_a_y + a.yz * n_in_a_z;
+    const T n_z = a.zx * n_in_a_x + a.zy * n_in_a_y + a.zz * n_in_a_z;
     C[0] = s_z - p.height * C1_2 * C1_4;
-    J.va_x = va_x_4;
-    J.va_y = va_y_1;
-    J.va_z = va_z_1;
-    J.wa_x = va_x_2 * d_x_fa_x_x - d_x_fa_z_x + va_x_3 * d_x_fa_y_x - va_y_1 * ra_z + va_z_1 * ra_y;
-    J.wa_y = va_x_2 * d_x_fa_x_y - d_x_fa_z_y + va_x_3 * d_x_fa_y_y + va_x_4 * ra_z - va_z_1 * ra_x;
-    J.wa_z = va_x_2 * d_x_fa_x_z - d_x_fa_z_z + va_x_3 * d_x_fa_y_z - va_x_4 * ra_y + va_y_1 * ra_x;
+    J.n_x = n_x;
+    J.n_y = n_y;
+    J.n_z = n_z;
+    J.ra_d_x_n_x = ra_d_y * n_z - ra_d_z * n_y;
+    J.ra_d_x_n_y = ra_d_z * n_x - ra_d_x * n_z;
+    J.ra_d_x_n_z = ra_d_x * n_y - ra_d_y * n_x;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 11 +, 16 *
+  // K = J M^-1 J^T, lower triangle, from J: 8 +, 15 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = ma.m * (J.va_x * J.va_x + J.va_y * J.va_y + J.va_z * J.va_z) + J.wa_x *
-        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    const T K11_1 = J.ra_d_x_n_z * T(2);
+    K[0] = ma.Izz * J.ra_d_x_n_z * J.ra_d_x_n_z + J.ra_d_x_n_x *
+        (ma.Ixx * J.ra_d_x_n_x + ma.Ixy * J.ra_d_x_n_y * T(2) + K11_1 * ma.Ixz) + J.ra_d_x_n_y *
+        (ma.Iyy * J.ra_d_x_n_y + K11_1 * ma.Iyz) + ma.m *
+        (J.n_x * J.n_x + J.n_y * J.n_y + J.n_z * J.n_z);
   }
 
-  // J v: 5 +, 6 *
+  // J v: 6 +, 6 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.va_x * va.x + J.va_y * va.y + J.va_z * va.z + J.wa_x * va.wx + J.wa_y * va.wy +
-        J.wa_z * va.wz;
+    Jv[0] = -J.n_x * va.x - J.n_y * va.y - J.n_z * va.z - J.ra_d_x_n_x * va.wx - J.ra_d_x_n_y *
+        va.wy - J.ra_d_x_n_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 12 +, 16 *
@@ -2042,32 +1964,32 @@ struct surface::b_immovable : surface {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
-    v[0].x = va.x + v1_1 * J.va_x;
-    v[0].y = va.y + v1_1 * J.va_y;
-    v[0].z = va.z + v1_1 * J.va_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_n_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_n_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_n_z;
+    v[0].x = va.x - v1_1 * J.n_x;
+    v[0].y = va.y - v1_1 * J.n_y;
+    v[0].z = va.z - v1_1 * J.n_z;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: nothing
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][0] = J.va_x;
-    D[0][1] = J.va_y;
-    D[0][2] = J.va_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][0] = -J.n_x;
+    D[0][1] = -J.n_y;
+    D[0][2] = -J.n_z;
+    D[0][3] = -J.ra_d_x_n_x;
+    D[0][4] = -J.ra_d_x_n_y;
+    D[0][5] = -J.ra_d_x_n_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 6 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense: 12 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -2075,12 +1997,12 @@ struct surface::b_immovable : surface {
       for (T& entry : row) entry = T(0);
     }
     const InverseMass<T>& ma = m[0];
-    D[0][0] = ma.m * J.va_x;
-    D[0][1] = ma.m * J.va_y;
-    D[0][2] = ma.m * J.va_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][0] = -ma.m * J.n_x;
+    D[0][1] = -ma.m * J.n_y;
+    D[0][2] = -ma.m * J.n_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_n_x - ma.Ixy * J.ra_d_x_n_y - ma.Ixz * J.ra_d_x_n_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_n_x - ma.Iyy * J.ra_d_x_n_y - ma.Iyz * J.ra_d_x_n_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_n_x - ma.Iyz * J.ra_d_x_n_y - ma.Izz * J.ra_d_x_n_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
@@ -2088,8 +2010,10 @@ struct surface::b_immovable : surface {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m * (J.va_x * J.va_x + J.va_y * J.va_y + J.va_z * J.va_z) + ma.I *
-        (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_n_n = J.n_x * J.n_x + J.n_y * J.n_y + J.n_z * J.n_z;
+    const T dot_ra_d_x_n_ra_d_x_n = J.ra_d_x_n_x * J.ra_d_x_n_x + J.ra_d_x_n_y * J.ra_d_x_n_y +
+        J.ra_d_x_n_z * J.ra_d_x_n_z;
+    K[0] = ma.m * dot_n_n + ma.I * dot_ra_d_x_n_ra_d_x_n;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -2100,15 +2024,15 @@ struct surface::b_immovable : surface {
     const IsotropicInverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[0];
     const T v1_1_2 = lambda[0] * ma.I;
-    v[0].x = va.x + v1_1 * J.va_x;
-    v[0].y = va.y + v1_1 * J.va_y;
-    v[0].z = va.z + v1_1 * J.va_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
+    v[0].x = va.x - v1_1 * J.n_x;
+    v[0].y = va.y - v1_1 * J.n_y;
+    v[0].z = va.z - v1_1 * J.n_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_n_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_n_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_n_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 6 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -2116,12 +2040,12 @@ struct surface::b_immovable : surface {
       for (T& entry : row) entry = T(0);
     }
     const IsotropicInverseMass<T>& ma = m[0];
-    D[0][0] = ma.m * J.va_x;
-    D[0][1] = ma.m * J.va_y;
-    D[0][2] = ma.m * J.va_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][0] = -ma.m * J.n_x;
+    D[0][1] = -ma.m * J.n_y;
+    D[0][2] = -ma.m * J.n_z;
+    D[0][3] = -ma.I * J.ra_d_x_n_x;
+    D[0][4] = -ma.I * J.ra_d_x_n_y;
+    D[0][5] = -ma.I * J.ra_d_x_n_z;
   }
 };
 

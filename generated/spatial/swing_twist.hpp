@@ -376,7 +376,7 @@ struct swing_twist {
     D[2][11] = J.rb_x * b.yz - J.rb_y * b.xz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 24 +, 48 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 30 +, 30 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][14]) {
     for (auto& row : D) {
@@ -384,60 +384,66 @@ struct swing_twist {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T D1_1 = J.ra_y * a.e3;
-    const T D1_2 = J.ra_z * a.e2;
-    const T D1_1_2 = J.ra_y * a.e2;
-    const T D1_2_2 = J.ra_z * a.e3;
-    const T D1_1_3 = J.ra_y * a.e1;
-    const T D1_2_3 = J.ra_z * a.e0;
-    const T D1_1_4 = J.ra_y * a.e0;
-    const T D1_2_4 = J.ra_z * a.e1;
-    const T D1_1_5 = J.rb_y * b.e3;
-    const T D1_2_5 = J.rb_z * b.e2;
-    const T D1_1_6 = J.rb_y * b.e2;
-    const T D1_2_6 = J.rb_z * b.e3;
-    const T D1_1_7 = J.rb_y * b.e1;
-    const T D1_2_7 = J.rb_z * b.e0;
-    const T D1_1_8 = J.rb_y * b.e0;
-    const T D1_2_8 = J.rb_z * b.e1;
-    const T D2_1 = J.ra_x * a.e3;
-    const T D2_1_2 = J.ra_x * a.e2;
-    const T D2_1_3 = J.ra_x * a.e1;
-    const T D2_1_4 = J.ra_x * a.e0;
-    const T D2_1_5 = J.rb_x * b.e3;
-    const T D2_1_6 = J.rb_x * b.e2;
-    const T D2_1_7 = J.rb_x * b.e1;
-    const T D2_1_8 = J.rb_x * b.e0;
+    const T D1_1 = J.ra_y * T(2);
+    const T D1_2 = D1_1 * a.e3;
+    const T D1_3 = J.ra_z * T(2);
+    const T D1_4 = D1_3 * a.e2;
+    const T D1_1_2 = D1_1 * a.e2;
+    const T D1_2_2 = D1_3 * a.e3;
+    const T D1_1_3 = D1_1 * a.e1;
+    const T D1_2_3 = D1_3 * a.e0;
+    const T D1_1_4 = D1_1 * a.e0;
+    const T D1_2_4 = D1_3 * a.e1;
+    const T D1_1_5 = T(2) * J.rb_y;
+    const T D1_2_5 = D1_1_5 * b.e3;
+    const T D1_3_2 = T(2) * J.rb_z;
+    const T D1_4_2 = D1_3_2 * b.e2;
+    const T D1_1_6 = D1_1_5 * b.e2;
+    const T D1_2_6 = D1_3_2 * b.e3;
+    const T D1_1_7 = D1_1_5 * b.e1;
+    const T D1_2_7 = D1_3_2 * b.e0;
+    const T D1_1_8 = D1_1_5 * b.e0;
+    const T D1_2_8 = D1_3_2 * b.e1;
+    const T D2_1 = T(2) * J.ra_x;
+    const T D2_2 = D2_1 * a.e3;
+    const T D2_1_2 = D2_1 * a.e2;
+    const T D2_1_3 = D2_1 * a.e1;
+    const T D2_1_4 = D2_1 * a.e0;
+    const T D2_1_5 = T(2) * J.rb_x;
+    const T D2_2_2 = D2_1_5 * b.e3;
+    const T D2_1_6 = D2_1_5 * b.e2;
+    const T D2_1_7 = D2_1_5 * b.e1;
+    const T D2_1_8 = D2_1_5 * b.e0;
     D[0][0] = T(1);
-    D[0][3] = T(2) * (D1_1 - D1_2);
-    D[0][4] = T(2) * (D1_1_2 + D1_2_2);
-    D[0][5] = T(2) * (D1_2_3 - D1_1_3);
-    D[0][6] = T(-2) * (D1_1_4 + D1_2_4);
+    D[0][3] = D1_2 - D1_4;
+    D[0][4] = D1_1_2 + D1_2_2;
+    D[0][5] = D1_2_3 - D1_1_3;
+    D[0][6] = -D1_1_4 - D1_2_4;
     D[0][7] = T(-1);
-    D[0][10] = T(2) * (D1_2_5 - D1_1_5);
-    D[0][11] = T(-2) * (D1_1_6 + D1_2_6);
-    D[0][12] = T(2) * (D1_1_7 - D1_2_7);
-    D[0][13] = T(2) * (D1_1_8 + D1_2_8);
+    D[0][10] = D1_4_2 - D1_2_5;
+    D[0][11] = -D1_1_6 - D1_2_6;
+    D[0][12] = D1_1_7 - D1_2_7;
+    D[0][13] = D1_1_8 + D1_2_8;
     D[1][1] = T(1);
-    D[1][3] = T(2) * (D1_2_4 - D2_1);
-    D[1][4] = T(-2) * (D2_1_2 + D1_2_3);
-    D[1][5] = T(2) * (D2_1_3 + D1_2_2);
-    D[1][6] = T(2) * (D2_1_4 - D1_2);
+    D[1][3] = D1_2_4 - D2_2;
+    D[1][4] = -D2_1_2 - D1_2_3;
+    D[1][5] = D2_1_3 + D1_2_2;
+    D[1][6] = D2_1_4 - D1_4;
     D[1][8] = T(-1);
-    D[1][10] = T(2) * (D2_1_5 - D1_2_8);
-    D[1][11] = T(2) * (D2_1_6 + D1_2_7);
-    D[1][12] = T(-2) * (D2_1_7 + D1_2_6);
-    D[1][13] = T(2) * (D1_2_5 - D2_1_8);
+    D[1][10] = D2_2_2 - D1_2_8;
+    D[1][11] = D2_1_6 + D1_2_7;
+    D[1][12] = -D2_1_7 - D1_2_6;
+    D[1][13] = D1_4_2 - D2_1_8;
     D[2][2] = T(1);
-    D[2][3] = T(2) * (D2_1_2 - D1_1_3);
-    D[2][4] = T(2) * (D1_1_4 - D2_1);
-    D[2][5] = T(-2) * (D2_1_4 + D1_1);
-    D[2][6] = T(2) * (D2_1_3 + D1_1_2);
+    D[2][3] = D2_1_2 - D1_1_3;
+    D[2][4] = D1_1_4 - D2_2;
+    D[2][5] = -D2_1_4 - D1_2;
+    D[2][6] = D2_1_3 + D1_1_2;
     D[2][9] = T(-1);
-    D[2][10] = T(2) * (D1_1_7 - D2_1_6);
-    D[2][11] = T(2) * (D2_1_5 - D1_1_8);
-    D[2][12] = T(2) * (D2_1_8 + D1_1_5);
-    D[2][13] = T(-2) * (D2_1_7 + D1_1_6);
+    D[2][10] = D1_1_7 - D2_1_6;
+    D[2][11] = D2_2_2 - D1_1_8;
+    D[2][12] = D2_1_8 + D1_2_5;
+    D[2][13] = -D2_1_7 - D1_1_6;
   }
 
   // -Jdot v - d/dt(dC/dt): 27 +, 42 *
@@ -645,17 +651,15 @@ struct swing_twist {
       J.wa_z = fa_x_fb_x_z * wa_x_1;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 14 +, 12 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 11 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      const T K11_1 = ma.Ixy + mb.Ixy;
-      const T K11_2 = ma.Ixz + mb.Ixz;
-      const T K11_3 = ma.Iyz + mb.Iyz;
-      K[0] = J.wa_x * (J.wa_x * (ma.Ixx + mb.Ixx) + J.wa_y * K11_1 + J.wa_z * K11_2) + J.wa_y *
-          (J.wa_x * K11_1 + J.wa_y * (ma.Iyy + mb.Iyy) + J.wa_z * K11_3) + J.wa_z *
-          (J.wa_x * K11_2 + J.wa_y * K11_3 + J.wa_z * (ma.Izz + mb.Izz));
+      const T K11_1 = J.wa_z * T(2);
+      K[0] = J.wa_z * J.wa_z * (ma.Izz + mb.Izz) + J.wa_x *
+          (J.wa_x * (ma.Ixx + mb.Ixx) + J.wa_y * T(2) * (ma.Ixy + mb.Ixy) + K11_1 *
+          (ma.Ixz + mb.Ixz)) + J.wa_y * (J.wa_y * (ma.Iyy + mb.Iyy) + K11_1 * (ma.Iyz + mb.Iyz));
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -788,7 +792,7 @@ struct swing_twist {
       D[0][11] = J.wa_x * b.xz + J.wa_y * b.yz + J.wa_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 27 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -796,14 +800,17 @@ struct swing_twist {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_z * a.e2 - J.wa_x * a.e0 - J.wa_y * a.e3);
-      D[0][5] = T(2) * (J.wa_x * a.e3 - J.wa_y * a.e0 - J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_y * a.e1 - J.wa_x * a.e2 - J.wa_z * a.e0);
-      D[0][10] = T(-2) * (J.wa_x * b.e1 + J.wa_y * b.e2 + J.wa_z * b.e3);
-      D[0][11] = T(2) * (J.wa_x * b.e0 + J.wa_y * b.e3 - J.wa_z * b.e2);
-      D[0][12] = T(2) * (J.wa_y * b.e0 - J.wa_x * b.e3 + J.wa_z * b.e1);
-      D[0][13] = T(2) * (J.wa_x * b.e2 - J.wa_y * b.e1 + J.wa_z * b.e0);
+      const T D1_1 = J.wa_x * T(2);
+      const T D1_2 = J.wa_y * T(2);
+      const T D1_3 = J.wa_z * T(2);
+      D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+      D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+      D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+      D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
+      D[0][10] = -D1_1 * b.e1 - D1_2 * b.e2 - D1_3 * b.e3;
+      D[0][11] = D1_1 * b.e0 + D1_2 * b.e3 - D1_3 * b.e2;
+      D[0][12] = D1_2 * b.e0 - D1_1 * b.e3 + D1_3 * b.e1;
+      D[0][13] = D1_1 * b.e2 - D1_2 * b.e1 + D1_3 * b.e0;
     }
 
     // -Jdot v - d/dt(dC/dt): 40 +, 48 *, 1 /, 1 <
@@ -1015,21 +1022,16 @@ struct swing_twist {
           inv_fa_x_x_fb_x_len, T(0));
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 14 +, 12 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 11 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      const T K11_1 = ma.Ixy + mb.Ixy;
-      const T K11_2 = ma.Ixz + mb.Ixz;
-      const T K11_3 = ma.Iyz + mb.Iyz;
-      K[0] = J.dir_fa_x_x_fb_x_x *
-          (J.dir_fa_x_x_fb_x_x * (ma.Ixx + mb.Ixx) + J.dir_fa_x_x_fb_x_y * K11_1 +
-          J.dir_fa_x_x_fb_x_z * K11_2) + J.dir_fa_x_x_fb_x_y *
-          (J.dir_fa_x_x_fb_x_x * K11_1 + J.dir_fa_x_x_fb_x_y * (ma.Iyy + mb.Iyy) +
-          J.dir_fa_x_x_fb_x_z * K11_3) + J.dir_fa_x_x_fb_x_z *
-          (J.dir_fa_x_x_fb_x_x * K11_2 + J.dir_fa_x_x_fb_x_y * K11_3 + J.dir_fa_x_x_fb_x_z *
-          (ma.Izz + mb.Izz));
+      const T K11_1 = J.dir_fa_x_x_fb_x_z * T(2);
+      K[0] = J.dir_fa_x_x_fb_x_z * J.dir_fa_x_x_fb_x_z * (ma.Izz + mb.Izz) + J.dir_fa_x_x_fb_x_x *
+          (J.dir_fa_x_x_fb_x_x * (ma.Ixx + mb.Ixx) + J.dir_fa_x_x_fb_x_y * T(2) *
+          (ma.Ixy + mb.Ixy) + K11_1 * (ma.Ixz + mb.Ixz)) + J.dir_fa_x_x_fb_x_y *
+          (J.dir_fa_x_x_fb_x_y * (ma.Iyy + mb.Iyy) + K11_1 * (ma.Iyz + mb.Iyz));
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1175,7 +1177,7 @@ struct swing_twist {
           b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 27 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -1183,22 +1185,17 @@ struct swing_twist {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = T(2) * (J.dir_fa_x_x_fb_x_x * a.e1 + J.dir_fa_x_x_fb_x_y * a.e2 +
-          J.dir_fa_x_x_fb_x_z * a.e3);
-      D[0][4] = T(2) * (J.dir_fa_x_x_fb_x_z * a.e2 - J.dir_fa_x_x_fb_x_x * a.e0 -
-          J.dir_fa_x_x_fb_x_y * a.e3);
-      D[0][5] = T(2) * (J.dir_fa_x_x_fb_x_x * a.e3 - J.dir_fa_x_x_fb_x_y * a.e0 -
-          J.dir_fa_x_x_fb_x_z * a.e1);
-      D[0][6] = T(2) * (J.dir_fa_x_x_fb_x_y * a.e1 - J.dir_fa_x_x_fb_x_x * a.e2 -
-          J.dir_fa_x_x_fb_x_z * a.e0);
-      D[0][10] = T(-2) * (J.dir_fa_x_x_fb_x_x * b.e1 + J.dir_fa_x_x_fb_x_y * b.e2 +
-          J.dir_fa_x_x_fb_x_z * b.e3);
-      D[0][11] = T(2) * (J.dir_fa_x_x_fb_x_x * b.e0 + J.dir_fa_x_x_fb_x_y * b.e3 -
-          J.dir_fa_x_x_fb_x_z * b.e2);
-      D[0][12] = T(2) * (J.dir_fa_x_x_fb_x_y * b.e0 - J.dir_fa_x_x_fb_x_x * b.e3 +
-          J.dir_fa_x_x_fb_x_z * b.e1);
-      D[0][13] = T(2) * (J.dir_fa_x_x_fb_x_x * b.e2 - J.dir_fa_x_x_fb_x_y * b.e1 +
-          J.dir_fa_x_x_fb_x_z * b.e0);
+      const T D1_1 = J.dir_fa_x_x_fb_x_x * T(2);
+      const T D1_2 = J.dir_fa_x_x_fb_x_y * T(2);
+      const T D1_3 = J.dir_fa_x_x_fb_x_z * T(2);
+      D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+      D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+      D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+      D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
+      D[0][10] = -D1_1 * b.e1 - D1_2 * b.e2 - D1_3 * b.e3;
+      D[0][11] = D1_1 * b.e0 + D1_2 * b.e3 - D1_3 * b.e2;
+      D[0][12] = D1_2 * b.e0 - D1_1 * b.e3 + D1_3 * b.e1;
+      D[0][13] = D1_1 * b.e2 - D1_2 * b.e1 + D1_3 * b.e0;
     }
 
     // -Jdot v - d/dt(dC/dt): 42 +, 64 *, 1 /, 1 sqrt, 4 <
@@ -1773,13 +1770,14 @@ struct swing_twist::twist::a_immovable : swing_twist::twist {
     J.wb_z = fa_x_fb_x_z * wb_x_1;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+    const T K11_1 = J.wb_z * T(2);
+    K[0] = mb.Izz * J.wb_z * J.wb_z + J.wb_x *
+        (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_1 * mb.Ixz) + J.wb_y *
+        (mb.Iyy * J.wb_y + K11_1 * mb.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -1865,13 +1863,14 @@ struct swing_twist::twist::a_immovable : swing_twist::twist {
 struct swing_twist::twist::b_immovable : swing_twist::twist {
   static constexpr int immovable_body = 1;
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    const T K11_1 = J.wa_z * T(2);
+    K[0] = ma.Izz * J.wa_z * J.wa_z + J.wa_x *
+        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+        (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
   }
 
   // J v: 3 +, 3 *
@@ -1957,16 +1956,14 @@ struct swing_twist::twist::b_immovable : swing_twist::twist {
 struct swing_twist::swing::a_immovable : swing_twist::swing {
   static constexpr int immovable_body = 0;
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = J.dir_fa_x_x_fb_x_x * (mb.Ixx * J.dir_fa_x_x_fb_x_x + mb.Ixy * J.dir_fa_x_x_fb_x_y +
-        mb.Ixz * J.dir_fa_x_x_fb_x_z) + J.dir_fa_x_x_fb_x_y *
-        (mb.Ixy * J.dir_fa_x_x_fb_x_x + mb.Iyy * J.dir_fa_x_x_fb_x_y + mb.Iyz *
-        J.dir_fa_x_x_fb_x_z) + J.dir_fa_x_x_fb_x_z *
-        (mb.Ixz * J.dir_fa_x_x_fb_x_x + mb.Iyz * J.dir_fa_x_x_fb_x_y + mb.Izz *
-        J.dir_fa_x_x_fb_x_z);
+    const T K11_1 = J.dir_fa_x_x_fb_x_z * T(2);
+    K[0] = mb.Izz * J.dir_fa_x_x_fb_x_z * J.dir_fa_x_x_fb_x_z + J.dir_fa_x_x_fb_x_x *
+        (mb.Ixx * J.dir_fa_x_x_fb_x_x + mb.Ixy * J.dir_fa_x_x_fb_x_y * T(2) + K11_1 * mb.Ixz) +
+        J.dir_fa_x_x_fb_x_y * (mb.Iyy * J.dir_fa_x_x_fb_x_y + K11_1 * mb.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -2054,16 +2051,14 @@ struct swing_twist::swing::a_immovable : swing_twist::swing {
 struct swing_twist::swing::b_immovable : swing_twist::swing {
   static constexpr int immovable_body = 1;
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = J.dir_fa_x_x_fb_x_x * (ma.Ixx * J.dir_fa_x_x_fb_x_x + ma.Ixy * J.dir_fa_x_x_fb_x_y +
-        ma.Ixz * J.dir_fa_x_x_fb_x_z) + J.dir_fa_x_x_fb_x_y *
-        (ma.Ixy * J.dir_fa_x_x_fb_x_x + ma.Iyy * J.dir_fa_x_x_fb_x_y + ma.Iyz *
-        J.dir_fa_x_x_fb_x_z) + J.dir_fa_x_x_fb_x_z *
-        (ma.Ixz * J.dir_fa_x_x_fb_x_x + ma.Iyz * J.dir_fa_x_x_fb_x_y + ma.Izz *
-        J.dir_fa_x_x_fb_x_z);
+    const T K11_1 = J.dir_fa_x_x_fb_x_z * T(2);
+    K[0] = ma.Izz * J.dir_fa_x_x_fb_x_z * J.dir_fa_x_x_fb_x_z + J.dir_fa_x_x_fb_x_x *
+        (ma.Ixx * J.dir_fa_x_x_fb_x_x + ma.Ixy * J.dir_fa_x_x_fb_x_y * T(2) + K11_1 * ma.Ixz) +
+        J.dir_fa_x_x_fb_x_y * (ma.Iyy * J.dir_fa_x_x_fb_x_y + K11_1 * ma.Iyz);
   }
 
   // J v: 3 +, 3 *

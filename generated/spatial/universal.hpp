@@ -498,7 +498,7 @@ struct universal {
     D[3][11] = -J.fa_y_x_fb_z_x * b.xz - J.fa_y_x_fb_z_y * b.yz - J.fa_y_x_fb_z_z * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 40 +, 80 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 47 +, 57 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[4][14]) {
     for (auto& row : D) {
@@ -506,68 +506,77 @@ struct universal {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T D1_1 = J.ra_y * a.e3;
-    const T D1_2 = J.ra_z * a.e2;
-    const T D1_1_2 = J.ra_y * a.e2;
-    const T D1_2_2 = J.ra_z * a.e3;
-    const T D1_1_3 = J.ra_y * a.e1;
-    const T D1_2_3 = J.ra_z * a.e0;
-    const T D1_1_4 = J.ra_y * a.e0;
-    const T D1_2_4 = J.ra_z * a.e1;
-    const T D1_1_5 = J.rb_y * b.e3;
-    const T D1_2_5 = J.rb_z * b.e2;
-    const T D1_1_6 = J.rb_y * b.e2;
-    const T D1_2_6 = J.rb_z * b.e3;
-    const T D1_1_7 = J.rb_y * b.e1;
-    const T D1_2_7 = J.rb_z * b.e0;
-    const T D1_1_8 = J.rb_y * b.e0;
-    const T D1_2_8 = J.rb_z * b.e1;
-    const T D2_1 = J.ra_x * a.e3;
-    const T D2_1_2 = J.ra_x * a.e2;
-    const T D2_1_3 = J.ra_x * a.e1;
-    const T D2_1_4 = J.ra_x * a.e0;
-    const T D2_1_5 = J.rb_x * b.e3;
-    const T D2_1_6 = J.rb_x * b.e2;
-    const T D2_1_7 = J.rb_x * b.e1;
-    const T D2_1_8 = J.rb_x * b.e0;
+    const T D1_1 = J.ra_y * T(2);
+    const T D1_2 = D1_1 * a.e3;
+    const T D1_3 = J.ra_z * T(2);
+    const T D1_4 = D1_3 * a.e2;
+    const T D1_1_2 = D1_1 * a.e2;
+    const T D1_2_2 = D1_3 * a.e3;
+    const T D1_1_3 = D1_1 * a.e1;
+    const T D1_2_3 = D1_3 * a.e0;
+    const T D1_1_4 = D1_1 * a.e0;
+    const T D1_2_4 = D1_3 * a.e1;
+    const T D1_1_5 = T(2) * J.rb_y;
+    const T D1_2_5 = D1_1_5 * b.e3;
+    const T D1_3_2 = T(2) * J.rb_z;
+    const T D1_4_2 = D1_3_2 * b.e2;
+    const T D1_1_6 = D1_1_5 * b.e2;
+    const T D1_2_6 = D1_3_2 * b.e3;
+    const T D1_1_7 = D1_1_5 * b.e1;
+    const T D1_2_7 = D1_3_2 * b.e0;
+    const T D1_1_8 = D1_1_5 * b.e0;
+    const T D1_2_8 = D1_3_2 * b.e1;
+    const T D2_1 = T(2) * J.ra_x;
+    const T D2_2 = D2_1 * a.e3;
+    const T D2_1_2 = D2_1 * a.e2;
+    const T D2_1_3 = D2_1 * a.e1;
+    const T D2_1_4 = D2_1 * a.e0;
+    const T D2_1_5 = T(2) * J.rb_x;
+    const T D2_2_2 = D2_1_5 * b.e3;
+    const T D2_1_6 = D2_1_5 * b.e2;
+    const T D2_1_7 = D2_1_5 * b.e1;
+    const T D2_1_8 = D2_1_5 * b.e0;
+    const T D4_1 = T(2) * J.fa_y_x_fb_z_x;
+    const T D4_2 = T(2) * J.fa_y_x_fb_z_y;
+    const T D4_3 = T(2) * J.fa_y_x_fb_z_z;
     D[0][0] = T(1);
-    D[0][3] = T(2) * (D1_1 - D1_2);
-    D[0][4] = T(2) * (D1_1_2 + D1_2_2);
-    D[0][5] = T(2) * (D1_2_3 - D1_1_3);
-    D[0][6] = T(-2) * (D1_1_4 + D1_2_4);
+    D[0][3] = D1_2 - D1_4;
+    D[0][4] = D1_1_2 + D1_2_2;
+    D[0][5] = D1_2_3 - D1_1_3;
+    D[0][6] = -D1_1_4 - D1_2_4;
     D[0][7] = T(-1);
-    D[0][10] = T(2) * (D1_2_5 - D1_1_5);
-    D[0][11] = T(-2) * (D1_1_6 + D1_2_6);
-    D[0][12] = T(2) * (D1_1_7 - D1_2_7);
-    D[0][13] = T(2) * (D1_1_8 + D1_2_8);
+    D[0][10] = D1_4_2 - D1_2_5;
+    D[0][11] = -D1_1_6 - D1_2_6;
+    D[0][12] = D1_1_7 - D1_2_7;
+    D[0][13] = D1_1_8 + D1_2_8;
     D[1][1] = T(1);
-    D[1][3] = T(2) * (D1_2_4 - D2_1);
-    D[1][4] = T(-2) * (D2_1_2 + D1_2_3);
-    D[1][5] = T(2) * (D2_1_3 + D1_2_2);
-    D[1][6] = T(2) * (D2_1_4 - D1_2);
+    D[1][3] = D1_2_4 - D2_2;
+    D[1][4] = -D2_1_2 - D1_2_3;
+    D[1][5] = D2_1_3 + D1_2_2;
+    D[1][6] = D2_1_4 - D1_4;
     D[1][8] = T(-1);
-    D[1][10] = T(2) * (D2_1_5 - D1_2_8);
-    D[1][11] = T(2) * (D2_1_6 + D1_2_7);
-    D[1][12] = T(-2) * (D2_1_7 + D1_2_6);
-    D[1][13] = T(2) * (D1_2_5 - D2_1_8);
+    D[1][10] = D2_2_2 - D1_2_8;
+    D[1][11] = D2_1_6 + D1_2_7;
+    D[1][12] = -D2_1_7 - D1_2_6;
+    D[1][13] = D1_4_2 - D2_1_8;
     D[2][2] = T(1);
-    D[2][3] = T(2) * (D2_1_2 - D1_1_3);
-    D[2][4] = T(2) * (D1_1_4 - D2_1);
-    D[2][5] = T(-2) * (D2_1_4 + D1_1);
-    D[2][6] = T(2) * (D2_1_3 + D1_1_2);
+    D[2][3] = D2_1_2 - D1_1_3;
+    D[2][4] = D1_1_4 - D2_2;
+    D[2][5] = -D2_1_4 - D1_2;
+    D[2][6] = D2_1_3 + D1_1_2;
     D[2][9] = T(-1);
-    D[2][10] = T(2) * (D1_1_7 - D2_1_6);
-    D[2][11] = T(2) * (D2_1_5 - D1_1_8);
-    D[2][12] = T(2) * (D2_1_8 + D1_1_5);
-    D[2][13] = T(-2) * (D2_1_7 + D1_1_6);
-    D[3][3] = T(-2) * (J.fa_y_x_fb_z_x * a.e1 + J.fa_y_x_fb_z_y * a.e2 + J.fa_y_x_fb_z_z * a.e3);
-    D[3][4] = T(2) * (J.fa_y_x_fb_z_x * a.e0 + J.fa_y_x_fb_z_y * a.e3 - J.fa_y_x_fb_z_z * a.e2);
-    D[3][5] = T(2) * (J.fa_y_x_fb_z_y * a.e0 - J.fa_y_x_fb_z_x * a.e3 + J.fa_y_x_fb_z_z * a.e1);
-    D[3][6] = T(2) * (J.fa_y_x_fb_z_x * a.e2 - J.fa_y_x_fb_z_y * a.e1 + J.fa_y_x_fb_z_z * a.e0);
-    D[3][10] = T(2) * (J.fa_y_x_fb_z_x * b.e1 + J.fa_y_x_fb_z_y * b.e2 + J.fa_y_x_fb_z_z * b.e3);
-    D[3][11] = T(2) * (J.fa_y_x_fb_z_z * b.e2 - J.fa_y_x_fb_z_x * b.e0 - J.fa_y_x_fb_z_y * b.e3);
-    D[3][12] = T(2) * (J.fa_y_x_fb_z_x * b.e3 - J.fa_y_x_fb_z_y * b.e0 - J.fa_y_x_fb_z_z * b.e1);
-    D[3][13] = T(2) * (J.fa_y_x_fb_z_y * b.e1 - J.fa_y_x_fb_z_x * b.e2 - J.fa_y_x_fb_z_z * b.e0);
+    D[2][10] = D1_1_7 - D2_1_6;
+    D[2][11] = D2_2_2 - D1_1_8;
+    D[2][12] = D2_1_8 + D1_2_5;
+    D[2][13] = -D2_1_7 - D1_1_6;
+    D[3][3] = -D4_1 * a.e1 - D4_2 * a.e2 - D4_3 * a.e3;
+    D[3][4] = D4_1 * a.e0 + D4_2 * a.e3 - D4_3 * a.e2;
+    D[3][5] = D4_2 * a.e0 - D4_1 * a.e3 + D4_3 * a.e1;
+    D[3][6] = D4_1 * a.e2 - D4_2 * a.e1 + D4_3 * a.e0;
+    D[3][10] = D4_1 * b.e1 + D4_2 * b.e2 + D4_3 * b.e3;
+    D[3][11] = D4_3 * b.e2 - D4_1 * b.e0 - D4_2 * b.e3;
+    D[3][12] = D4_1 * b.e3 - D4_2 * b.e0 - D4_3 * b.e1;
+    D[3][13] = D4_2 * b.e1 - D4_1 * b.e2 - D4_3 * b.e0;
   }
 
   // -Jdot v - d/dt(dC/dt): 60 +, 87 *
@@ -830,17 +839,18 @@ struct universal {
       J.wb_z = fb_z_x * wb_x_2 - fb_z_y * wb_y_1;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 17 +, 24 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-          (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-          (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+      const T K11_1 = J.wa_z * T(2);
+      const T K11_2 = J.wb_z * T(2);
+      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
+          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
+          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
+          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -996,7 +1006,7 @@ struct universal {
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 71 +, 113 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 71 +, 112 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1035,18 +1045,10 @@ struct universal {
       const T dot_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_fa_z_x + fb_z_y * w_a_x_fa_z_y + fb_z_z *
           w_a_x_fa_z_z;
       const T g1_3 = dot_w_b_x_fb_z_fa_z + dot_w_a_x_fa_z_fb_z;
+      const T g1_4 = T(2) * (g1_2 * dot_fa_z_fb_z - g1_3 * dot_fa_x_fb_z) * g1_1;
       const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
       const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
       const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-      const T dot_w_b_x_w_b_x_fb_z_fa_x = fa_x_x * w_b_x_w_b_x_fb_z_x + fa_x_y *
-          w_b_x_w_b_x_fb_z_y + fa_x_z * w_b_x_w_b_x_fb_z_z;
-      const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-      const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-      const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-      const T dot_w_a_x_w_a_x_fa_x_fb_z = fb_z_x * w_a_x_w_a_x_fa_x_x + fb_z_y *
-          w_a_x_w_a_x_fa_x_y + fb_z_z * w_a_x_w_a_x_fa_x_z;
-      const T dot_w_a_x_fa_x_w_b_x_fb_z = w_a_x_fa_x_z * w_b_x_fb_z_z + w_a_x_fa_x_y *
-          w_b_x_fb_z_y + w_a_x_fa_x_x * w_b_x_fb_z_x;
       const T dot_w_b_x_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_w_b_x_fb_z_x + fa_z_y *
           w_b_x_w_b_x_fb_z_y + fa_z_z * w_b_x_w_b_x_fb_z_z;
       const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
@@ -1056,12 +1058,20 @@ struct universal {
           w_a_x_w_a_x_fa_z_y + fb_z_z * w_a_x_w_a_x_fa_z_z;
       const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
           w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
-      g[0] = g1_1 * (T(2) * (g1_2 * dot_fa_x_fb_z + g1_3 * dot_fa_z_fb_z) *
-          (g1_2 * dot_fa_z_fb_z - g1_3 * dot_fa_x_fb_z) * g1_1 -
-          (dot_w_b_x_w_b_x_fb_z_fa_x + dot_w_a_x_w_a_x_fa_x_fb_z + T(2) *
-          dot_w_a_x_fa_x_w_b_x_fb_z) * dot_fa_z_fb_z +
-          (dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z + T(2) *
-          dot_w_a_x_fa_z_w_b_x_fb_z) * dot_fa_x_fb_z);
+      const T dot_w_b_x_w_b_x_fb_z_fa_x = fa_x_x * w_b_x_w_b_x_fb_z_x + fa_x_y *
+          w_b_x_w_b_x_fb_z_y + fa_x_z * w_b_x_w_b_x_fb_z_z;
+      const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
+      const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
+      const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
+      const T dot_w_a_x_w_a_x_fa_x_fb_z = fb_z_x * w_a_x_w_a_x_fa_x_x + fb_z_y *
+          w_a_x_w_a_x_fa_x_y + fb_z_z * w_a_x_w_a_x_fa_x_z;
+      const T dot_w_a_x_fa_x_w_b_x_fb_z = w_a_x_fa_x_z * w_b_x_fb_z_z + w_a_x_fa_x_y *
+          w_b_x_fb_z_y + w_a_x_fa_x_x * w_b_x_fb_z_x;
+      g[0] = g1_1 * (dot_fa_x_fb_z *
+          (g1_4 * g1_2 + dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z +
+          dot_w_a_x_fa_z_w_b_x_fb_z * T(2)) + dot_fa_z_fb_z *
+          (g1_4 * g1_3 - dot_w_b_x_w_b_x_fb_z_fa_x - dot_w_a_x_w_a_x_fa_x_fb_z -
+          dot_w_a_x_fa_x_w_b_x_fb_z * T(2)));
     }
 
     // dC/dt at fixed q: nothing
@@ -1070,7 +1080,7 @@ struct universal {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 179 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 170 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -1098,13 +1108,13 @@ struct universal {
       const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
       const T fa_x_x_fb_z_x = fa_x_y * fb_z_z - fa_x_z * fb_z_y;
       const T fa_x_x_fb_z_y = fa_x_z * fb_z_x - fa_x_x * fb_z_z;
-      const T H4_5 = lambda[0] * H4_1 * H4_1 *
+      const T H4_5 = lambda[0] * H4_1 * H4_1 * T(2) *
           (dot_fa_x_fb_z * fa_z_x_fb_z_x - dot_fa_z_fb_z * fa_x_x_fb_z_x);
-      const T H4_6 = T(2) * H4_5 * dot_fa_x_fb_z - H4_2 * fa_z_x_fb_z_x;
+      const T H4_6 = H4_5 * dot_fa_x_fb_z - H4_2 * fa_z_x_fb_z_x;
       const T H4_7 = fb_z_z * H4_6 - H4_4;
       const T H4_8 = dot_fa_x_fb_z * H4_2;
       const T H4_9 = H4_8 * fb_z_y;
-      const T H4_10 = H4_2 * fa_x_x_fb_z_x + T(2) * H4_5 * dot_fa_z_fb_z;
+      const T H4_10 = H4_2 * fa_x_x_fb_z_x + H4_5 * dot_fa_z_fb_z;
       const T H4_11 = H4_9 + fb_z_z * H4_10;
       const T H4_12 = H4_3 * fb_z_z;
       const T H4_13 = H4_12 + fb_z_y * H4_6;
@@ -1115,21 +1125,21 @@ struct universal {
       const T H4_2_2 = fb_z_x * H4_1_2 - fa_x_x * H4_7 - fa_z_x * H4_11;
       const T H4_1_3 = fa_x_y * H4_6 + fa_z_y * H4_10;
       const T H4_2_3 = fa_x_x * H4_13 + fa_z_x * H4_15 - fb_z_x * H4_1_3;
-      const T H4_1_4 = lambda[0] * H4_1 * (fa_x_y * dot_fa_z_fb_z - fa_z_y * dot_fa_x_fb_z);
+      const T H4_1_4 = H4_3 * fa_x_y - H4_8 * fa_z_y;
       const T H4_2_4 = H4_1_2 + H4_1_4;
-      const T H4_3_2 = lambda[0] * H4_1 * (fa_x_z * dot_fa_z_fb_z - fa_z_z * dot_fa_x_fb_z);
-      const T H4_4_2 = H4_3_2 - H4_1_3;
-      const T H4_5_2 = fb_z_y * H4_2_4 + fb_z_z * H4_4_2;
+      const T H4_3_2 = H4_3 * fa_x_z - H4_8 * fa_z_z;
+      const T H4_4_2 = H4_1_3 - H4_3_2;
+      const T H4_5_2 = fb_z_y * H4_2_4 - fb_z_z * H4_4_2;
       const T H4_1_5 = fa_x_x * H4_6 + fa_z_x * H4_10;
       const T H4_2_5 = fb_z_z * H4_1_5 - fb_z_x * H4_2_4;
-      const T H4_1_6 = fb_z_x * H4_4_2 + fb_z_y * H4_1_5;
+      const T H4_1_6 = fb_z_x * H4_4_2 - fb_z_y * H4_1_5;
       const T H5_1 = H4_3 * fb_z_x;
-      const T H5_2 = lambda[0] * H4_1 * H4_1 *
+      const T H5_2 = lambda[0] * H4_1 * H4_1 * T(2) *
           (dot_fa_x_fb_z * fa_z_x_fb_z_y - fa_x_x_fb_z_y * dot_fa_z_fb_z);
-      const T H5_3 = T(2) * H5_2 * dot_fa_x_fb_z - H4_2 * fa_z_x_fb_z_y;
+      const T H5_3 = H5_2 * dot_fa_x_fb_z - H4_2 * fa_z_x_fb_z_y;
       const T H5_4 = H5_1 + fb_z_z * H5_3;
       const T H5_5 = H4_8 * fb_z_x;
-      const T H5_6 = H4_2 * fa_x_x_fb_z_y + T(2) * H5_2 * dot_fa_z_fb_z;
+      const T H5_6 = H4_2 * fa_x_x_fb_z_y + H5_2 * dot_fa_z_fb_z;
       const T H5_7 = fb_z_z * H5_6 - H5_5;
       const T H5_8 = fa_x_z * H5_3 + fa_z_z * H5_6;
       const T H5_9 = fa_x_y * H5_4 + fa_z_y * H5_7 - fb_z_y * H5_8;
@@ -1138,20 +1148,20 @@ struct universal {
       const T H5_3_2 = fa_x_z * H5_1_2 - fa_x_x * H5_4 - fa_z_x * H5_7 + fa_z_z * H5_2_2;
       const T H5_1_3 = fa_x_x * H5_3 + fa_z_x * H5_6;
       const T H5_2_3 = fb_z_y * H5_1_3 - fa_x_y * H5_1_2 - fa_z_y * H5_2_2;
-      const T H5_1_4 = lambda[0] * H4_1 * (fa_x_x * dot_fa_z_fb_z - fa_z_x * dot_fa_x_fb_z);
-      const T H5_2_4 = H5_1_4 - H5_8;
+      const T H5_1_4 = H4_3 * fa_x_x - H4_8 * fa_z_x;
+      const T H5_2_4 = H5_8 - H5_1_4;
       const T H5_3_3 = fa_x_y * H5_3 + fa_z_y * H5_6;
-      const T H5_4_2 = fb_z_y * H5_2_4 + fb_z_z * H5_3_3;
+      const T H5_4_2 = fb_z_y * H5_2_4 - fb_z_z * H5_3_3;
       const T H5_1_5 = H5_1_3 + H4_3_2;
-      const T H5_2_5 = fb_z_x * H5_2_4 + fb_z_z * H5_1_5;
+      const T H5_2_5 = fb_z_z * H5_1_5 - fb_z_x * H5_2_4;
       const T H5_1_6 = fb_z_x * H5_3_3 - fb_z_y * H5_1_5;
       const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
       const T fa_x_x_fb_z_z = fa_x_x * fb_z_y - fa_x_y * fb_z_x;
-      const T H6_1 = lambda[0] * H4_1 * H4_1 *
+      const T H6_1 = lambda[0] * H4_1 * H4_1 * T(2) *
           (dot_fa_x_fb_z * fa_z_x_fb_z_z - fa_x_x_fb_z_z * dot_fa_z_fb_z);
-      const T H6_2 = T(2) * H6_1 * dot_fa_x_fb_z - H4_2 * fa_z_x_fb_z_z;
+      const T H6_2 = H6_1 * dot_fa_x_fb_z - H4_2 * fa_z_x_fb_z_z;
       const T H6_3 = fb_z_y * H6_2 - H5_1;
-      const T H6_4 = H4_2 * fa_x_x_fb_z_z + T(2) * H6_1 * dot_fa_z_fb_z;
+      const T H6_4 = H4_2 * fa_x_x_fb_z_z + H6_1 * dot_fa_z_fb_z;
       const T H6_5 = H5_5 + fb_z_y * H6_4;
       const T H6_6 = fa_x_y * H6_2 + fa_z_y * H6_4;
       const T H6_7 = fb_z_z * H6_6 - fa_x_z * H6_3 - fa_z_z * H6_5;
@@ -1163,44 +1173,44 @@ struct universal {
       const T H6_1_4 = fa_x_z * H6_2 + fa_z_z * H6_4;
       const T H6_2_3 = H6_6 + H5_1_4;
       const T H6_3_3 = fb_z_y * H6_1_4 - fb_z_z * H6_2_3;
-      const T H6_1_5 = H4_1_4 - H6_3_2;
-      const T H6_2_4 = fb_z_x * H6_1_4 + fb_z_z * H6_1_5;
-      const T H6_1_6 = fb_z_x * H6_2_3 + fb_z_y * H6_1_5;
+      const T H6_1_5 = H6_3_2 - H4_1_4;
+      const T H6_2_4 = fb_z_z * H6_1_5 - fb_z_x * H6_1_4;
+      const T H6_1_6 = fb_z_x * H6_2_3 - fb_z_y * H6_1_5;
       H[3][3] = H4_16;
       H[3][4] = H4_2_2;
       H[3][5] = H4_2_3;
       H[3][9] = H4_5_2;
       H[3][10] = H4_2_5;
-      H[3][11] = -H4_1_6;
+      H[3][11] = H4_1_6;
       H[4][3] = H5_9;
       H[4][4] = H5_3_2;
       H[4][5] = H5_2_3;
-      H[4][9] = -H5_4_2;
+      H[4][9] = H5_4_2;
       H[4][10] = H5_2_5;
       H[4][11] = H5_1_6;
       H[5][3] = H6_7;
       H[5][4] = H6_4_2;
       H[5][5] = H6_1_3;
       H[5][9] = H6_3_3;
-      H[5][10] = -H6_2_4;
+      H[5][10] = H6_2_4;
       H[5][11] = H6_1_6;
       H[9][3] = -H4_16;
       H[9][4] = -H4_2_2;
       H[9][5] = -H4_2_3;
       H[9][9] = -H4_5_2;
       H[9][10] = -H4_2_5;
-      H[9][11] = H4_1_6;
+      H[9][11] = -H4_1_6;
       H[10][3] = -H5_9;
       H[10][4] = -H5_3_2;
       H[10][5] = -H5_2_3;
-      H[10][9] = H5_4_2;
+      H[10][9] = -H5_4_2;
       H[10][10] = -H5_2_5;
       H[10][11] = -H5_1_6;
       H[11][3] = -H6_7;
       H[11][4] = -H6_4_2;
       H[11][5] = -H6_1_3;
       H[11][9] = -H6_3_3;
-      H[11][10] = H6_2_4;
+      H[11][10] = -H6_2_4;
       H[11][11] = -H6_1_6;
     }
 
@@ -1284,17 +1294,18 @@ struct universal {
       J.wb_z = wa_x_3 * fa_y_x_fb_y_z - wa_x_2 * fa_y_x_fb_x_z;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 17 +, 24 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-          (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-          (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+      const T K11_1 = J.wa_z * T(2);
+      const T K11_2 = J.wb_z * T(2);
+      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
+          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
+          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
+          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1450,7 +1461,7 @@ struct universal {
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 71 +, 113 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 71 +, 112 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1489,11 +1500,12 @@ struct universal {
       const T dot_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_fb_y_x + fa_y_y * w_b_x_fb_y_y + fa_y_z *
           w_b_x_fb_y_z;
       const T g1_3 = dot_w_b_x_fb_y_fa_y + dot_w_a_x_fa_y_fb_y;
-      const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-      const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-      const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-      const T dot_w_b_x_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_w_b_x_fb_x_x + fa_y_y *
-          w_b_x_w_b_x_fb_x_y + fa_y_z * w_b_x_w_b_x_fb_x_z;
+      const T g1_4 = T(2) * (g1_2 * dot_fa_y_fb_y - g1_3 * dot_fa_y_fb_x) * g1_1;
+      const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
+      const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
+      const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
+      const T dot_w_b_x_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_w_b_x_fb_y_x + fa_y_y *
+          w_b_x_w_b_x_fb_y_y + fa_y_z * w_b_x_w_b_x_fb_y_z;
       const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
       const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
       const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
@@ -1505,17 +1517,16 @@ struct universal {
           w_b_x_fb_x_y + w_a_x_fa_y_x * w_b_x_fb_x_x;
       const T dot_w_a_x_fa_y_w_b_x_fb_y = w_a_x_fa_y_z * w_b_x_fb_y_z + w_a_x_fa_y_y *
           w_b_x_fb_y_y + w_a_x_fa_y_x * w_b_x_fb_y_x;
-      const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
-      const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
-      const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
-      const T dot_w_b_x_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_w_b_x_fb_y_x + fa_y_y *
-          w_b_x_w_b_x_fb_y_y + fa_y_z * w_b_x_w_b_x_fb_y_z;
-      g[0] = g1_1 * (T(2) * (g1_2 * dot_fa_y_fb_x + g1_3 * dot_fa_y_fb_y) *
-          (g1_2 * dot_fa_y_fb_y - g1_3 * dot_fa_y_fb_x) * g1_1 -
-          (dot_w_b_x_w_b_x_fb_x_fa_y + dot_w_a_x_w_a_x_fa_y_fb_x + T(2) *
-          dot_w_a_x_fa_y_w_b_x_fb_x) * dot_fa_y_fb_y +
-          (dot_w_b_x_w_b_x_fb_y_fa_y + dot_w_a_x_w_a_x_fa_y_fb_y + T(2) *
-          dot_w_a_x_fa_y_w_b_x_fb_y) * dot_fa_y_fb_x);
+      const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
+      const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
+      const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
+      const T dot_w_b_x_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_w_b_x_fb_x_x + fa_y_y *
+          w_b_x_w_b_x_fb_x_y + fa_y_z * w_b_x_w_b_x_fb_x_z;
+      g[0] = g1_1 * (dot_fa_y_fb_x *
+          (g1_4 * g1_2 + dot_w_b_x_w_b_x_fb_y_fa_y + dot_w_a_x_w_a_x_fa_y_fb_y +
+          dot_w_a_x_fa_y_w_b_x_fb_y * T(2)) + dot_fa_y_fb_y *
+          (g1_4 * g1_3 - dot_w_b_x_w_b_x_fb_x_fa_y - dot_w_a_x_w_a_x_fa_y_fb_x -
+          dot_w_a_x_fa_y_w_b_x_fb_x * T(2)));
     }
 
     // dC/dt at fixed q: nothing
@@ -1524,7 +1535,7 @@ struct universal {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 179 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 119 +, 164 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -1535,126 +1546,129 @@ struct universal {
       const Pose<T>& b = q[1];
       const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
       const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
       const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
       const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
       const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
       const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
       const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
       const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
       const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
       const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
       const T H4_1 = inverse(dot_fa_y_fb_x * dot_fa_y_fb_x + dot_fa_y_fb_y * dot_fa_y_fb_y);
-      const T H4_2 = lambda[0] * H4_1 * (fb_y_y * dot_fa_y_fb_x - fb_x_y * dot_fa_y_fb_y);
-      const T H4_3 = lambda[0] * H4_1;
-      const T fa_y_x_fb_y_x = fa_y_y * fb_y_z - fa_y_z * fb_y_y;
-      const T fa_y_x_fb_y_y = fa_y_z * fb_y_x - fa_y_x * fb_y_z;
-      const T fa_y_x_fb_x_x = fa_y_y * fb_x_z - fa_y_z * fb_x_y;
-      const T fa_y_x_fb_x_y = fa_y_z * fb_x_x - fa_y_x * fb_x_z;
-      const T H4_4 = lambda[0] * H4_1 * H4_1 *
-          (dot_fa_y_fb_x * fa_y_x_fb_y_x - dot_fa_y_fb_y * fa_y_x_fb_x_x);
-      const T H4_5 = T(2) * H4_4 * dot_fa_y_fb_x - H4_3 * fa_y_x_fb_y_x;
-      const T H4_6 = H4_3 * fa_y_x_fb_x_x + T(2) * H4_4 * dot_fa_y_fb_y;
-      const T H4_7 = fb_x_z * H4_5 + fb_y_z * H4_6;
-      const T H4_8 = H4_2 + H4_7;
-      const T H4_9 = lambda[0] * H4_1 * (fb_x_z * dot_fa_y_fb_y - fb_y_z * dot_fa_y_fb_x);
-      const T H4_10 = fb_x_y * H4_5 + fb_y_y * H4_6;
-      const T H4_11 = H4_9 + H4_10;
-      const T H4_12 = fa_y_y * H4_8 - fa_y_z * H4_11;
-      const T H4_1_2 = fb_x_x * H4_5 + fb_y_x * H4_6;
-      const T H4_2_2 = fa_y_z * H4_1_2 - fa_y_x * H4_8;
-      const T H4_1_3 = fa_y_x * H4_11 - fa_y_y * H4_1_2;
-      const T H4_1_4 = dot_fa_y_fb_y * H4_3;
-      const T H4_2_3 = H4_1_4 * fa_y_y;
-      const T H4_3_2 = H4_2_3 + fa_y_z * H4_5;
-      const T H4_4_2 = dot_fa_y_fb_x * H4_3;
-      const T H4_5_2 = H4_4_2 * fa_y_y;
-      const T H4_6_2 = fa_y_z * H4_6 - H4_5_2;
-      const T H4_7_2 = H4_1_4 * fa_y_z;
-      const T H4_8_2 = fa_y_y * H4_5 - H4_7_2;
-      const T H4_9_2 = H4_4_2 * fa_y_z;
-      const T H4_10_2 = H4_9_2 + fa_y_y * H4_6;
-      const T H4_11_2 = fb_x_y * H4_3_2 + fb_y_y * H4_6_2 - fb_x_z * H4_8_2 - fb_y_z * H4_10_2;
-      const T H4_1_5 = fa_y_x * H4_7 - fb_x_x * H4_3_2 - fb_y_x * H4_6_2;
-      const T H4_1_6 = fb_x_x * H4_8_2 + fb_y_x * H4_10_2 - fa_y_x * H4_10;
-      const T H5_1 = lambda[0] * H4_1 * (fb_x_x * dot_fa_y_fb_y - fb_y_x * dot_fa_y_fb_x);
-      const T H5_2 = lambda[0] * H4_1 * H4_1 *
-          (dot_fa_y_fb_x * fa_y_x_fb_y_y - dot_fa_y_fb_y * fa_y_x_fb_x_y);
-      const T H5_3 = T(2) * H5_2 * dot_fa_y_fb_x - H4_3 * fa_y_x_fb_y_y;
-      const T H5_4 = H4_3 * fa_y_x_fb_x_y + T(2) * H5_2 * dot_fa_y_fb_y;
-      const T H5_5 = fb_x_z * H5_3 + fb_y_z * H5_4;
-      const T H5_6 = H5_1 + H5_5;
-      const T H5_7 = fb_x_y * H5_3 + fb_y_y * H5_4;
-      const T H5_8 = fa_y_y * H5_6 - fa_y_z * H5_7;
+      const T H4_2 = lambda[0] * H4_1;
+      const T H4_3 = fa_y_y * fb_y_z;
+      const T H4_4 = fb_y_y * fa_y_z;
+      const T fa_y_x_fb_y_x = H4_3 - H4_4;
+      const T H4_5 = fb_y_x * fa_y_z;
+      const T fa_y_x_fb_y_y = H4_5 - fa_y_x * fb_y_z;
+      const T H4_6 = dot_fa_y_fb_x * H4_2;
+      const T H4_7 = H4_1 * T(2);
+      const T H4_8 = H4_6 * H4_7;
+      const T H4_9 = dot_fa_y_fb_y * H4_2;
+      const T H4_10 = H4_9 * H4_7;
+      const T H4_11 = fa_y_y * fb_x_z;
+      const T H4_12 = fb_x_y * fa_y_z;
+      const T fa_y_x_fb_x_x = H4_11 - H4_12;
+      const T H4_13 = fa_y_z * fb_x_x;
+      const T fa_y_x_fb_x_y = H4_13 - fa_y_x * fb_x_z;
+      const T H4_14 = H4_8 * fa_y_x_fb_y_x - H4_10 * fa_y_x_fb_x_x;
+      const T H4_15 = H4_14 * dot_fa_y_fb_x - H4_2 * fa_y_x_fb_y_x;
+      const T H4_16 = H4_2 * fa_y_x_fb_x_x + H4_14 * dot_fa_y_fb_y;
+      const T H4_17 = fb_x_z * H4_15 + fb_y_z * H4_16;
+      const T H4_18 = H4_9 * fb_x_y - H4_6 * fb_y_y;
+      const T H4_19 = H4_17 - H4_18;
+      const T H4_20 = fb_x_y * H4_15 + fb_y_y * H4_16;
+      const T H4_21 = H4_9 * fb_x_z - H4_6 * fb_y_z;
+      const T H4_22 = H4_20 + H4_21;
+      const T H4_23 = fa_y_y * H4_19 - fa_y_z * H4_22;
+      const T H4_1_2 = fb_x_x * H4_15 + fb_y_x * H4_16;
+      const T H4_2_2 = fa_y_z * H4_1_2 - fa_y_x * H4_19;
+      const T H4_1_3 = fa_y_x * H4_22 - fa_y_y * H4_1_2;
+      const T H4_1_4 = H4_9 * fa_y_y;
+      const T H4_2_3 = H4_1_4 + fa_y_z * H4_15;
+      const T H4_3_2 = H4_6 * fa_y_y;
+      const T H4_4_2 = fa_y_z * H4_16 - H4_3_2;
+      const T H4_5_2 = H4_9 * fa_y_z;
+      const T H4_6_2 = fa_y_y * H4_15 - H4_5_2;
+      const T H4_7_2 = H4_6 * fa_y_z;
+      const T H4_8_2 = H4_7_2 + fa_y_y * H4_16;
+      const T H4_9_2 = fb_x_y * H4_2_3 + fb_y_y * H4_4_2 - fb_x_z * H4_6_2 - fb_y_z * H4_8_2;
+      const T H4_1_5 = fa_y_x * H4_17 - fb_x_x * H4_2_3 - fb_y_x * H4_4_2;
+      const T H4_1_6 = fb_x_x * H4_6_2 + fb_y_x * H4_8_2 - fa_y_x * H4_20;
+      const T H5_1 = H4_9 * fb_x_x - H4_6 * fb_y_x;
+      const T H5_2 = H4_8 * fa_y_x_fb_y_y - H4_10 * fa_y_x_fb_x_y;
+      const T H5_3 = H5_2 * dot_fa_y_fb_x - H4_2 * fa_y_x_fb_y_y;
+      const T H5_4 = H4_2 * fa_y_x_fb_x_y + H5_2 * dot_fa_y_fb_y;
+      const T H5_5 = H5_1 + fb_x_z * H5_3 + fb_y_z * H5_4;
+      const T H5_6 = fb_x_y * H5_3 + fb_y_y * H5_4;
+      const T H5_7 = fa_y_y * H5_5 - fa_y_z * H5_6;
       const T H5_1_2 = fb_x_x * H5_3 + fb_y_x * H5_4;
-      const T H5_2_2 = H5_1_2 - H4_9;
-      const T H5_3_2 = fa_y_z * H5_2_2 - fa_y_x * H5_6;
-      const T H5_1_3 = fa_y_x * H5_7 - fa_y_y * H5_2_2;
-      const T H5_1_4 = H4_1_4 * fa_y_x;
+      const T H5_2_2 = H5_1_2 - H4_21;
+      const T H5_3_2 = fa_y_z * H5_2_2 - fa_y_x * H5_5;
+      const T H5_1_3 = fa_y_x * H5_6 - fa_y_y * H5_2_2;
+      const T H5_1_4 = H4_9 * fa_y_x;
       const T H5_2_3 = fa_y_z * H5_3 - H5_1_4;
-      const T H5_3_3 = H4_4_2 * fa_y_x;
+      const T H5_3_3 = H4_6 * fa_y_x;
       const T H5_4_2 = H5_3_3 + fa_y_z * H5_4;
-      const T H5_5_2 = fb_x_y * H5_2_3 + fb_y_y * H5_4_2 - fa_y_y * H5_5;
-      const T H5_1_5 = H4_7_2 + fa_y_x * H5_3;
-      const T H5_2_4 = fa_y_x * H5_4 - H4_9_2;
+      const T H5_5_2 = fb_x_y * H5_2_3 - H4_11 * H5_3 - H4_3 * H5_4 + fb_y_y * H5_4_2;
+      const T H5_1_5 = H4_5_2 + fa_y_x * H5_3;
+      const T H5_2_4 = fa_y_x * H5_4 - H4_7_2;
       const T H5_3_4 = fb_x_z * H5_1_5 - fb_x_x * H5_2_3 - fb_y_x * H5_4_2 + fb_y_z * H5_2_4;
       const T H5_1_6 = fa_y_y * H5_1_2 - fb_x_y * H5_1_5 - fb_y_y * H5_2_4;
       const T fa_y_x_fb_y_z = fa_y_x * fb_y_y - fa_y_y * fb_y_x;
       const T fa_y_x_fb_x_z = fa_y_x * fb_x_y - fa_y_y * fb_x_x;
-      const T H6_1 = lambda[0] * H4_1 * H4_1 *
-          (dot_fa_y_fb_x * fa_y_x_fb_y_z - dot_fa_y_fb_y * fa_y_x_fb_x_z);
-      const T H6_2 = T(2) * H6_1 * dot_fa_y_fb_x - H4_3 * fa_y_x_fb_y_z;
-      const T H6_3 = H4_3 * fa_y_x_fb_x_z + T(2) * H6_1 * dot_fa_y_fb_y;
+      const T H6_1 = H4_8 * fa_y_x_fb_y_z - H4_10 * fa_y_x_fb_x_z;
+      const T H6_2 = H6_1 * dot_fa_y_fb_x - H4_2 * fa_y_x_fb_y_z;
+      const T H6_3 = H4_2 * fa_y_x_fb_x_z + H6_1 * dot_fa_y_fb_y;
       const T H6_4 = fb_x_z * H6_2 + fb_y_z * H6_3;
-      const T H6_5 = fb_x_y * H6_2 + fb_y_y * H6_3;
-      const T H6_6 = H6_5 - H5_1;
-      const T H6_7 = fa_y_y * H6_4 - fa_y_z * H6_6;
-      const T H6_1_2 = fb_x_x * H6_2 + fb_y_x * H6_3;
-      const T H6_2_2 = H6_1_2 - H4_2;
-      const T H6_3_2 = fa_y_z * H6_2_2 - fa_y_x * H6_4;
-      const T H6_1_3 = fa_y_x * H6_6 - fa_y_y * H6_2_2;
+      const T H6_5 = fb_x_y * H6_2 - H5_1 + fb_y_y * H6_3;
+      const T H6_6 = fa_y_y * H6_4 - fa_y_z * H6_5;
+      const T H6_1_2 = H4_18 + fb_x_x * H6_2 + fb_y_x * H6_3;
+      const T H6_2_2 = fa_y_z * H6_1_2 - fa_y_x * H6_4;
+      const T H6_1_3 = fa_y_x * H6_5 - fa_y_y * H6_1_2;
       const T H6_1_4 = H5_1_4 + fa_y_y * H6_2;
       const T H6_2_3 = fa_y_y * H6_3 - H5_3_3;
-      const T H6_3_3 = fa_y_z * H6_5 - fb_x_z * H6_1_4 - fb_y_z * H6_2_3;
-      const T H6_1_5 = fa_y_x * H6_2 - H4_2_3;
-      const T H6_2_4 = H4_5_2 + fa_y_x * H6_3;
-      const T H6_3_4 = fb_x_z * H6_1_5 + fb_y_z * H6_2_4 - fa_y_z * H6_1_2;
+      const T H6_3_2 = H4_12 * H6_2 + H4_4 * H6_3 - fb_x_z * H6_1_4 - fb_y_z * H6_2_3;
+      const T H6_1_5 = fa_y_x * H6_2 - H4_1_4;
+      const T H6_2_4 = H4_3_2 + fa_y_x * H6_3;
+      const T H6_3_3 = fb_x_z * H6_1_5 - H4_13 * H6_2 - H4_5 * H6_3 + fb_y_z * H6_2_4;
       const T H6_1_6 = fb_x_x * H6_1_4 + fb_y_x * H6_2_3 - fb_x_y * H6_1_5 - fb_y_y * H6_2_4;
-      H[3][3] = H4_12;
+      H[3][3] = H4_23;
       H[3][4] = H4_2_2;
       H[3][5] = H4_1_3;
-      H[3][9] = H4_11_2;
+      H[3][9] = H4_9_2;
       H[3][10] = H4_1_5;
       H[3][11] = H4_1_6;
-      H[4][3] = H5_8;
+      H[4][3] = H5_7;
       H[4][4] = H5_3_2;
       H[4][5] = H5_1_3;
       H[4][9] = H5_5_2;
       H[4][10] = H5_3_4;
       H[4][11] = H5_1_6;
-      H[5][3] = H6_7;
-      H[5][4] = H6_3_2;
+      H[5][3] = H6_6;
+      H[5][4] = H6_2_2;
       H[5][5] = H6_1_3;
-      H[5][9] = H6_3_3;
-      H[5][10] = H6_3_4;
+      H[5][9] = H6_3_2;
+      H[5][10] = H6_3_3;
       H[5][11] = H6_1_6;
-      H[9][3] = -H4_12;
+      H[9][3] = -H4_23;
       H[9][4] = -H4_2_2;
       H[9][5] = -H4_1_3;
-      H[9][9] = -H4_11_2;
+      H[9][9] = -H4_9_2;
       H[9][10] = -H4_1_5;
       H[9][11] = -H4_1_6;
-      H[10][3] = -H5_8;
+      H[10][3] = -H5_7;
       H[10][4] = -H5_3_2;
       H[10][5] = -H5_1_3;
       H[10][9] = -H5_5_2;
       H[10][10] = -H5_3_4;
       H[10][11] = -H5_1_6;
-      H[11][3] = -H6_7;
-      H[11][4] = -H6_3_2;
+      H[11][3] = -H6_6;
+      H[11][4] = -H6_2_2;
       H[11][5] = -H6_1_3;
-      H[11][9] = -H6_3_3;
-      H[11][10] = -H6_3_4;
+      H[11][9] = -H6_3_2;
+      H[11][10] = -H6_3_3;
       H[11][11] = -H6_1_6;
     }
 
@@ -2133,13 +2147,14 @@ struct universal::bend_a::a_immovable : universal::bend_a {
     J.wb_z = fb_z_x * wb_x_5 - fb_z_y * wb_y_1;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+    const T K11_1 = J.wb_z * T(2);
+    K[0] = mb.Izz * J.wb_z * J.wb_z + J.wb_x *
+        (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_1 * mb.Ixz) + J.wb_y *
+        (mb.Iyy * J.wb_y + K11_1 * mb.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -2263,13 +2278,14 @@ struct universal::bend_a::b_immovable : universal::bend_a {
     J.wa_z = wa_x_3 * fa_x_x_fb_z_z - wa_x_2 * fa_z_x_fb_z_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    const T K11_1 = J.wa_z * T(2);
+    K[0] = ma.Izz * J.wa_z * J.wa_z + J.wa_x *
+        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+        (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -2393,13 +2409,14 @@ struct universal::bend_b::a_immovable : universal::bend_b {
     J.wb_z = wb_x_2 * fa_y_x_fb_y_z - wb_x_3 * fa_y_x_fb_x_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+    const T K11_1 = J.wb_z * T(2);
+    K[0] = mb.Izz * J.wb_z * J.wb_z + J.wb_x *
+        (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_1 * mb.Ixz) + J.wb_y *
+        (mb.Iyy * J.wb_y + K11_1 * mb.Iyz);
   }
 
   // J v: 2 +, 3 *
@@ -2520,13 +2537,14 @@ struct universal::bend_b::b_immovable : universal::bend_b {
     J.wa_z = fa_y_x * wa_x_5 - fa_y_y * wa_y_1;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    const T K11_1 = J.wa_z * T(2);
+    K[0] = ma.Izz * J.wa_z * J.wa_z + J.wa_x *
+        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
+        (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
   }
 
   // J v: 2 +, 3 *

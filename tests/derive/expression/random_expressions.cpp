@@ -160,7 +160,8 @@ double apply(const Operation& op, const std::vector<double>& x) {
 double compute(const Operation& op, const std::vector<double>& x, const Values& inputs) {
   double result = op.kind == OpKind::product ? 1 : 0;
   switch (op.kind) {
-    case OpKind::number: return op.value.value();
+    case OpKind::number:
+    case OpKind::factor: return op.value.value();
     case OpKind::input: return inputs.at(op.input);
     case OpKind::sum:
       for (std::size_t i = 0; i < x.size(); ++i) result += op.coefs[i].value() * x[i];

@@ -1,0 +1,14 @@
+// The gradient of a row: the vector that its entries of J repeat gets a name, as on paper.
+#pragma once
+
+#include "derive/derivation/derivation.hpp"
+
+namespace cdot::derive {
+
+// Names the factors of the velocities in `row.J` that are sums of scaled vectors, as n = c_1 f_1 + c_2 f_2 of a curve
+// or surface, and writes the others by them: -n, and for the levers
+//   c_1 (u × f_1) + c_2 (u × f_2) = u × n.
+// `row.gradients` lists them. The name is n if the joint has one row, else n_<row>; of a coordinate n_<coordinate>.
+void name_gradients(const Joint& joint, ScalarRow& row);
+
+}  // namespace cdot::derive
