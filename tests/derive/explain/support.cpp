@@ -50,6 +50,15 @@ std::vector<std::pair<std::string, std::string>> unusual_specs() {
            "  scalar ratio [1]\n  let d = pb - pa\n  norm(d) <= l\n  ratio * dot(d, f.x) = l\n"
            "  dot(unit(d), n) = 0\n  velocity dot(v(pa) - v(pb), cross(n, f.y)) = 0\n"
            "  coordinate height = local(d, f).z\n"},
+          {"ring",
+           "joint ring spatial\n  \"A point on a torus.\"\n"
+           "  point pa on a\n  point pb on b\n  frame f on b\n  scalar R [m]\n  scalar r [m]\n"
+           "  let s = local(pa - pb, f)\n  (sqrt(s.x^2 + s.y^2) - R)^2 + s.z^2 = r^2\n"},
+          {"curve",
+           "joint curve planar\n  \"A point on an ellipse, and a slope.\"\n"
+           "  point pa on a\n  point pb on b\n  frame f on b\n  scalar p [m]\n"
+           "  let u = pa - pb\n  let s = local(u, f)\n  (s.x / p)^2 + 2 * (s.y / p)^2 = 1\n"
+           "  coordinate height [m] = s.y + s.x^2 / p\n"},
           {"outer",
            "joint outer spatial\n  \"A vector row with numbers that move.\"\n"
            "  point pa on a\n  point pb on b\n  unit n on a\n  let d = pb - pa\n"

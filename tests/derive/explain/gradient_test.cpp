@@ -1,0 +1,86 @@
+// The gradient of a curve or surface has a name: J reads as a person writes it, and every equation on the way is true.
+#include <sstream>
+
+#include "support.hpp"
+
+using namespace cdot::derive;
+
+namespace {
+
+// The lines "n = ..." and "J = ..." of the summary above a kernel, without their notes.
+std::vector<std::string> names_and_J(const Derivation& derivation) {
+  std::vector<std::string> lines;
+  for (const std::vector<Chain>& part : summarise(derivation)) {
+    for (Chain chain : part) {
+      const std::string name = chain.left.name;
+      if (name[0] != 'n' && name[0] != 'J') continue;
+      chain.links[0].rule.clear();
+      std::istringstream text(chain_text(chain, 1000));
+      for (std::string line; std::getline(text, line);) lines.push_back(line);
+    }
+  }
+  return lines;
+}
+
+std::vector<std::string> of_curve(const std::string& body) {
+  return names_and_J(read_text("curve",
+                               "joint curve planar\n  \"A point on a curve.\"\n  point pa on a\n  point pb on b\n"
+                               "  let s = local(pa - pb, b)\n" +
+                                   body));
+}
+
+using Lines = std::vector<std::string>;
+
+}  // namespace
+
+TEST(Gradient, HasANameInThePlane) {
+  const Derivation ellipse =
+      read_text("ellipse",
+                "joint ellipse planar\n  \"A point on an ellipse.\"\n"
+                "  point pa on a\n  point pb on b\n  frame f on b\n  scalar p [m]\n"
+                "  let u = pa - pb\n  let s = local(u, f)\n  (s.x / p)^2 + 2 * (s.y / p)^2 = 1\n");
+  EXPECT_EQ(names_and_J(ellipse), (Lines{"n = 2 (s_x/p^2) f_x - 4 ((u × f_x)/p^2) perp(f_x)",
+                                         "J = [ n' | ra × n | -n' | -((rb + u) × n) ]"}));
+}
+
+TEST(Gradient, HasANameInSpace) {
+  const Derivation bowl = read_text("bowl",
+                                    "joint bowl spatial\n  \"A point in a bowl.\"\n"
+                                    "  point pa on a\n  point pb on b\n  frame f on a\n  scalar k [1/m]\n"
+                                    "  let d = pb - pa\n  let s = local(d, f)\n  s.z = k * (s.x^2 + s.y^2)\n");
+  EXPECT_EQ(names_and_J(bowl),
+            (Lines{"n = f_z - 2 k s_x f_x - 2 k s_y f_y", "J = [ -n' | -((ra + d) × n)' | n' | (rb × n)' ]"}));
+}
+
+// A product with the vector itself leaves one term of its lever: u × (u - h t) = -h (u × t).
+TEST(Gradient, IsCollectedFromALeverOfItsOwn) {
+  const Derivation cylinder = read_text("cylinder",
+                                        "joint cylinder spatial\n  \"A point on a cylinder.\"\n"
+                                        "  point pa on a\n  point pb on b\n  unit t on b\n  scalar r [m]\n"
+                                        "  let u = pa - pb\n  dot(u, u) - dot(t, u)^2 = r^2\n");
+  EXPECT_EQ(names_and_J(cylinder), (Lines{"n = 2 u - 2 (t · u) t", "J = [ n' | (ra × n)' | -n' | -((rb + u) × n)' ]"}));
+}
+
+// A sum in front of an axis may stand with either sign.
+TEST(Gradient, IsCollectedWithEitherSignOfASlope) {
+  EXPECT_EQ(of_curve("  scalar k [1/m]\n  scalar m\n  s.y = k * s.x^2 - m * s.x\n"),
+            (Lines{"n = (m - 2 k s_x) axis_b + perp(axis_b)", "J = [ n' | ra × n | -n' | -((pa - x_b) × n) ]"}));
+}
+
+TEST(Gradient, NeverTakesANameOfTheSpec) {
+  EXPECT_EQ(of_curve("  scalar n [1/m]\n  s.y = n * s.x^2\n")[0].substr(0, 6), "n_1 = ");
+  EXPECT_EQ(of_curve("  scalar n_y [1/m]\n  s.y = n_y * s.x^2\n")[0].substr(0, 6), "n_1 = ");
+  EXPECT_EQ(of_curve("  scalar k [1/m]\n  let n = k * s.x\n  s.y = n * s.x\n")[0].substr(0, 4), "n = ") << "of the let";
+}
+
+TEST(Gradient, IsNamedAfterItsRow) {
+  const Lines two = of_curve("  scalar k [1/m]\n  track: s.y = k * s.x^2\n  k * s.y^2 = s.x\n");
+  ASSERT_EQ(two.size(), 4u);
+  EXPECT_EQ(two[0].substr(0, 10), "n_track = ");
+  EXPECT_EQ(two[1].substr(0, 6), "n_2 = ");
+}
+
+TEST(Gradient, LeavesAPlainDirectionAlone) {
+  EXPECT_EQ(of_curve("  s.y = 0\n"),
+            Lines{"J = [ perp(axis_b)' | axis_b · ra | -perp(axis_b)' | -axis_b · (pa - x_b) ]"});
+}
