@@ -77,11 +77,12 @@ std::string free_name(const Joint& joint, const std::string& wish) {
   return name;
 }
 
-// n, n_track, n_1 of an unnamed row C1; with the body where a row has several.
+// n, n_track, n_1 of an unnamed row C1, grad_slide of a coordinate; with the body where a row has several.
 std::string wished_name(const Joint& joint, const ScalarRow& row, std::size_t body, bool several) {
   const bool unnamed = row.name.size() > 1 && row.name[0] == 'C' && row.name[1] >= '0' && row.name[1] <= '9';
   const bool alone = row.row != nullptr && joint.rows.size() == 1 && row.component < 0;
-  std::string name = alone ? "n" : "n_" + (unnamed ? row.name.substr(1) : row.name);
+  const std::string letter = row.row == nullptr ? "grad_" : "n_";  // n_x is a component of n
+  std::string name = alone ? "n" : letter + (unnamed ? row.name.substr(1) : row.name);
   return several ? name + "_" + joint.bodies[body] : name;
 }
 
@@ -136,8 +137,7 @@ class Gradients {
     if (!is_gradient(v) || body == carrier_) return;
     const Expr negative = -v;
     for (const auto& [known, of] : found_) {
-      if (known == v) return;
-      if (known == negative) return;
+      if (known == v || known == negative) return;
     }
     const bool opposite = !negative->name.empty() || (v->name.empty() && opens_with_minus(v));
     if (!negative->name.empty()) named_.emplace(&*v, -negative);

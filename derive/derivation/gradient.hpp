@@ -8,7 +8,7 @@ namespace cdot::derive {
 // Names the factors of the velocities in `row.J` that are sums of scaled vectors, as n = c_1 f_1 + c_2 f_2 of a curve
 // or surface, and writes the others by them: -n, and for the levers
 //   c_1 (u × f_1) + c_2 (u × f_2) = u × n.
-// `row.gradients` lists them. The name is n if the joint has one row, else n_<row>; of a coordinate n_<coordinate>.
+// `row.gradients` lists them. The name is n if the joint has one row, else n_<row>; of a coordinate grad_<coordinate>.
 void name_gradients(const Joint& joint, ScalarRow& row);
 
 }  // namespace cdot::derive

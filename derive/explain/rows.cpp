@@ -66,7 +66,9 @@ void isolate_scalar(Lecture& lecture, const Part& part, const Statement& s, Step
     step.show({written, {{result, term.identity}}});
   }
   for (const Expr n : row.gradients) {
-    step.show({leaf(n), {{lecture.notation.definition(n), "the gradient, which several terms share"}}});
+    const char* rule =
+        at_velocity_level ? "the vector that several terms share" : "the gradient of C, which several terms share";
+    step.show({leaf(n), {{lecture.notation.definition(n), rule}}});
   }
   for (std::size_t b = 0; b < row.J.size(); ++b) {
     collect(lecture, terms, row.J[b].v, static_cast<int>(b), false, step);

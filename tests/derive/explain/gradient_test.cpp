@@ -78,6 +78,9 @@ TEST(Gradient, IsNamedAfterItsRow) {
   ASSERT_EQ(two.size(), 4u);
   EXPECT_EQ(two[0].substr(0, 10), "n_track = ");
   EXPECT_EQ(two[1].substr(0, 6), "n_2 = ");
+  const Lines coordinate = of_curve("  scalar k [1/m]\n  s.y = k * s.x^2\n  coordinate x [m] = s.x + k * s.y^2\n");
+  ASSERT_EQ(coordinate.size(), 4u);
+  EXPECT_EQ(coordinate[2].substr(0, 9), "grad_x = ") << "n_x is a component of n";
 }
 
 TEST(Gradient, LeavesAPlainDirectionAlone) {
