@@ -7,13 +7,13 @@ using namespace cdot::derive;
 
 namespace {
 
-// The lines "n = ..." and "J = ..." of the summary above a kernel, without their notes.
+// The lines "n = ...", "grad_x = ..." and "J = ..." of the summary above a kernel, without their notes.
 std::vector<std::string> names_and_J(const Derivation& derivation) {
   std::vector<std::string> lines;
   for (const std::vector<Chain>& part : summarise(derivation)) {
     for (Chain chain : part) {
       const std::string name = chain.left.name;
-      if (name[0] != 'n' && name[0] != 'J') continue;
+      if (name[0] != 'n' && name[0] != 'J' && !name.starts_with("grad")) continue;
       chain.links[0].rule.clear();
       std::istringstream text(chain_text(chain, 1000));
       for (std::string line; std::getline(text, line);) lines.push_back(line);
