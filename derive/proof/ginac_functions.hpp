@@ -14,6 +14,11 @@ using GiNaC::ex_to;
 using GiNaC::is_a;
 using GiNaC::numeric;
 
+// Equality for hash tables. Unlike is_equal(), compare() makes equal parts one, so each pair is compared once.
+struct SameExpression {
+  bool operator()(const ex& a, const ex& b) const { return a.compare(b) == 0; }
+};
+
 // For functions that GiNaC has; the table expresses all others by them (Function::by_others).
 ex ginac_function(Fn fn, std::span<const ex> args);
 // The function that e is a call of, if it is one.

@@ -41,7 +41,7 @@ class PointValues {
   ModularPoint point_;
   Roots roots_;
   bool holds_for_reals_ = true;
-  std::unordered_map<ex, Value> values_;
+  std::unordered_map<ex, Value, std::hash<ex>, SameExpression> values_;
 };
 
 }  // namespace cdot::derive

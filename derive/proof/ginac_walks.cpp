@@ -82,7 +82,7 @@ class Rebuilt : public GiNaC::map_function {
   }
 
   const GiNaC::exmap& symbols_;
-  std::unordered_map<ex, ex> done_;
+  std::unordered_map<ex, ex, std::hash<ex>, SameExpression> done_;
 };
 
 class InDecimals final : public Rebuilt {
@@ -127,7 +127,7 @@ class Expansion {
     return bound;
   }
 
-  std::unordered_map<ex, Bound> done_;
+  std::unordered_map<ex, Bound, std::hash<ex>, SameExpression> done_;
 };
 
 }  // namespace

@@ -22,7 +22,7 @@ class Slope {
   ex of_function(const ex& e);
 
   ex symbol_;
-  std::unordered_map<ex, ex> done_;
+  std::unordered_map<ex, ex, std::hash<ex>, SameExpression> done_;
 };
 
 // e with other expressions in place of symbols.

@@ -55,6 +55,18 @@ TEST(Budget, TheSameLawsAreProvedWhateverCameBefore) {
   std::printf("%s", first.c_str());
 }
 
+// Each name occurs twice in the next one: written out, C has 2^16 terms, and its slopes more.
+TEST(Budget, NestedNamesAreVisitedOnce) {
+  std::string lets = "  let u0 = q\n";
+  for (int i = 1; i <= 16; ++i) {
+    const std::string before = "u" + std::to_string(i - 1);
+    lets += "  let u" + std::to_string(i) + " = sin(" + before + ")*cos(" + before + ")\n";
+  }
+  const Joint joint = joint_with(lets + "  u16 = 0\n");
+  for (const Law& law : prove(joint, derive_rows(joint)).laws)
+    EXPECT_FALSE(is_broken(law)) << name_of(law.id) << ": " << law.text;
+}
+
 TEST(Budget, ABrokenDerivationIsFoundOut) {
   const Joint joint = joint_with(short_row);
   Block block = derive_rows(joint);
