@@ -14,7 +14,6 @@
 #include "runtime/step/collocation.hpp"
 #include "runtime/step/events.hpp"
 #include "runtime/step/rank_loss.hpp"
-#include "runtime/step/weighted_sum.hpp"
 
 namespace cdot {
 namespace {
@@ -36,6 +35,43 @@ void read_rates(WorldData<S>& world, Island<S>& island, int stage, typename S::S
   auto* const power = read_rates(world, island, stage);
   if (!island.flow.work.empty()) find_power(world, island, time, power);
 }
+
+// sum_j weights_j rows_j of rows of T, in A. Registers hold some neighbours at a time, each summed in the order of j.
+template <class A, class T>
+class WeightedSum {
+ public:
+  void add(A weight, const T* row) {
+    if (weight == 0) return;
+    weights_[count_] = weight;
+    rows_[count_++] = row;
+  }
+  bool empty() const { return count_ == 0; }
+
+  // f(k, sum) for k = 0 .. n - 1
+  template <class F>
+  void each(size_t n, F f) const {
+    size_t k = 0;
+    for (; k + lanes <= n; k += lanes) neighbours<lanes>(k, f);
+    for (; k < n; ++k) neighbours<1>(k, f);
+  }
+
+ private:
+  static constexpr size_t lanes = 4;
+
+  template <size_t count, class F>
+  void neighbours(size_t k, F& f) const {
+    A sums[count] = {};
+    for (int j = 0; j < count_; ++j) {
+      const T* const row = rows_[j] + k;
+      for (size_t i = 0; i < count; ++i) sums[i] += weights_[j] * A(row[i]);
+    }
+    for (size_t i = 0; i < count; ++i) f(k + i, sums[i]);
+  }
+
+  A weights_[most_stages];
+  const T* rows_[most_stages];
+  int count_ = 0;
+};
 
 // now = start + h sum_j weights_j rates_j
 template <class S>
