@@ -100,7 +100,7 @@ std::string text_of(const BrokenInput& c) {
 BrokenInput parse_case(std::string name, const std::vector<std::string>& lines) {
   const bool escapes = name.ends_with(escaped_mark);
   if (escapes) name.erase(name.size() - escaped_mark.size());
-  BrokenInput c{std::move(name), "", "", ""};
+  BrokenInput c{std::move(name), "", ""};
   std::string* part = &c.input;
   for (const std::string& line : lines) {
     if (line == messages_mark + "\n" && part == &c.input) part = &c.messages;

@@ -30,8 +30,9 @@
 namespace cdot::test {
 
 struct BrokenInput {
-  std::string name;                    // as that of a file: norm_of_body.joint
-  std::string input, messages, edits;  // edits: the lines after `--- mended`
+  std::string name;  // as that of a file: norm_of_body.joint
+  std::string input, messages;
+  std::string edits{};  // the lines after `--- mended`
 
   friend void PrintTo(const BrokenInput& c, std::ostream* out) { *out << c.name; }  // for googletest
 };

@@ -76,7 +76,7 @@ TEST_P(Broken, IsMendedByItsFixes) {
   if (is_hand(broken) || fixes.empty()) return;
   ASSERT_FALSE(broken.edits.empty()) << "write `--- mended` and the lines that follow the fixes";
   const std::string mended = test::mended(broken);
-  EXPECT_EQ(errors_in(messages_about({broken.name, mended, "", ""})), "") << mended;
+  EXPECT_EQ(errors_in(messages_about({broken.name, mended, ""})), "") << mended;
   for (const std::string& fix : fixes)
     for (const std::string& word : offered_by(fix)) EXPECT_NE(mended.find(word), mended.npos) << fix << "\n" << mended;
 }
