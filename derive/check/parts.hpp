@@ -18,6 +18,7 @@ Subject subject_of(const Derivation& derivation);
 
 // The rows of J at a sample.
 std::vector<std::vector<double>> jacobian_at(const Block& block, const Sample& sample);
+double length(const std::vector<double>& row);
 
 // The place of a coordinate in the spec.
 Span place_of(const Block& coordinate, const Joint& joint);

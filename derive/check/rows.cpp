@@ -12,12 +12,6 @@ namespace {
 
 constexpr double negligible = 1e-5;  // of a row's usual length; projection reaches about 1e-7
 
-double length(const std::vector<double>& row) {
-  double total = 0;
-  for (const double x : row) total += x * x;
-  return std::sqrt(total);
-}
-
 // The u of |u| = 0 or u . u = 0.
 Expr vector_that_vanishes(Expr C) {
   const Expr e = split_coefficient(C).e;
@@ -160,6 +154,12 @@ void find_constrained_coordinates(const Subject& subject, Findings& findings) {
 }
 
 }  // namespace
+
+double length(const std::vector<double>& row) {
+  double total = 0;
+  for (const double x : row) total += x * x;
+  return std::sqrt(total);
+}
 
 void check_rows(const Subject& subject, Findings& findings) {
   find_unreachable(subject, findings);

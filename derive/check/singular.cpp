@@ -17,12 +17,6 @@ constexpr double dependent = 1e-5;  // share of a row that is no combination of 
 constexpr double guarded = 1e-9;    // a divisor or a length below counts as 0, for which kernels have guards
 constexpr std::size_t most_conditions = 2;
 
-double length(const std::vector<double>& row) {
-  double square = 0;
-  for (const double x : row) square += x * x;
-  return std::sqrt(square);
-}
-
 class Search {
  public:
   Search(const Subject& subject, std::vector<Freedom> freedoms)
