@@ -10,7 +10,6 @@ ex Algebra::leaf(const std::string& name, const ex& rate) {
   const auto found = leaves_.find(name);
   if (found != leaves_.end()) return found->second.symbol;
   const ex symbol = leaves_.emplace(name, Leaf{fresh_symbol(name), rate}).first->second.symbol;
-  in_order_.push_back(symbol);
   return symbol;
 }
 

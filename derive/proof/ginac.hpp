@@ -2,7 +2,6 @@
 // from run to run.
 #pragma once
 
-#include <deque>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -95,9 +94,7 @@ class Algebra final : public Arithmetic<ex> {
   ex turned(bool cosine, const ex& angle);
   ex symbol_for(const ex& compound);
   std::string difference_at(const ex& e, std::uint64_t seed);
-  struct Point;
-  void complete(Point& point) const;
-  Nullity nullity_of(const ex& e);
+  Nullity nullity_of(const ex& e) const;
 
   // Budgets of one test and of all tests together, in factors of multiplied terms. A test that exceeds its budget
   // halves that of the next one, which is likely to be as expensive.
@@ -133,17 +130,6 @@ class Algebra final : public Arithmetic<ex> {
   GiNaC::exmap change_;                                  // of variables, before an expression is tested
   std::vector<std::pair<ex, ex>> meanings_;              // of symbols without a name, as they came up
   std::int64_t allowance_ = most_work, left_for_test_ = most_work, left_in_all_ = most_work_in_all;
-  // Random points at which some test was defined, with a value for all leaves up to these numbers of them. What tests
-  // share is evaluated once at each point.
-  struct Point {
-    PointValues values;
-    std::size_t leaves = 0, units = 0;
-  };
-  std::deque<Point> points_;
-  std::uint64_t drawn_ = 0;  // points so far
-  static constexpr std::size_t most_lost_values = 4000000;
-  std::size_t lost_ = 0;                               // values at points where a test was undefined
-  std::vector<ex> in_order_;                           // the symbols of leaves_, as they came up
   PointValues prints_{1, PointValues::Roots::of_all};  // of every symbol, by when it came up
   Evaluation<ex> evaluation_;
 };

@@ -253,34 +253,14 @@ std::string Algebra::witness(const ex& e) {
   return witness;
 }
 
-// Values for the leaves that came up since the last test.
-void Algebra::complete(Point& point) const {
-  for (; point.leaves < in_order_.size(); ++point.leaves) point.values.put(in_order_[point.leaves]);
-  for (; point.units < units_.size(); ++point.units) point.values.put_direction(units_[point.units]);
-}
-
-// Points where e is undefined are tried no more, since e shares its roots with most other tests. With n roots, one
-// point in 2^n is defined: a bound on the values that are lost so ends the search.
-Nullity Algebra::nullity_of(const ex& e) {
-  int defined = 0;
-  for (std::size_t k = 0; defined < exact_points; ++k) {
-    const bool fresh = k == points_.size();
-    if (fresh && lost_ > most_lost_values) return Nullity::unknown;
-    if (fresh) points_.push_back({PointValues(++drawn_, PointValues::Roots::of_squares)});
-    Point& point = points_[k];
-    complete(point);
-    try {
-      const Modular value = point.values.of(e);
-      if (!value.is_zero()) return point.values.holds_for_reals() ? Nullity::differs : Nullity::unknown;
-      ++defined;
-    } catch (const UndefinedHere&) {
-      if (!fresh) continue;
-      lost_ += point.values.values();
-      points_.pop_back();
-      --k;
-    }
-  }
-  return Nullity::zero;
+Nullity Algebra::nullity_of(const ex& e) const {
+  return nullity([&](std::uint64_t seed) {
+    PointValues values(seed, PointValues::Roots::of_squares);
+    for (const auto& [name, leaf] : leaves_) values.put(leaf.symbol);
+    for (const std::vector<ex>& u : units_) values.put_direction(u);
+    const Modular value = values.of(e);
+    return std::pair(value, values.holds_for_reals());
+  });
 }
 
 Algebra::Zero Algebra::is_zero(const ex& e) {
