@@ -16,7 +16,7 @@ bool of_world(Expr e) {
 
 class Candidates {
  public:
-  explicit Candidates(const Subject& subject) : joint_(subject.joint) {
+  explicit Candidates(const Subject& subject) : joint_(subject.joint), rows_(subject.block.rows) {
     std::vector<Expr> entries;
     for (const ScalarRow& row : subject.block.rows) {
       for (const JacobianEntry& entry : row.J) entries.insert(entries.end(), {entry.w, entry.v});
@@ -37,7 +37,7 @@ class Candidates {
         add(dot(vectors_[k], vectors_[i]));
       }
     }
-    std::ranges::stable_sort(all_, {}, [](const Candidate& c) { return c.name.size(); });
+    std::ranges::stable_sort(all_, {}, [&](const Candidate& c) { return std::pair(by_gradients(c.e), c.name.size()); });
     if (all_.size() > most_candidates) all_.resize(most_candidates);
   }
 
@@ -60,6 +60,13 @@ class Candidates {
     if (name.size() <= longest_name && std::ranges::none_of(all_, same)) all_.push_back({e, name});
   }
 
+  // No spec has the names of gradients, so they come last.
+  bool by_gradients(Expr e) const {
+    const std::vector<Expr> parts = topological(std::span(&e, 1));
+    return std::ranges::any_of(
+        rows_, [&](const ScalarRow& row) { return std::ranges::find_first_of(parts, row.gradients) != parts.end(); });
+  }
+
   // An axis brings the other axes of its frame, which are orthogonal to it.
   void add_vector(Expr e) {
     const Pool::Axis axis = joint_.pool->axis_of(e);
@@ -71,6 +78,7 @@ class Candidates {
   }
 
   const Joint& joint_;
+  const std::vector<ScalarRow>& rows_;
   std::vector<Expr> vectors_;
   std::vector<Candidate> all_;
 };

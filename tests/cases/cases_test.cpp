@@ -61,7 +61,7 @@ TEST(Cases, AreWrittenSuchThatTheyAreReadAgain) {
 TEST(Cases, MistakesAreNamedWithTheirLine) {
   EXPECT_EQ(mistake_in("--- case a\n--- case a\n"), "theme.cases:2: a second case of this name");
   EXPECT_EQ(mistake_in("--- case a\n--- message\n"),
-            "theme.cases:1: neither `--- case NAME` nor `--- messages`: --- message\n");
+            "theme.cases:1: `--- case NAME`, `--- messages` or `--- mended` belongs here: --- message\n");
   EXPECT_EQ(mistake_in("--- case a escaped\n\\n\n"),
             "theme.cases:1: an escape is `\\xNN`, `\\\\` or `\\` at the end of a line");
   EXPECT_EQ(mistake_in("--- case a escaped\n\\xg0\n"),
