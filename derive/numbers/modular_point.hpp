@@ -36,7 +36,6 @@ class ModularPoint {
   // True while every value was a quotient of polynomials in the point's coordinates. Otherwise a nonzero value proves
   // nothing about the reals, where a sum of squares is positive, log(x y) = log x + log y, and so on.
   bool holds_for_reals() const { return holds_for_reals_; }
-  void assume_reals() { holds_for_reals_ = true; }        // before values that are judged by themselves
   Modular any_for(int kind, Modular x, Modular y) const;  // the same for the same arguments
 
  private:

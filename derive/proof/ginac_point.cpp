@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdlib>
-#include <utility>
 
 namespace cdot::derive {
 
@@ -29,55 +28,33 @@ void PointValues::put_direction(const std::vector<ex>& unit_vector) {
     square = square + t[k] * t[k];
   }
   const Modular inv = point_.inverse(Modular(1) + square);
-  values_[unit_vector[0]] = {(Modular(1) - square) * inv};
-  for (std::size_t k = 1; k < t.size(); ++k) values_[unit_vector[k]] = {(t[k] + t[k]) * inv};
+  values_[unit_vector[0]] = (Modular(1) - square) * inv;
+  for (std::size_t k = 1; k < t.size(); ++k) values_[unit_vector[k]] = (t[k] + t[k]) * inv;
 }
 
 Modular PointValues::of(const ex& e) {
-  holds_for_reals_ = true;
-  return part(e);
-}
-
-Modular PointValues::part(const ex& e) {
   if (is_a<numeric>(e)) return modular(ex_to<numeric>(e));
   if (is_a<GiNaC::constant>(e)) return point_.pi();
-  if (const auto found = values_.find(e); found != values_.end()) {
-    if (!found->second.defined) throw UndefinedHere{};
-    holds_for_reals_ = holds_for_reals_ && found->second.holds_for_reals;
-    return found->second.value;
-  }
-  const bool before = std::exchange(holds_for_reals_, true);
-  try {
-    const Modular value = compound(e);
-    values_.emplace(e, Value{value, holds_for_reals_});
-    holds_for_reals_ = holds_for_reals_ && before;
-    return value;
-  } catch (const UndefinedHere&) {
-    values_.emplace(e, Value{{}, false, false});
-    throw;
-  }
-}
-
-Modular PointValues::judged(Fn fn, std::span<const Modular> args) {
-  point_.assume_reals();
-  const Modular value = point_.call(fn, args);
-  holds_for_reals_ = holds_for_reals_ && point_.holds_for_reals();
+  const auto found = values_.find(e);
+  if (found != values_.end()) return found->second;
+  const Modular value = compound(e);
+  values_.emplace(e, value);
   return value;
 }
 
 Modular PointValues::compound(const ex& e) {
   if (is_a<GiNaC::add>(e)) {
     Modular total(0);
-    for (const ex& term : e) total = total + part(term);
+    for (const ex& term : e) total = total + of(term);
     return total;
   }
   if (is_a<GiNaC::mul>(e)) {
     Modular total(1);
-    for (const ex& factor : e) total = total * part(factor);
+    for (const ex& factor : e) total = total * of(factor);
     return total;
   }
   if (is_a<GiNaC::power>(e) && is_a<numeric>(e.op(1))) {
-    return power(part(e.op(0)), ex_to<numeric>(e.op(1)));
+    return power(of(e.op(0)), ex_to<numeric>(e.op(1)));
   }
   return function(e);
 }
@@ -86,7 +63,8 @@ Modular PointValues::power(Modular base, const numeric& exponent) {
   const bool whole = exponent.is_integer();
   const numeric times = whole ? exponent : 2 * exponent;
   if (!times.is_integer() || abs(times) > 1000000) throw UndefinedHere{};
-  if (!whole) base = roots_ == Roots::of_all ? point_.any_for(5, base, base) : judged(Fn::sqrt, std::span(&base, 1));
+  if (!whole)
+    base = roots_ == Roots::of_all ? point_.any_for(5, base, base) : point_.call(Fn::sqrt, std::span(&base, 1));
   if (times.is_negative()) base = point_.inverse(base);
   return pow(base, static_cast<std::uint64_t>(std::abs(times.to_int())));
 }
@@ -95,8 +73,8 @@ Modular PointValues::function(const ex& e) {
   const std::optional<Fn> fn = function_in(e);
   if (!fn) throw UndefinedHere{};
   std::vector<Modular> args;
-  for (const ex& arg : e) args.push_back(part(arg));
-  return judged(*fn, args);
+  for (const ex& arg : e) args.push_back(of(arg));
+  return point_.call(*fn, args);
 }
 
 }  // namespace cdot::derive
