@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "derive/check/parts.hpp"
-#include "derive/language/elaborate.hpp"
 #include "derive/proof/words.hpp"
 
 namespace cdot::derive {

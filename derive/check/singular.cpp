@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "derive/check/mass.hpp"
-#include "derive/language/elaborate.hpp"
 #include "derive/numbers/newton.hpp"
 #include "derive/proof/words.hpp"
 

@@ -165,6 +165,11 @@ std::vector<Expr> leaves_of(std::span<const Expr> expressions) {
   return leaves;
 }
 
+bool depends_on_bodies(Expr e) {
+  const std::vector<Expr> parts = topological(std::span<const Expr>(&e, 1));
+  return std::any_of(parts.begin(), parts.end(), [](Expr p) { return p->kind == Kind::symbol && p->body >= 0; });
+}
+
 bool depends_on_velocity(Expr e) {
   return std::ranges::any_of(leaves_of(std::span(&e, 1)),
                              [](Expr leaf) { return leaf->role == Role::velocity || leaf->role == Role::spin; });

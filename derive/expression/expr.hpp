@@ -195,6 +195,7 @@ std::vector<Expr> topological(std::span<const Expr> roots);
 // Every leaf of them, in the order of their names.
 std::vector<Expr> leaves_of(std::span<const Expr> expressions);
 bool depends_on_velocity(Expr e);
+bool depends_on_bodies(Expr e);
 
 // Infix text in the spec language's notation; a named node prints as its name unless it is e itself.
 std::string text(Expr e);

@@ -20,11 +20,6 @@ bool depends_on_role(Expr e, Role role) {
   return std::any_of(parts.begin(), parts.end(), [&](Expr p) { return p->kind == Kind::symbol && p->role == role; });
 }
 
-bool depends_on_bodies(Expr e) {
-  const std::vector<Expr> parts = topological(std::span<const Expr>(&e, 1));
-  return std::any_of(parts.begin(), parts.end(), [](Expr p) { return p->kind == Kind::symbol && p->body >= 0; });
-}
-
 void parse_source(Source& source) {
   source.tokens = lex(*source.file, false, source.diagnostics);
   if (!source.tokens.readable) return;

@@ -136,7 +136,6 @@ class SourceNames final : public Scope {
 };
 
 bool depends_on_role(Expr e, Role role);
-bool depends_on_bodies(Expr e);
 
 // Lexes and parses; errors go into the source's diagnostics.
 void parse_source(Source& source);
