@@ -107,6 +107,12 @@ TEST(Check, AbsoluteAnglesDoNotConserveMomentum) {
   EXPECT_TRUE(mentions(said, "angle(a) and angle(b)")) << said;
 }
 
+TEST(Check, ABodyInNoRowIsAWarning) {
+  std::string said;
+  EXPECT_FALSE(checked("  pa = pb\n  coordinate gap = norm(pa - x(c))\n", &said).clean());
+  EXPECT_TRUE(mentions(said, "warning: the velocity of c is in no row: the joint does not act on it")) << said;
+}
+
 // A quantity of the world excuses its own row only.
 TEST(Check, MomentumIsTestedRowByRow) {
   std::string said;

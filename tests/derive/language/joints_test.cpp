@@ -14,8 +14,8 @@ const Library& parts() {
   return library;
 }
 
-ReadResult read_body(const std::string& body, const Anchors& anchors = {}) {
-  const auto file = std::make_shared<SourceFile>("j.joint", "joint j planar\n" + body);
+ReadResult read_body(const std::string& body, const Anchors& anchors = {}, const std::string& space = "planar") {
+  const auto file = std::make_shared<SourceFile>("j.joint", "joint j " + space + "\n" + body);
   ReadResult r = read_anchored(read_joint(file, parts()), anchors);
   EXPECT_TRUE(r.joint) << render(*r.file, r.diagnostics);
   return r;
@@ -91,10 +91,21 @@ TEST(Joints, TellEqualitiesFromInequalitiesAndVelocities) {
   EXPECT_EQ(rows[1].name, "far");
   EXPECT_EQ(rows[1].kind, RowKind::inequality);
   EXPECT_EQ(rows[1].C, -rows[2].C);
+  const auto& p = r.joint->parameters;
+  EXPECT_EQ(rows[1].C, p[3].value - norm(p[0].value - p[1].value));
   EXPECT_EQ(rows[2].name, "C3");
   EXPECT_EQ(rows[3].kind, RowKind::velocity);
   EXPECT_EQ(rows[3].text, "velocity dot(t, v(pa) - v(pb)) = 0");
   EXPECT_EQ(text(rows[3].unit), "m/s");
+}
+
+// cross(f.x, n) = 0 leaves f.y . n = 0 and f.z . n = 0.
+TEST(Joints, KeepTwoRowsOfACrossProduct) {
+  const ReadResult r = read_body(" frame f on a\n unit n on b\n lock: cross(f.x, n) = 0 keep 2\n", {}, "spatial");
+  ASSERT_EQ(r.joint->rows.size(), 2u);
+  const auto& p = r.joint->parameters;
+  EXPECT_EQ(r.joint->rows[0].C, dot(p[0].axes[1], p[1].value));
+  EXPECT_EQ(r.joint->rows[1].C, dot(p[0].axes[2], p[1].value));
 }
 
 TEST(Joints, IncludeOthersOnOtherBodiesAndUnderPrefixes) {
