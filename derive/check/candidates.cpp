@@ -39,6 +39,7 @@ class Candidates {
     }
     std::ranges::stable_sort(all_, {}, [&](const Candidate& c) { return std::pair(by_gradients(c.e), c.name.size()); });
     if (all_.size() > most_candidates) all_.resize(most_candidates);
+    for (Candidate& candidate : all_) candidate.explained = gradients_in(candidate.e);
   }
 
   std::vector<Candidate> all() { return std::move(all_); }
@@ -65,6 +66,19 @@ class Candidates {
     const std::vector<Expr> parts = topological(std::span(&e, 1));
     return std::ranges::any_of(
         rows_, [&](const ScalarRow& row) { return std::ranges::find_first_of(parts, row.gradients) != parts.end(); });
+  }
+
+  std::string gradients_in(Expr e) const {
+    std::string words;
+    for (const ScalarRow& row : rows_)
+      for (const Expr n : row.gradients)
+        if (shows(e, n)) words += (words.empty() ? "" : ", ") + n->name + " the gradient of " + row.name;
+    return words.empty() ? "" : " (" + words + ")";
+  }
+
+  // True if the text of e contains this part by its name.
+  static bool shows(Expr e, Expr part) {
+    return e == part || (e->name.empty() && std::ranges::any_of(e->args, [&](Expr arg) { return shows(arg, part); }));
   }
 
   // An axis brings the other axes of its frame, which are orthogonal to it.

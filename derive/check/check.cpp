@@ -41,7 +41,7 @@ bool CheckReport::clean() const {
   return std::all_of(findings.begin(), findings.end(), [](const Finding& f) { return f.level == Level::note; });
 }
 
-CheckReport check(const ReadResult& read) {
+CheckReport check(const ReadResult& read, Draw draw) {
   CheckReport report;
   take_over(read.diagnostics, report.findings);
   report.readable = read.joint.has_value();
@@ -55,7 +55,7 @@ CheckReport check(const ReadResult& read) {
     check_rows(subject, report.findings);
     check_undefined(subject, report.findings);
     check_defaults(subject, report.findings);
-    check_mass(subject, report.findings);
+    check_mass(subject, report.findings, draw == Draw::yes ? &report.poses : nullptr);
   } catch (const NotLinear& e) {
     report.findings.add(Level::error, "linear", joint.rows.front().where, e.what(),
                         "a velocity row is a sum of velocities times what does not contain them");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "derive/language/read.hpp"
+#include "derive/numbers/numeric.hpp"
 #include "derive/proof/prove.hpp"
 
 namespace cdot::derive {
@@ -30,15 +31,28 @@ struct Findings : std::vector<Finding> {
   }
 };
 
+struct PoseToDraw {
+  bool singular = false;
+  std::string words;  // a sentence without its full stop
+  Sample pose;
+};
+
 struct CheckReport {
   bool readable = true;
-  Findings findings;           // in the order of the text; errors first where they stand at one place
-  std::vector<Proved> proofs;  // of the rows and of each coordinate
+  Findings findings;              // in the order of the text; errors first where they stand at one place
+  std::vector<Proved> proofs;     // of the rows and of each coordinate
+  std::vector<PoseToDraw> poses;  // if they are asked for: a regular one, then one for each way to be singular
 
   bool clean() const;  // nothing but notes
 };
 
-CheckReport check(const ReadResult& read);
+enum class Draw { no, yes };
+CheckReport check(const ReadResult& read, Draw draw = Draw::no);
+
+// The poses of a report as pictures with captions, or the sentence why there are none: a part of a page.
+std::string pictures_html(const ReadResult& read, const CheckReport& report);
+// One page of these parts.
+std::string pictures_page(const std::string& parts);
 
 std::string_view name_of(Level level);
 std::string render(const SourceFile& file, const Finding& finding);

@@ -52,6 +52,7 @@ struct Freedom {
 struct Candidate {
   Expr e;
   std::string name;
+  std::string explained{};  // " (n the gradient of C1)", of gradients in the name: no spec has them
 };
 // Parameters, entries of J, vectors that J is made of and their products: the shortest names first.
 std::vector<Candidate> candidates_for_zero(const Subject& subject);
@@ -59,11 +60,14 @@ std::vector<Candidate> candidates_for_zero(const Subject& subject);
 // The poses with C = 0 at which K is singular.
 struct Singular {
   enum class Where { nowhere, everywhere, at_zeros, other_branch, somewhere } where = Where::nowhere;
-  std::vector<std::string> zeros;  // K is singular where one of these is 0
+  std::vector<std::string> zeros;  // K is singular under each of these conditions: "u = 0"
   bool by_parameters = false;      // no pose of the bodies alone was found there: parameters had to change
   bool of_poses = false;           // at least one of them depends on the pose
+  std::vector<Sample> poses{};     // if they are asked for: one for each zero, else one
 };
-std::vector<Singular> singular_poses(const Subject& subject, const std::vector<Freedom>& freedoms);
+// With `drawn`, a regular pose is added to it, and the singular ones have poses near that.
+std::vector<Singular> singular_poses(const Subject& subject, const std::vector<Freedom>& freedoms,
+                                     std::vector<PoseToDraw>* drawn = nullptr);
 // Vectors without a direction whose guards in the kernel leave K singular, whatever C is.
 std::vector<std::string> guards_that_make_singular(const Subject& subject, const Freedom& everything);
 

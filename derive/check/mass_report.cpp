@@ -28,8 +28,17 @@ std::string text_of(const Singular& singular) {
     case Singular::Where::at_zeros: break;
   }
   std::string text = "K is singular where ";
-  for (const std::string& zero : singular.zeros) text += (&zero == &singular.zeros[0] ? "" : " or ") + zero + " = 0";
+  for (const std::string& zero : singular.zeros) text += (&zero == &singular.zeros[0] ? "" : " or ") + zero;
   return text + (singular.by_parameters && singular.of_poses ? ", which some parameters allow" : "");
+}
+
+// Its poses, each with the words for its own zero.
+void draw(const Singular& singular, const std::string& condition, std::vector<PoseToDraw>& poses) {
+  for (std::size_t i = 0; i < singular.poses.size(); ++i) {
+    Singular one = singular;
+    if (!one.zeros.empty()) one.zeros = {singular.zeros[i]};
+    poses.push_back({true, condition + text_of(one), singular.poses[i]});
+  }
 }
 
 Way way_of(const Movement& movement, const Joint& joint) {
@@ -56,14 +65,14 @@ std::vector<Way> least_ways(const std::vector<Movement>& sure, const Joint& join
 
 }  // namespace
 
-void check_mass(const Subject& subject, Findings& findings) {
+void check_mass(const Subject& subject, Findings& findings, std::vector<PoseToDraw>* poses) {
   const auto is_error = [](const Finding& f) { return f.level == Level::error; };
   if (subject.block.rows.empty() || subject.on_constraint.empty() || std::ranges::any_of(findings, is_error)) return;
   const auto add = [&](std::string message) {
     findings.add(Level::note, "singular", subject.joint.rows.front().where, std::move(message));
   };
   const std::vector<Freedom> freedoms = all_freedoms(subject.joint);
-  const std::vector<Singular> singular = singular_poses(subject, freedoms);
+  const std::vector<Singular> singular = singular_poses(subject, freedoms, poses);
   const std::string always = text_of(singular[0]);
   if (always.empty()) {
     const std::vector<Movement> sure = proved_regular(subject);
@@ -75,6 +84,7 @@ void check_mass(const Subject& subject, Findings& findings) {
         but);
   } else {
     add(always);
+    if (poses != nullptr) draw(singular[0], "", *poses);
   }
   std::vector<std::string> told = {always, ""};
   for (std::size_t f = 1; f < freedoms.size(); ++f) {
@@ -85,6 +95,7 @@ void check_mass(const Subject& subject, Findings& findings) {
     for (std::size_t other = f + 1; other < freedoms.size(); ++other)
       if (text_of(singular[other]) == text) conditions += " or " + freedoms[other].condition;
     add("while " + conditions + ", " + text);
+    if (poses != nullptr) draw(singular[f], "while " + conditions + ", ", *poses);
   }
 }
 

@@ -13,8 +13,12 @@ struct Subject {
   const std::vector<Block>& coordinates;
   std::vector<Sample> anywhere, on_constraint;
   std::size_t by_defaults = 0;  // so many of the poses on the constraint, the first, began with the spec's defaults
+  Sample usual;                 // the spec's defaults, bodies side by side; with C = 0 if that is reached
 };
 Subject subject_of(const Derivation& derivation);
+
+// A sample, with the values of another one for leaves that it lacks.
+Sample completed(Sample sample, Sample other);
 
 // The rows of J at a sample.
 std::vector<std::vector<double>> jacobian_at(const Block& block, const Sample& sample);
@@ -27,7 +31,8 @@ void check_rows(const Subject& subject,
                 Findings& findings);                               // vanishing, dependent, without bodies
 void check_undefined(const Subject& subject, Findings& findings);  // 1/0, roots, directions, angles
 void check_defaults(const Subject& subject, Findings& findings);   // defaults with C != 0
-// Where K is singular. Silent if the joint has errors: they are the cause, and come first.
-void check_mass(const Subject& subject, Findings& findings);
+// Where K is singular, with poses to draw if a place for them is given. Silent if the joint has errors: they are the
+// cause, and come first.
+void check_mass(const Subject& subject, Findings& findings, std::vector<PoseToDraw>* poses = nullptr);
 
 }  // namespace cdot::derive

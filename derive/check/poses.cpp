@@ -67,6 +67,20 @@ void put_defaults(const Joint& joint, Sample& sample) {
   }
 }
 
+// Bodies side by side, turned a little, so that a picture shows all of them.
+Sample side_by_side(const Joint& joint, const std::vector<Expr>& expressions) {
+  Sample sample = random_sample(joint, expressions, 1);
+  for (std::size_t b = 0; b < sample.bodies.size(); ++b) {
+    const double k = static_cast<double>(b), side = b % 2 == 0 ? 1 : -1;
+    Sample::Body& body = sample.bodies[b];
+    body.x = {2 * k, 0.5 * (1 - side), joint.dimension == 2 ? 0 : 0.4 * k};
+    body.theta = 0.3 * side;
+    body.e = turned_about(2, 0.3 * side, turned_about(b % 2, 0.2, {1, 0, 0, 0}));
+  }
+  put_defaults(joint, sample);
+  return sample;
+}
+
 }  // namespace
 
 std::vector<std::vector<double>> jacobian_at(const Block& block, const Sample& sample) {
@@ -75,9 +89,17 @@ std::vector<std::vector<double>> jacobian_at(const Block& block, const Sample& s
   return J;
 }
 
+Sample completed(Sample sample, Sample other) {
+  sample.scalars.merge(other.scalars);
+  sample.local.merge(other.local);
+  sample.triads.merge(other.triads);
+  sample.leaves = other.leaves;
+  return sample;
+}
+
 Subject subject_of(const Derivation& derivation) {
   const Joint& joint = derivation.joint;
-  Subject subject{joint, derivation.rows, derivation.coordinates, {}, {}, 0};
+  Subject subject{joint, derivation.rows, derivation.coordinates, {}, {}, 0, {}};
   std::vector<Expr> expressions = expressions_of(subject.block);
   for (const Parameter& p : joint.parameters) {
     expressions.insert(expressions.end(), p.axes.begin(), p.axes.end());  // a frame as a whole
@@ -103,6 +125,11 @@ Subject subject_of(const Derivation& derivation) {
     subject.on_constraint.push_back(sample);
     if (seed <= poses / 2) ++subject.by_defaults;
   }
+  for (const Parameter& p : joint.parameters) expressions.push_back(p.value);
+  for (const Let& let : joint.lets) expressions.push_back(let.value);
+  subject.usual = side_by_side(joint, expressions);
+  if (!C.empty() && !move_to_zero(joint, C, subject.usual, J) && !subject.on_constraint.empty())
+    subject.usual = completed(subject.on_constraint[0], subject.usual);
   return subject;
 }
 

@@ -39,7 +39,7 @@ class Search {
   }
 
   std::vector<Singular> run() {
-    if (poses_.empty()) return std::move(found_);
+    if (poses_.empty()) return found_;
     for (std::size_t f = 0; f < freedoms_.size(); ++f) found_[f].where = where_at_starts(f);
     const std::vector<Candidate> candidates = candidates_for_zero(subject_);
     for (const bool only_bodies : {true, false}) {
@@ -48,7 +48,25 @@ class Search {
         if (found_[f].where == Singular::Where::nowhere) try_anything(f);
       }
     }
-    return std::move(found_);
+    return found_;
+  }
+
+  // To each freedom the poses to draw, near this one if Newton's method gets from there to them.
+  std::vector<Singular> with_poses(const Sample& near) {
+    for (std::size_t f = 0; f < freedoms_.size() && !poses_.empty(); ++f) found_[f].poses = poses_near(near, f);
+    return found_;
+  }
+
+  // The first of these poses that is regular whatever moves; else regular while everything moves.
+  std::optional<Sample> regular_among(const std::vector<Sample>& samples) const {
+    for (const std::size_t all : {freedoms_.size(), std::size_t(1)}) {
+      for (const Sample& sample : samples) {
+        bool regular = !poses_.empty();
+        for (std::size_t f = 0; f < all; ++f) regular = regular && !is_singular(sample, f);
+        if (regular) return sample;
+      }
+    }
+    return {};
   }
 
   // The zeros at which the kernel takes the x axis for a direction, or 0 for 1/0, and K is singular at some poses.
@@ -66,6 +84,34 @@ class Search {
   }
 
  private:
+  std::vector<Sample> poses_near(const Sample& near, std::size_t f) const {
+    const auto singular = [&](const Sample& sample) { return is_singular(sample, f); };
+    std::vector<Sample> poses;
+    switch (found_[f].where) {
+      case Singular::Where::nowhere:
+      case Singular::Where::everywhere: break;
+      case Singular::Where::other_branch: poses.push_back(*std::ranges::find_if(poses_, singular)); break;
+      case Singular::Where::somewhere: {
+        std::vector<Sample> starts = {near};
+        starts.insert(starts.end(), poses_.begin(), poses_.end());
+        for (Sample& start : starts)
+          if (poses.empty() && move_to_dependence(C_, start, f)) poses.push_back(start);
+        break;
+      }
+      case Singular::Where::at_zeros:
+        for (const Expr zero : vanishing_.at(f)) {
+          std::vector<Expr> equations = C_;
+          for (const Expr component : components_of(zero)) equations.push_back(component);
+          const bool only_bodies = !found_[f].by_parameters;
+          poses.push_back(near);
+          if (!reaches(equations, poses.back(), only_bodies) || !singular(poses.back()))
+            poses.back() = moved(equations, only_bodies).front();
+        }
+    }
+    for (Sample& pose : poses) pose = completed(pose, near);
+    return poses;
+  }
+
   // Equations such as sin(theta) n = 0 have a branch, theta = pi, that is singular as a whole.
   Singular::Where where_at_starts(std::size_t f) const {
     const auto singular = [&](const Sample& sample) { return is_singular(sample, f); };
@@ -110,7 +156,7 @@ class Search {
       const auto known = [&](const Sample& sample) { return is_known(sample, f); };
       if (!std::ranges::all_of(zeros, singular) || std::ranges::all_of(zeros, known)) continue;
       found_[f].where = Singular::Where::at_zeros;
-      found_[f].zeros.push_back(candidate.name);
+      found_[f].zeros.push_back(candidate.name + " = 0" + candidate.explained);
       found_[f].by_parameters = !only_bodies;
       found_[f].of_poses |= depends_on_bodies(candidate.e);
       vanishing_[f].push_back(candidate.e);
@@ -135,15 +181,18 @@ class Search {
 
   std::vector<Sample> moved(const std::vector<Expr>& equations, bool only_bodies) const {
     std::vector<Sample> there;
-    for (Sample sample : poses_) {
-      Numbers numbers(poses_[0]);
-      const auto values = [&](const Sample& at) {
-        numbers.move_to(at);
-        return numbers.of(equations);
-      };
-      if (move_to_zero(subject_.joint, values, sample, only_bodies) && in_range(sample)) there.push_back(sample);
-    }
+    for (Sample sample : poses_)
+      if (reaches(equations, sample, only_bodies)) there.push_back(sample);
     return there;
+  }
+
+  bool reaches(const std::vector<Expr>& equations, Sample& sample, bool only_bodies) const {
+    Numbers numbers(poses_[0]);
+    const auto values = [&](const Sample& at) {
+      numbers.move_to(at);
+      return numbers.of(equations);
+    };
+    return move_to_zero(subject_.joint, values, sample, only_bodies) && in_range(sample);
   }
 
   bool in_range(const Sample& sample) const {
@@ -209,8 +258,16 @@ std::vector<std::string> guards_that_make_singular(const Subject& subject, const
   return Search(subject, {everything}).guards();
 }
 
-std::vector<Singular> singular_poses(const Subject& subject, const std::vector<Freedom>& freedoms) {
-  return Search(subject, freedoms).run();
+std::vector<Singular> singular_poses(const Subject& subject, const std::vector<Freedom>& freedoms,
+                                     std::vector<PoseToDraw>* drawn) {
+  Search search(subject, freedoms);
+  const std::vector<Singular> found = search.run();
+  if (drawn == nullptr) return found;
+  std::vector<Sample> usual = {subject.usual};
+  usual.insert(usual.end(), subject.on_constraint.begin(), subject.on_constraint.end());
+  const std::optional<Sample> regular = search.regular_among(usual);
+  if (regular) drawn->push_back({false, "A regular pose", completed(*regular, subject.usual)});
+  return search.with_poses(regular ? drawn->back().pose : subject.usual);
 }
 
 }  // namespace cdot::derive

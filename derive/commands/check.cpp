@@ -16,7 +16,7 @@ using text::Json;
 
 struct Options {
   std::vector<std::string> specs;
-  std::string specs_folder = "specs";
+  std::string specs_folder = "specs", page;
   bool json = false;
   int processes = usual_processes();
 };
@@ -81,25 +81,39 @@ std::string as_text(const SourceFile& file, const CheckReport& report) {
   return text + counted(report, Level::error) + counted(report, Level::warning) + counted(report, Level::note) + "\n";
 }
 
+// Of one spec.
+struct Checked {
+  int status = 0;
+  std::string text, pictures;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(Checked, status, text, pictures)
+};
+
 int run(const Options& options) {
   const SpecsFolder folder(options.specs_folder);
   std::vector<std::filesystem::path> paths;
   for (const std::string& spec : options.specs) paths.push_back(folder.find(spec));
   std::vector<std::string> all;
+  std::string pictures;
   int exit_status = 0;
   const auto check_one = [&](std::size_t i) {
     const ReadResult read = folder.read(paths[i]);
-    const CheckReport report = check(read);
-    const std::string text = options.json ? as_json(*read.file, report).dump(2) : as_text(*read.file, report);
-    return std::pair{!report.readable ? 2 : report.clean() ? 0 : 1, text};
+    const bool drawn = !options.page.empty();
+    const CheckReport report = check(read, drawn ? Draw::yes : Draw::no);
+    return Checked{!report.readable ? 2
+                   : report.clean() ? 0
+                                    : 1,
+                   options.json ? as_json(*read.file, report).dump(2) : as_text(*read.file, report),
+                   drawn ? pictures_html(read, report) : ""};
   };
-  const auto take = [&](const std::pair<int, std::string>& answer) {
-    exit_status = std::max(exit_status, answer.first);
-    if (options.json) all.push_back(answer.second);
-    else fmt::print("{}", answer.second);
+  const auto take = [&](const Checked& answer) {
+    exit_status = std::max(exit_status, answer.status);
+    pictures += answer.pictures;
+    if (options.json) all.push_back(answer.text);
+    else fmt::print("{}", answer.text);
   };
   const int failed = in_processes({paths.begin(), paths.end()}, {}, options.processes, check_one, take);
   if (options.json) fmt::print("{}\n", text::array_of_printed(all));
+  if (!options.page.empty()) write_file(options.page, pictures_page(pictures));
   return failed > 0 ? 2 : exit_status;
 }
 
@@ -108,6 +122,9 @@ void add_options(Line& line, Options& options) {
   line.add("--json", &options.json,
            "An array with, per spec: spec, status (clean, problems, unreadable), findings\n"
            "(level, kind, at, also, message, fix) and proofs (coordinate, laws)");
+  line.add("--html", &options.page,
+           "Also write one page that shows each joint at the poses where K is singular, beside a regular pose")
+      .shown_as("PAGE");
   add_specs(line, options.specs_folder);
   add_jobs(line, options.processes);
   line.footer(

@@ -31,6 +31,7 @@ const std::vector<std::string> rooms = {
     "derive/language",     // tree to joint: names, units, operators
     "derive/language/hand",
     "derive/numbers",      // expressions at poses: doubles, modulo a prime
+    "derive/picture",      // a joint at a pose, drawn
     "derive/derivation",   // C to Cdot, J, K, gamma
     "derive/program",      // expressions to straight-line code, simplified
     "derive/explain",      // the derivation as a lecture

@@ -1,0 +1,59 @@
+// The poses of a report, drawn: a part of a page for each spec.
+#include <fmt/format.h>
+
+#include "derive/check/check.hpp"
+#include "derive/explain/mathml.hpp"
+#include "derive/picture/picture.hpp"
+
+namespace cdot::derive {
+namespace {
+
+constexpr const char* introduction =
+    "<p>At a singular pose some impulses do not change Cdot, so K has no inverse. Bodies are outlines around their "
+    "centres and points, with their axes. What the spec names has its name; a ring marks a vector that is zero.</p>\n";
+
+std::string sentence(std::string words) {
+  if (words[0] >= 'a' && words[0] <= 'z') words[0] = static_cast<char>(words[0] - 'a' + 'A');
+  return words + ".";
+}
+
+std::string why_none(const CheckReport& report) {
+  if (!report.readable) return "The spec cannot be read.";
+  for (const Finding& f : report.findings)
+    if (f.level == Level::error) return "The spec has errors: " + f.message + ".";
+  for (const Finding& f : report.findings)
+    if (f.kind == "singular") return "No pose to draw: " + f.message + ".";
+  return "No pose with C = 0 was found.";
+}
+
+std::string figure(const Joint& joint, const PoseToDraw& pose, const std::string& picture) {
+  std::string numbers;
+  for (const std::string& line : numbers_of(joint, pose.pose)) numbers += html_escaped(line) + "\n";
+  return fmt::format(
+      "<figure>\n{}<figcaption>{}<details><summary>Its "
+      "numbers</summary><pre>{}</pre></details></figcaption></figure>\n",
+      picture, html_escaped(sentence(pose.words)), numbers);
+}
+
+}  // namespace
+
+std::string pictures_html(const ReadResult& read, const CheckReport& report) {
+  const std::string name = read.joint ? read.joint->name : read.file->path;
+  std::string out = fmt::format("<section><h2>{}</h2>\n", html_escaped(name));
+  if (read.joint && !read.joint->title.empty()) out += fmt::format("<p>{}</p>\n", html_escaped(read.joint->title));
+  if (report.poses.empty() || !report.poses.back().singular)
+    return out + fmt::format("<p>{}</p>\n</section>\n", html_escaped(why_none(report)));
+  std::vector<Sample> poses;
+  for (const PoseToDraw& pose : report.poses) poses.push_back(pose.pose);
+  const std::vector<std::string> pictures = pictures_of(*read.joint, poses);
+  out += "<div class=\"poses\">\n";
+  for (std::size_t i = 0; i < poses.size(); ++i) out += figure(*read.joint, report.poses[i], pictures[i]);
+  return out + "</div>\n</section>\n";
+}
+
+std::string pictures_page(const std::string& parts) {
+  return html_head("Where K is singular", std::string("body { max-width: 60rem; }\n") + picture_style) + introduction +
+         parts + html_foot;
+}
+
+}  // namespace cdot::derive
