@@ -28,8 +28,12 @@ std::vector<Expr> solved(const Matrix& K, std::vector<Expr> b) {
   return solved(std::move(rows), std::move(b), [](Expr a, Expr pivot) { return a / pivot; });
 }
 
-// M^-1 J^T lambda, column by column.
-std::vector<Expr> changes_by(const Joint& joint, const std::vector<ScalarRow>& rows, const std::vector<Expr>& lambda) {
+// M^-1 J^T lambda, column by column; J^T lambda without the inverse masses, or without the inverse inertias.
+struct Weights {
+  bool masses = true, inertias = true;
+};
+std::vector<Expr> changes_by(const Joint& joint, const std::vector<ScalarRow>& rows, const std::vector<Expr>& lambda,
+                             const Weights& by = {}) {
   std::vector<Expr> columns;
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
     const BodySymbols body = body_symbols(joint, static_cast<int>(b));
@@ -38,7 +42,8 @@ std::vector<Expr> changes_by(const Joint& joint, const std::vector<ScalarRow>& r
       impulse.v = impulse.v + lambda[i] * rows[i].J[b].v;
       impulse.w = impulse.w + lambda[i] * rows[i].J[b].w;
     }
-    const JacobianEntry change{body.inv_m * impulse.v, apply(body.inv_I, impulse.w)};
+    const JacobianEntry change{by.masses ? body.inv_m * impulse.v : impulse.v,
+                               by.inertias ? apply(body.inv_I, impulse.w) : impulse.w};
     for (const Expr e : columns_of(change)) columns.push_back(e);
   }
   return columns;
@@ -76,8 +81,8 @@ UpdateLevel level_of(const std::vector<const HandItem*>& updates) {
   return is_position_level(updates[0]->target) ? UpdateLevel::positions : UpdateLevel::velocities;
 }
 
-// Negates the generated change if the published one then fits better: an impulse of any size has either sign of C.
-std::vector<Expr> turned_to_fit(std::vector<Expr> generated, const std::vector<Expr>& published, const Poses& poses) {
+// -1 if the negative of the generated change fits better: an impulse of any size has either sign of C.
+Rational sign_that_fits(const std::vector<Expr>& generated, const std::vector<Expr>& published, const Poses& poses) {
   const auto wrong = [&](Rational sign) {
     int count = 0;
     for (std::size_t c = 0; c < published.size(); ++c) {
@@ -85,10 +90,20 @@ std::vector<Expr> turned_to_fit(std::vector<Expr> generated, const std::vector<E
     }
     return count;
   };
-  if (wrong(Rational(-1)) < wrong(Rational(1))) {
-    for (Expr& e : generated) e = -e;
+  return wrong(Rational(-1)) < wrong(Rational(1)) ? Rational(-1) : Rational(1);
+}
+
+// An update without the inverse masses.
+std::optional<Slip> slip_of_weights(const Entry& entry, const Part& part, const std::vector<Expr>& lambda,
+                                    const std::vector<Expr>& published) {
+  for (const auto& [by, words] : {std::pair(Weights{false, false}, "J^T lambda stands where M^-1 J^T lambda belongs"),
+                                  std::pair(Weights{false, true}, "the inverse masses are missing"),
+                                  std::pair(Weights{true, false}, "the inverse inertias are missing")}) {
+    const std::vector<Expr> without = changes_by(entry.joint, part.rows, lambda, by);
+    const auto same = [&](Expr a, Expr b) { return entry.poses().equal(a, b); };
+    if (std::ranges::equal(published, without, same)) return Slip{"missing term", words};
   }
-  return generated;
+  return {};
 }
 
 }  // namespace
@@ -100,7 +115,8 @@ void judge_updates(Entry& entry, const Part& part) {
   }
   if (updates.empty()) return;
   const UpdateLevel level = level_of(updates);
-  Change change{changes_by(entry.joint, part.rows, impulse(entry.pool(), part, level)), {}};
+  std::vector<Expr> lambda = impulse(entry.pool(), part, level);
+  Change change{changes_by(entry.joint, part.rows, lambda), {}};
   change.published.assign(change.generated.size(), entry.pool().number(0));
   std::vector<const HandItem*> said_by(change.generated.size(), updates[0]);
   const int dimension = entry.joint.dimension;
@@ -113,14 +129,20 @@ void judge_updates(Entry& entry, const Part& part) {
     }
   }
   const bool any = level == UpdateLevel::any_impulse;
-  if (any) change.generated = turned_to_fit(change.generated, change.published, entry.poses());
+  if (any) {
+    const Rational sign = sign_that_fits(change.generated, change.published, entry.poses());
+    for (std::vector<Expr>* of : {&lambda, &change.generated})
+      for (Expr& e : *of) e = sign * e;
+  }
   const bool only_size = !any && same_direction(change, entry.poses());
   const int columns = static_cast<int>(change.generated.size());
   const Matrix published{1, columns, change.published}, generated{1, columns, change.generated};
   const std::vector<Group> groups =
       groups_of_velocities(entry.joint, Form::global, columns, level == UpdateLevel::positions);
   std::string confirmed;
-  compare(entry, {"update", published, generated, {Group{}}, groups}, [&](int, int c) {
+  const std::size_t before = entry.verdict.differences.size();
+  const Sides sides{"update", published, generated, {Group{}}, groups};
+  compare(entry, sides, [&](int, int c) {
     if (confirmed.empty()) confirmed = entry.confirm().after(level, part.rows, change);
     const std::string column = column_name(entry.joint, Form::global, c, level == UpdateLevel::positions);
     const Place place{"update", "", column, {}, {}, &entry.joint};
@@ -130,6 +152,18 @@ void judge_updates(Entry& entry, const Part& part) {
     if (only_size && d.kind == "factor") d.sentence += "; the direction of the impulse is right, its size is not";
     return finished(entry, *said_by[static_cast<std::size_t>(c)], std::move(d), hand, right);
   });
+  std::vector<Difference>& differences = entry.verdict.differences;
+  if (differences.size() < before + 2) return;
+  std::optional<Slip> slip = slip_of_weights(entry, part, lambda, change.published);
+  if (!slip) slip = slip_of_whole(entry, &part, "update", published, generated);
+  const auto unexplained = [](const Difference& d) { return d.sentence.find(not_generated) != std::string::npos; };
+  if (!slip && only_size &&
+      std::all_of(differences.begin() + static_cast<std::ptrdiff_t>(before), differences.end(), unexplained))
+    slip = Slip{"factor", not_generated};
+  if (!slip) return;
+  differences.resize(before);
+  if (only_size && slip->kind == "factor") slip->sentence += "; the direction of the impulse is right, its size is not";
+  add_plain(entry, *updates[0], {"update", "", "", {}, {}, &entry.joint}, slip->kind, slip->sentence, confirmed);
 }
 
 void judge_bound(Entry& entry, const Part& part, const HandItem& item) {

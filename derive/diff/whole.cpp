@@ -121,9 +121,9 @@ class Whole {
     return found;
   }
 
-  // Of J: bodies in another order; of each body, w before v.
+  // Bodies in another order; of each body, w before v.
   std::optional<Slip> other_columns() const {
-    if (what_ != "J") return {};
+    if (!by_velocities_) return {};
     const int bodies = static_cast<int>(entry_.joint.bodies.size()), width = entry_.width();
     const auto matches = [&](auto column) {
       Order columns;
@@ -212,28 +212,31 @@ class Whole {
       for (std::size_t k = 0; k < names.size(); ++k) sample.scalars[names[k]] = after[k];
     }
   }
-  // Of one body: its columns of J, or the terms of its velocities; all of them, those of v or those of w.
+  // Of one body, or of all: columns of J, or the terms of velocities; all of them, those of v or those of w.
   std::optional<Slip> wrong_sign() const {
     const int width = entry_.width(), linear = entry_.joint.dimension;
-    for (std::size_t b = 0; b < entry_.joint.bodies.size(); ++b)
-      for (const auto& [v, w, words] : {std::tuple(true, true, "of body {}"), std::tuple(true, false, "of v_{}"),
-                                        std::tuple(false, true, "of w_{}")}) {
+    const auto& bodies = entry_.joint.bodies;
+    for (int b = -1; b < static_cast<int>(bodies.size()); ++b)
+      for (const auto& [v, w, of] :
+           {std::tuple(true, true, "body "), std::tuple(true, false, "v_"), std::tuple(false, true, "w_")}) {
         const auto turned = [&, v = v, w = w](std::size_t pose) {
           List to = generated_[pose];
-          for (int r = 0; r < mine_.rows; ++r)
-            for (int k = 0; k < width; ++k)
-              if (k < linear ? v : w) to[at(r, static_cast<int>(b) * width + k)] *= -1;
+          for (int c = 0; c < mine_.columns; ++c)
+            for (int r = 0; r < mine_.rows && (b < 0 || c / width == b); ++r)
+              if (c % width < linear ? v : w) to[at(r, c)] *= -1;
           return to;
         };
         const auto reversed = [&, v = v, w = w](Sample& sample) {
-          for (std::size_t k = 0; k < 3; ++k) {
-            if (v) sample.bodies[b].v[k] *= -1;
-            if (w) sample.bodies[b].w[k] *= -1;
-          }
+          for (std::size_t i = 0; i < bodies.size(); ++i)
+            for (std::size_t k = 0; k < 3 && (b < 0 || static_cast<int>(i) == b); ++k) {
+              if (v) sample.bodies[i].v[k] *= -1;
+              if (w) sample.bodies[i].w[k] *= -1;
+            }
         };
-        if (what_ == "J" ? !is(turned) : !at_changed(reversed)) continue;
-        const std::string of = fmt::format(fmt::runtime(words), entry_.joint.bodies[b]);
-        return Slip{"sign", fmt::format("the {} {} have the wrong sign", what_ == "J" ? "columns" : "terms", of)};
+        if (by_velocities_ ? !is(turned) : !at_changed(reversed)) continue;
+        if (b < 0 && v && w) return Slip{"sign", "all of it has the wrong sign"};
+        const std::string whose = b < 0 ? (v ? "v" : "w") : of + bodies[static_cast<std::size_t>(b)];
+        return Slip{"sign", fmt::format("the {} of {} have the wrong sign", what_ == "J" ? "columns" : "terms", whose)};
       }
     return {};
   }
@@ -352,7 +355,7 @@ class Whole {
 
   // All of it, or one row, times a constant.
   std::optional<Slip> multiple() const {
-    std::optional<double> all = ratio(0, mine_.rows);
+    const std::optional<double> all = ratio(0, mine_.rows);
     if (all) return Slip{"factor", fmt::format("all of it is {:.6g} times what it should be", *all)};
     for (int r = 0; r < mine_.rows && what_ != "K"; ++r) {
       bool others = true;
@@ -380,6 +383,8 @@ class Whole {
   const Entry& entry_;
   const Part* part_;  // null: of a claim
   const std::string what_;
+  const bool by_velocities_ =
+      what_ == "J" || what_ == "update";  // its columns: the row is M^-1 J^T lambda of an update
   const Matrix &hand_, &mine_;
   std::vector<List> published_, generated_;  // by pose
 };

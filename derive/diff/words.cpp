@@ -36,7 +36,7 @@ std::string introduced(Expr e, const Joint& joint) {
 
 // The published terms, and those that belong there.
 std::string instead(const std::string& has, const std::string& lacks) {
-  if (has.size() + lacks.size() > longest_formula) return "it is not the generated one";
+  if (has.size() + lacks.size() > longest_formula) return not_generated;
   return fmt::format("it has {} where {} belongs", has, lacks);
 }
 

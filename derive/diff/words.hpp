@@ -15,6 +15,9 @@ struct Contribution {
   Expr leaf, term;
 };
 
+// The sentence where no formula fits.
+constexpr const char* not_generated = "it is not the generated one";
+
 struct Place {
   std::string what, row, column;      // as in Difference
   std::vector<Contribution> sources;  // of an entry of J, or of Cdot

@@ -243,6 +243,36 @@ TEST(Diff, UpdatesMustMakeTheVelocityConstraintHold) {
   EXPECT_EQ(swapped.differences[0].kind, "wrong body");
 }
 
+TEST(Diff, OneSlipOfAnUpdateIsOneSentence) {
+  const auto update = [](const std::string& v_a, const std::string& w_a, const std::string& v_b,
+                         const std::string& w_b) {
+    return "  update v(a) += " + v_a + "\n  update w(a) += " + w_a + "\n  update v(b) -= " + v_b +
+           "\n  update w(b) -= " + w_b + "\n";
+  };
+  const std::string v_a = "lambda/m(a)", v_b = "lambda/m(b)", w_a = "cross(ra, lambda)/I(a)",
+                    w_b = "cross(rb, lambda)/I(b)";
+  EXPECT_EQ(judged("revolute", update(v_a, w_a, v_b, w_b)).agreement, Agreement::agrees);
+  const std::string to_a = "  update w(a) -= lambda/I(a)\n", to_b = "  update w(b) += lambda/I(b)\n";
+  const std::string whole = "(w(a) - w(b))/(1/I(a) + 1/I(b))";
+  const Kind table[] = {
+      {"revolute", update("lambda", "cross(ra, lambda)", "lambda", "cross(rb, lambda)"), "missing term",
+       "update: J^T lambda stands where M^-1 J^T lambda belongs"},
+      {"revolute", update("lambda", w_a, "lambda", w_b), "missing term", "update: the inverse masses are missing"},
+      {"revolute", update(v_a, "cross(ra, lambda)", v_b, "cross(rb, lambda)"), "missing term",
+       "update: the inverse inertias are missing"},
+      {"revolute", update("m(a)*lambda", w_a, "m(b)*lambda", w_b), "inverse",
+       "update: masses m stand where 1/m belongs"},
+      {"revolute", update(v_a, "cross(rb, lambda)/I(a)", v_b, "cross(ra, lambda)/I(b)"), "wrong body",
+       "update: ra and rb are exchanged"},
+      {"revolute", update(v_a, "-" + w_a, v_b, "-" + w_b), "sign", "update: the terms of w have the wrong sign"},
+      {"revolute", update(v_a, w_a, "-" + v_b, "-" + w_b), "sign", "update: the terms of body b have the wrong sign"},
+      {"angle", "  lambda = 2*" + whole + "\n" + to_a + to_b, "factor",
+       "update: all of it is 2 times what it should be; the direction of the impulse is right, its size is not"},
+      {"angle", "  lambda = -" + whole + "\n" + to_a + to_b, "sign", "update: all of it has the wrong sign"},
+  };
+  for (const Kind& row : table) EXPECT_EQ(expect_kind(row).differences.size(), 1u) << row.items;
+}
+
 // The entry's own condition stays in force during the search for others.
 TEST(Diff, LooksForConditionsWithinWhatIsAssumed) {
   const std::string K = "  K = 1/I(b) + abs(ratio)/I(a)\n";
