@@ -62,7 +62,7 @@ EulerParameters<ex> Algebra::orientation(const std::string& name, int body) {
   if (!fresh) return e;
   units_.push_back({e.begin(), e.end()});
   // e0^2 = 1 - e1^2 - e2^2 - e3^2
-  atoms_.push_back({Atom::Kind::square, ex_to<GiNaC::realsymbol>(e[0]), 1 - e[1] * e[1] - e[2] * e[2] - e[3] * e[3]});
+  relate(Atom::Kind::square, e[0], 1 - e[1] * e[1] - e[2] * e[2] - e[3] * e[3]);
   if (!moves(body)) return e;
   const std::vector<ex> v = velocities(body);
   const EulerParameters<ex> rates = rates_of(e, v[3], v[4], v[5]);
@@ -124,7 +124,7 @@ Triple<ex> Algebra::free_vector(const Node& symbol) {
     for (int k = 0; k + 1 < joint_.dimension; ++k) {
       square -= u[static_cast<std::size_t>(k)] * u[static_cast<std::size_t>(k)];
     }
-    atoms_.push_back({Atom::Kind::square, ex_to<GiNaC::realsymbol>(leaf(symbol.symbol + last, 0)), square});
+    relate(Atom::Kind::square, leaf(symbol.symbol + last, 0), square);
   }
   return u;
 }

@@ -10,6 +10,7 @@
 #include "derive/numbers/numeric.hpp"
 #include "derive/proof/ginac_point.hpp"
 #include "derive/proof/ginac_walks.hpp"
+#include "derive/proof/polynomial.hpp"
 
 namespace cdot::derive {
 
@@ -71,6 +72,7 @@ class Algebra final : public Arithmetic<ex> {
     enum class Kind { square, inverse } kind;  // symbol^2 = operand; symbol operand = 1
     GiNaC::realsymbol symbol;                  // not `symbol`: a plain copy would be another symbol
     ex operand;
+    Polynomial terms;  // the same
   };
   struct Leaf {
     GiNaC::realsymbol symbol;
@@ -93,6 +95,7 @@ class Algebra final : public Arithmetic<ex> {
   ex root_of(const ex& base);
   ex turned(bool cosine, const ex& angle);
   ex symbol_for(const ex& compound);
+  void relate(Atom::Kind kind, const ex& symbol, const ex& operand);
   std::string difference_at(const ex& e, std::uint64_t seed);
   Nullity nullity_of(const ex& e) const;
 
@@ -107,19 +110,25 @@ class Algebra final : public Arithmetic<ex> {
   GiNaC::exvector ordered(const ex& e);
   Modular fingerprint(const ex& e);
   GiNaC::realsymbol fresh_symbol(const std::string& name = "");
-  ex multiplied(const ex& a, const ex& b);
-  ex raised(const ex& polynomial, int exponent);
-  ex expanded(const ex& e);
-  ex square_reduced(const ex& polynomial, const GiNaC::symbol& symbol, const ex& square);
-  ex inverse_removed(const ex& polynomial, const GiNaC::symbol& symbol, const ex& operand);
-  ex without_common_factors(ex polynomial);
-  ex reduced(const ex& polynomial, bool without_inverses = false);
+  Polynomial multiplied(const Polynomial& a, const Polynomial& b);
+  Polynomial multiplied(std::vector<Polynomial> factors);
+  Polynomial raised(const Polynomial& base, int exponent);
+  Polynomial polynomial(const ex& e);
+  template <class Exponent, class Rest>
+  Polynomial in_powers(const Polynomial& p, const ex& x, const Polynomial& base, Exponent exponent, Rest rest);
+  Polynomial square_reduced(const Polynomial& p, const ex& x, const Polynomial& square);
+  Polynomial inverse_removed(const Polynomial& p, const ex& x, const Polynomial& operand);
+  Polynomial without_common_factors(Polynomial p);
+  Polynomial reduced(Polynomial p, bool without_inverses);
+  ex reduced(const ex& e);
+  std::optional<Polynomial> numerator_of(const ex& e, bool cancelled);
 
   const Joint& joint_;
   Route route_;
   int immovable_;
   std::map<std::string, Leaf> leaves_;
   std::map<ex, Slope, GiNaC::ex_is_less> slopes_;  // by symbol
+  Polynomials polynomials_;
   std::vector<Atom> atoms_;
   std::vector<std::vector<ex>> units_;                   // symbols whose squares sum to 1
   GiNaC::exmap known_;                                   // symbols for compounds of which nothing is known

@@ -56,7 +56,9 @@ Modular PointValues::compound(const ex& e) {
   if (is_a<GiNaC::power>(e) && is_a<numeric>(e.op(1))) {
     return power(of(e.op(0)), ex_to<numeric>(e.op(1)));
   }
-  return function(e);
+  std::vector<Modular> args;
+  for (const ex& arg : e) args.push_back(of(arg));
+  return function(function_in(e), args);
 }
 
 Modular PointValues::power(Modular base, const numeric& exponent) {
@@ -69,12 +71,50 @@ Modular PointValues::power(Modular base, const numeric& exponent) {
   return pow(base, static_cast<std::uint64_t>(std::abs(times.to_int())));
 }
 
-Modular PointValues::function(const ex& e) {
-  const std::optional<Fn> fn = function_in(e);
+Modular PointValues::function(const std::optional<Fn>& fn, std::span<const Modular> args) {
   if (!fn) throw UndefinedHere{};
-  std::vector<Modular> args;
-  for (const ex& arg : e) args.push_back(of(arg));
   return point_.call(*fn, args);
+}
+
+std::size_t Steps::place_of(const ex& e) {
+  if (const auto found = places_.find(e); found != places_.end()) return found->second;
+  const bool sum = is_a<GiNaC::add>(e), product = is_a<GiNaC::mul>(e);
+  const bool power = is_a<GiNaC::power>(e) && is_a<numeric>(e.op(1));
+  using Kind = Step::Kind;
+  const Kind kind = e.nops() == 0 ? Kind::leaf
+                    : sum         ? Kind::sum
+                    : product     ? Kind::product
+                    : power       ? Kind::power
+                                  : Kind::function;
+  std::vector<std::size_t> operands;
+  for (std::size_t i = 0; i < (power ? 1 : e.nops()); ++i) operands.push_back(place_of(e.op(i)));
+  const std::size_t begin = operands_.size();
+  operands_.insert(operands_.end(), operands.begin(), operands.end());
+  steps_.push_back({power ? e.op(1) : kind == Kind::leaf ? e : ex(0), function_in(e), kind, begin, operands_.size()});
+  return places_[e] = steps_.size() - 1;
+}
+
+Modular PointValues::of(const Steps& e) {
+  std::vector<Modular> values;
+  values.reserve(e.steps_.size());
+  for (const Steps::Step& step : e.steps_) values.push_back(of_step(e, step, values));
+  return values.back();
+}
+
+Modular PointValues::of_step(const Steps& all, const Steps::Step& step, const std::vector<Modular>& values) {
+  const auto operand = [&](std::size_t i) { return values[all.operands_[i]]; };
+  using Kind = Steps::Step::Kind;
+  if (step.kind == Kind::leaf) return of(step.e);
+  if (step.kind == Kind::power) return power(operand(step.begin), ex_to<numeric>(step.e));
+  if (step.kind == Kind::function) {
+    std::vector<Modular> args;
+    for (std::size_t i = step.begin; i < step.end; ++i) args.push_back(operand(i));
+    return function(step.fn, args);
+  }
+  const bool sum = step.kind == Kind::sum;
+  Modular total(sum ? 0 : 1);
+  for (std::size_t i = step.begin; i < step.end; ++i) total = sum ? total + operand(i) : total * operand(i);
+  return total;
 }
 
 }  // namespace cdot::derive

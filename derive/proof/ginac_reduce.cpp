@@ -6,24 +6,6 @@
 
 namespace cdot::derive {
 
-namespace {
-
-std::size_t size_of(const ex& polynomial) { return is_a<GiNaC::add>(polynomial) ? polynomial.nops() : 1; }
-
-// The number of powers of symbols in all terms, plus one for each term.
-std::size_t weight_of(const ex& polynomial) {
-  const auto weight = [](const ex& term) {
-    if (!is_a<GiNaC::mul>(term)) return std::size_t{2};
-    return term.nops() + (is_a<numeric>(term.op(term.nops() - 1)) ? 0 : 1);
-  };
-  if (!is_a<GiNaC::add>(polynomial)) return weight(polynomial);
-  std::size_t total = 0;
-  for (const ex& term : polynomial) total += weight(term);
-  return total;
-}
-
-}  // namespace
-
 void Algebra::spend(std::size_t work) {
   const auto count = static_cast<std::int64_t>(work);
   if (count > left_for_test_) {  // the rest counts as spent: at which term it ends depends on the run
@@ -57,107 +39,125 @@ GiNaC::realsymbol Algebra::fresh_symbol(const std::string& name) {
   return symbol;
 }
 
-// a * b, both expanded already.
-ex Algebra::multiplied(const ex& a, const ex& b) {
-  spend(size_of(a) * weight_of(b) + weight_of(a) * size_of(b));
-  return (a * b).expand();
+Polynomial Algebra::multiplied(const Polynomial& a, const Polynomial& b) {
+  spend(a.size() * polynomials_.weight(b) + polynomials_.weight(a) * b.size());
+  return polynomials_.product(a, b);
 }
 
-ex Algebra::raised(const ex& polynomial, int exponent) {
-  if (!is_a<GiNaC::add>(polynomial)) return pow(polynomial, exponent);
-  ex result = 1;
-  for (int k = 0; k < exponent; ++k) result = multiplied(result, polynomial);
+// From the shortest factor to the longest. A term by itself costs nothing.
+Polynomial Algebra::multiplied(std::vector<Polynomial> factors) {
+  std::ranges::stable_sort(factors, {}, &Polynomial::size);
+  Polynomial result = polynomials_.number(1);
+  for (const Polynomial& factor : factors) {
+    result = factor.size() == 1 ? polynomials_.product(result, factor) : multiplied(result, factor);
+  }
   return result;
 }
 
-// The result of GiNaC's expand(), within the budget.
-ex Algebra::expanded(const ex& e) {
-  if (e.info(GiNaC::info_flags::expanded)) {
-    if (is_a<GiNaC::add>(e)) spend(weight_of(e));  // as without GiNaC's mark, which may be missing
-    return e;
+Polynomial Algebra::raised(const Polynomial& base, int exponent) {
+  Polynomial result = polynomials_.number(1);
+  for (int k = 0; k < exponent; ++k) {
+    result = base.size() == 1 ? polynomials_.product(result, base) : multiplied(result, base);
   }
+  return result;
+}
+
+// Multiplied out. A part that is no polynomial counts as a variable.
+Polynomial Algebra::polynomial(const ex& e) {
+  if (is_a<GiNaC::symbol>(e)) return polynomials_.power(e, 1);
+  if (is_a<numeric>(e) && ex_to<numeric>(e).is_rational()) return polynomials_.number(ex_to<numeric>(e));
   if (is_a<GiNaC::add>(e)) {
-    GiNaC::exvector terms;
+    std::vector<Polynomial> terms;
     for (const ex& term : e) {
-      terms.push_back(expanded(term));
-      spend(weight_of(terms.back()));
+      terms.push_back(polynomial(term));
+      spend(polynomials_.weight(terms.back()));
     }
-    return ex(GiNaC::add(terms)).expand();
+    return polynomials_.sum(terms);
   }
   if (is_a<GiNaC::power>(e) && e.op(1).info(GiNaC::info_flags::posint)) {
-    return raised(expanded(e.op(0)), ex_to<numeric>(e.op(1)).to_int());
+    const int exponent = ex_to<numeric>(e.op(1)).to_int();
+    return is_a<GiNaC::symbol>(e.op(0)) ? polynomials_.power(e.op(0), exponent) : raised(polynomial(e.op(0)), exponent);
   }
-  if (!is_a<GiNaC::mul>(e)) return e;
-  GiNaC::exvector factors;
-  for (const ex& factor : ordered(e)) factors.push_back(expanded(factor));
-  std::stable_sort(factors.begin(), factors.end(), [](const ex& a, const ex& b) { return size_of(a) < size_of(b); });
-  ex result = 1;
-  for (const ex& factor : factors) {
-    result = size_of(factor) == 1 ? result * factor : multiplied(result, factor);
-  }
-  return result.expand();
+  if (!is_a<GiNaC::mul>(e)) return polynomials_.power(e, 1);
+  std::vector<Polynomial> factors;
+  for (const ex& factor : ordered(e)) factors.push_back(polynomial(factor));
+  return multiplied(std::move(factors));
 }
 
-// Reduces powers of `symbol` by symbol^2 = square. The polynomial must be expanded.
-ex Algebra::square_reduced(const ex& polynomial, const GiNaC::symbol& symbol, const ex& square) {
-  const int degree = polynomial.degree(symbol);
-  if (degree < 2) return polynomial;
-  spend(weight_of(polynomial) * static_cast<std::size_t>(degree));
-  ex out = 0;
-  for (int k = 0; k <= degree; ++k) {
-    out += polynomial.coeff(symbol, k) * pow(square, k / 2) * pow(symbol, k % 2);
+// The sum of c_k base^(exponent of k) x^(rest of k), where p = c_0 + c_1 x + c_2 x^2 + ...
+template <class Exponent, class Rest>
+Polynomial Algebra::in_powers(const Polynomial& p, const ex& x, const Polynomial& base, Exponent exponent, Rest rest) {
+  std::vector<Polynomial> terms, coefs = polynomials_.coefficients(p, x);
+  spend(polynomials_.weight(p) * (coefs.size() - 1));
+  for (std::size_t i = 0; i < coefs.size(); ++i) {
+    if (coefs[i].is_zero()) continue;
+    const int k = static_cast<int>(i), power = exponent(k);
+    if (i > 0) spend(polynomials_.weight(coefs[i]));
+    if (power > 0) spend(polynomials_.weight(base));
+    terms.push_back(multiplied({std::move(coefs[i]), raised(base, power), polynomials_.power(x, rest(k))}));
+    spend(polynomials_.weight(terms.back()));
   }
-  return expanded(out);
+  return polynomials_.sum(terms);
 }
 
-// The numerator over the power of `operand` that removes symbol = 1/operand.
-ex Algebra::inverse_removed(const ex& polynomial, const GiNaC::symbol& symbol, const ex& operand) {
-  const int degree = polynomial.degree(symbol);
-  if (degree < 1) return polynomial;
-  spend(weight_of(polynomial) * static_cast<std::size_t>(degree));
-  ex out = 0;
-  for (int k = 0; k <= degree; ++k) {
-    out += polynomial.coeff(symbol, k) * pow(operand, degree - k);
-  }
-  return expanded(out);
+// Reduces powers of x by x^2 = square.
+Polynomial Algebra::square_reduced(const Polynomial& p, const ex& x, const Polynomial& square) {
+  if (polynomials_.degree(p, x) < 2) return p;
+  return in_powers(
+      p, x, square, [](int k) { return k / 2; }, [](int k) { return k % 2; });
+}
+
+// The numerator over the power of `operand` that removes x = 1/operand.
+Polynomial Algebra::inverse_removed(const Polynomial& p, const ex& x, const Polynomial& operand) {
+  const int degree = polynomials_.degree(p, x);
+  if (degree < 1) return p;
+  return in_powers(
+      p, x, operand, [&](int k) { return degree - k; }, [](int) { return 0; });
 }
 
 // Cancels symbol = 1/operand against multiples of the operand.
-ex Algebra::without_common_factors(ex p) {
+Polynomial Algebra::without_common_factors(Polynomial p) {
   for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
-    for (int k = atom->kind == Atom::Kind::inverse ? p.degree(atom->symbol) : 0; k > 0; --k) {
+    for (int k = atom->kind == Atom::Kind::inverse ? polynomials_.degree(p, atom->symbol) : 0; k > 0; --k) {
+      std::vector<Polynomial> coefs = polynomials_.coefficients(p, atom->symbol);
+      const auto at = static_cast<std::size_t>(k);
+      if (at >= coefs.size() || coefs[at].is_zero()) continue;
+      spend(polynomials_.weight(p) + coefs[at].size() * polynomials_.weight(atom->terms));
       ex quotient;
-      const ex factor = p.coeff(atom->symbol, k);
-      spend(weight_of(p) + size_of(factor) * weight_of(atom->operand));
-      if (factor.is_zero() || !divide(factor, atom->operand, quotient)) continue;
-      p = expanded(p - factor * pow(atom->symbol, k) + quotient * pow(atom->symbol, k - 1));
+      if (!divide(polynomials_.expression(coefs[at]), atom->operand, quotient)) continue;
+      coefs[at] = {};
+      coefs[at - 1] = polynomials_.sum(std::vector{coefs[at - 1], polynomial(quotient)});
+      for (std::size_t i = 1; i < coefs.size(); ++i)
+        coefs[i] = polynomials_.product(coefs[i], polynomials_.power(atom->symbol, static_cast<int>(i)));
+      p = polynomials_.sum(coefs);
     }
   }
   return p;
 }
 
-ex Algebra::reduced(const ex& polynomial, bool without_inverses) {
-  ex p = expanded(polynomial);
+Polynomial Algebra::reduced(Polynomial p, bool without_inverses) {
   for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
-    if (atom->kind == Atom::Kind::square) p = square_reduced(p, atom->symbol, atom->operand);
-    else if (without_inverses) p = inverse_removed(p, atom->symbol, atom->operand);
+    if (atom->kind == Atom::Kind::square) p = square_reduced(p, atom->symbol, atom->terms);
+    else if (without_inverses) p = inverse_removed(p, atom->symbol, atom->terms);
   }
   return p;
 }
 
+ex Algebra::reduced(const ex& e) { return polynomials_.expression(reduced(polynomial(e), false)); }
+
 // The same polynomial in the other of two coordinates on a circle: t^2 = 1 - s^2 in place of s^2 = 1 - t^2.
-ex Algebra::other_coordinates(const ex& polynomial) try {
-  ex p = polynomial;
+ex Algebra::other_coordinates(const ex& e) try {
+  Polynomial p = polynomial(e);
   for (const Atom& atom : atoms_) {
     if (atom.kind != Atom::Kind::square) continue;
     for (const ex& t : symbols_in(atom.operand)) {
-      if (!expanded(atom.operand - 1 + t * t).is_zero()) continue;
-      p = square_reduced(p, ex_to<GiNaC::symbol>(t), 1 - atom.symbol * atom.symbol);
+      if (!polynomial(atom.operand - 1 + t * t).is_zero()) continue;
+      p = square_reduced(p, t, polynomial(1 - atom.symbol * atom.symbol));
     }
   }
-  return p;
+  return polynomials_.expression(p);
 } catch (const TooLong&) {
-  return polynomial;
+  return e;
 }
 
 }  // namespace cdot::derive

@@ -49,6 +49,10 @@ ex Algebra::symbol_for(const ex& compound) {
   return symbol;
 }
 
+void Algebra::relate(Atom::Kind kind, const ex& symbol, const ex& operand) {
+  atoms_.push_back({kind, ex_to<GiNaC::realsymbol>(symbol), operand, polynomials_.of_expanded(operand)});
+}
+
 // The change of variables is made at the leaves, and each compound is converted once.
 ex Algebra::atomised(const ex& e) {
   if (is_a<numeric>(e)) return e;
@@ -113,7 +117,7 @@ ex Algebra::inverse_of(const ex& base) {
   }
   if (is_a<GiNaC::power>(operand)) return pow(inverse_of(operand.op(0)), operand.op(1));
   const GiNaC::realsymbol symbol = fresh_symbol();
-  atoms_.push_back({Atom::Kind::inverse, symbol, operand});
+  relate(Atom::Kind::inverse, symbol, operand);
   inverses_.emplace(operand, symbol);
   return symbol;
 }
@@ -128,10 +132,10 @@ ex Algebra::root_of(const ex& base) {
     if (other.is_equal(operand)) return symbol;
   }
   for (const auto& [other, symbol] : roots_) {
-    if (reduced(operand - other, true).is_zero()) return symbol;
+    if (reduced(polynomial(operand - other), true).is_zero()) return symbol;
   }
   const GiNaC::realsymbol symbol = fresh_symbol();
-  atoms_.push_back({Atom::Kind::square, symbol, operand});
+  relate(Atom::Kind::square, symbol, operand);
   meanings_.emplace_back(symbol, GiNaC::sqrt(operand));
   roots_.emplace_back(operand, symbol);
   return symbol;
@@ -161,7 +165,7 @@ ex Algebra::turned(bool cosine, const ex& angle) {
     while (known != turns_.end() && !known->first.is_equal(base)) ++known;
     if (known == turns_.end()) {
       const GiNaC::realsymbol c_base = fresh_symbol(), s_base = fresh_symbol();
-      atoms_.push_back({Atom::Kind::square, c_base, 1 - s_base * s_base});
+      relate(Atom::Kind::square, c_base, 1 - s_base * s_base);
       meanings_.emplace_back(c_base, cos(base));
       meanings_.emplace_back(s_base, sin(base));
       known = turns_.insert(known, {base, {c_base, s_base}});
@@ -211,13 +215,18 @@ bool Algebra::replace(const ex& x, const ex& compound, const std::string& name) 
   return true;
 }
 
-std::optional<ex> Algebra::numerator(const ex& e, bool cancelled) try {
+std::optional<Polynomial> Algebra::numerator_of(const ex& e, bool cancelled) try {
   left_for_test_ = std::min(allowance_, left_in_all_);
-  ex p = atomised(e);
-  if (cancelled) p = without_common_factors(reduced(p));
-  return reduced(p, true);
+  Polynomial p = polynomial(atomised(e));
+  if (cancelled) p = without_common_factors(reduced(std::move(p), false));
+  return reduced(std::move(p), true);
 } catch (const std::exception&) {  // too long; or GiNaC's own complaints, say of a pole
   return std::nullopt;
+}
+
+std::optional<ex> Algebra::numerator(const ex& e, bool cancelled) {
+  const std::optional<Polynomial> p = numerator_of(e, cancelled);
+  return p ? std::optional(polynomials_.expression(*p)) : std::nullopt;
 }
 
 // Signs, logarithms and angles need the order of the reals. So long decimals at a random rational pose decide where
@@ -254,11 +263,12 @@ std::string Algebra::witness(const ex& e) {
 }
 
 Nullity Algebra::nullity_of(const ex& e) const {
+  const Steps steps(e);
   return nullity([&](std::uint64_t seed) {
     PointValues values(seed, PointValues::Roots::of_squares);
     for (const auto& [name, leaf] : leaves_) values.put(leaf.symbol);
     for (const std::vector<ex>& u : units_) values.put_direction(u);
-    const Modular value = values.of(e);
+    const Modular value = values.of(steps);
     return std::pair(value, values.holds_for_reals());
   });
 }
@@ -267,7 +277,7 @@ Algebra::Zero Algebra::is_zero(const ex& e) {
   if (e.is_zero()) return Zero::yes;
   const Nullity nullity = nullity_of(e);
   if (nullity == Nullity::differs) return Zero::no;
-  const std::optional<ex> p = numerator(e);
+  const std::optional<Polynomial> p = numerator_of(e, false);
   if (p && p->is_zero()) return Zero::yes;
   if (nullity == Nullity::zero) return Zero::shown;
   return witness(e).empty() ? Zero::undecided : Zero::no;
