@@ -164,6 +164,7 @@ TEST(Statement, ChangesWithEveryPartOfADerivation) {
       [&](Derivation& d) { negate(d.coordinates[0].variants[0].K[0][0]); },
       [&](Derivation& d) { d.joint.uses_world = !d.joint.uses_world; },
       [&](Derivation& d) { d.rows.rows[0].kind = RowKind::inequality; },
+      [&](Derivation& d) { d.rows.rows[0].of_world = !d.rows.rows[0].of_world; },
       [&](Derivation& d) { d.coordinates.pop_back(); },
   };
   for (std::size_t i = 0; i < std::size(changes); ++i) {
