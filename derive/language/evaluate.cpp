@@ -115,8 +115,9 @@ Value Evaluator::unknown(const Ast& ast, bool called) {
   if (fix.empty() && called && names_.find(ast.text))
     fix = quote(ast.text) + " is not an operator; for a product write *";
   if (fix.empty())
-    fix = called ? "`cdot check --help` lists the operators"
-                 : "declare it with point, vector, unit, frame, scalar or let";
+    fix = called  ? "`cdot check --help` lists the operators"
+          : hand_ ? "declare it with let or free"
+                  : "declare it with point, vector, unit, frame, scalar or let";
   const Span where = {ast.where.begin, ast.where.begin + static_cast<int>(ast.text.size())};
   diagnostics_.error(where, (called ? "there is no operator " : "there is no ") + quote(ast.text), fix);
   return {};

@@ -220,7 +220,8 @@ void EntryElaborator::assume(const HandItemAst& item) {
   a.text = item.text;
   if (!item.body.text.empty()) {
     const bool known_body = item.body.text == "world" || names_.body(item.body.text) >= 0;
-    if (!known_body) diagnostics_.error(item.body.where, "the joint has no body " + quote(item.body.text));
+    if (!known_body)
+      diagnostics_.error(item.body.where, "the joint has no body " + quote(item.body.text), names_.bodies());
     const auto parameter = std::find_if(joint_.parameters.begin(), joint_.parameters.end(),
                                         [&](const Parameter& p) { return p.name == item.word.text; });
     const bool placed = parameter != joint_.parameters.end() && parameter->kind != ParameterKind::scalar;
@@ -267,7 +268,8 @@ void EntryElaborator::update(const HandItemAst& item) {
                : item.word.text == "x" ? HandItem::Target::position
                                        : HandItem::Target::angle;
   out.body = names_.body(item.body.text);
-  if (out.body < 0) return diagnostics_.error(item.body.where, "the joint has no body " + quote(item.body.text));
+  if (out.body < 0)
+    return diagnostics_.error(item.body.where, "the joint has no body " + quote(item.body.text), names_.bodies());
   const std::size_t before = findings();
   const Value v = evaluate(item.right);
   store(v, out.value, out.expression);

@@ -62,6 +62,8 @@ int HandNames::body(const std::string& letter) const {
   return body < static_cast<int>(read_.joint->bodies.size()) ? body : -1;
 }
 
+std::string HandNames::bodies() const { return "the joint has " + listed(read_.joint->bodies); }
+
 std::vector<std::string> HandNames::known() const {
   std::vector<std::string> all = {"time", "pi", "world"};
   all.insert(all.end(), special.begin(), special.end());
@@ -79,7 +81,7 @@ std::string HandNames::hint(const std::string& name) const {
       return quote(name) + " is declared only in line " + std::to_string(file_.file->line(item.where.begin)) +
              "; move that up";
   }
-  return {};
+  return body_of_letter(name) < 0 ? "" : bodies() + "; let and free declare other names";
 }
 
 }  // namespace cdot::derive

@@ -25,6 +25,7 @@ class HandNames final : public Scope {
   void use_world() override {}
   std::vector<std::string> known() const override;
   std::string hint(const std::string& name) const override;
+  std::string bodies() const;  // a fix for an unknown body
 
  private:
   Value quantity(const std::string& name);
