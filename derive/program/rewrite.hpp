@@ -26,4 +26,13 @@ Program rewritten(const Program& program, const Rewrite& rewrite);
 std::optional<Program> share_terms(const Program& program);    // x + ratio y
 std::optional<Program> share_factors(const Program& program);  // x y
 
+// Openings cost by themselves, but from there the search may find a cheaper program; nullopt if there is nothing to
+// open. 2 x y with the factor 2, which then is shared and taken out as any other: (2 x) y + (2 x) z.
+std::optional<Program> with_numbers_as_factors(const Program& program);
+// k (x + y) as k x + k y: what is taken out of the terms later may be shared.
+std::optional<Program> distributed(const Program& program);
+// u . u - k h with h = t . u as u_x^2 - k t_x u_x + u_y^2 - ...: its terms give u_x (u_x - k t_x) + ..., and a gradient
+// has those differences.
+std::optional<Program> with_products_beside_squares_opened(const Program& program);
+
 }  // namespace cdot::derive

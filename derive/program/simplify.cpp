@@ -132,6 +132,28 @@ Program flatten_sums(const Program& program) {
   });
 }
 
+// k (x y) = k x y, where the inner product has no other user: any two of the factors may then be shared.
+Program flatten_products(const Program& program) {
+  const std::vector<int> uses = use_counts(program);
+  const auto absorbed = [&](int arg, int exponent) {
+    const Operation& inner = program.at(arg);
+    return inner.kind == OpKind::product && exponent == 1 && inner.name.empty() &&
+           uses[static_cast<std::size_t>(arg)] == 1;
+  };
+  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
+    if (op.kind != OpKind::product) return std::nullopt;
+    std::vector<int> args, exponents;
+    const auto add = [&](auto&& self, const Operation& product) -> void {
+      for (std::size_t i = 0; i < product.args.size(); ++i) {
+        if (absorbed(product.args[i], product.exponents[i])) self(self, program.at(product.args[i]));
+        else args.push_back(at(product.args[i])), exponents.push_back(product.exponents[i]);
+      }
+    };
+    add(add, op);
+    return builder.product(std::move(args), std::move(exponents), op.name);
+  });
+}
+
 // u + r = x_a - x_b where u = x_a - x_b - r: adding again what was subtracted costs an operation and digits.
 // Returns the sum, and which of its terms is itself a sum.
 using Cancelling = std::pair<std::size_t, std::size_t>;
@@ -207,7 +229,7 @@ Program searched(const Program& program) {
   for (bool improved = true; improved;) {
     improved = false;
     const auto tidied = [](const Program& p, bool coefficients_out) {
-      return flatten_sums(coefficients_out ? take_out_coefficients(p) : p);
+      return flatten_sums(flatten_products(coefficients_out ? take_out_coefficients(p) : p));
     };
     const Program starts[] = {tidied(best, false), tidied(best, true)};
     for (const auto& order : orders) {
@@ -226,76 +248,6 @@ Program searched(const Program& program) {
   return weight(count(positive)) <= weight(count(best)) ? positive : best;
 }
 
-// 2 x y as a product with the factor 2, which then is shared and taken out as any other: (2 x) y + (2 x) z. Empty if
-// there is no such number.
-std::optional<Program> with_numbers_as_factors(const Program& program) {
-  bool any = false;
-  Program opened = rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
-    if (op.kind != OpKind::sum) return std::nullopt;
-    Summands terms;
-    for (std::size_t i = 0; i < op.args.size(); ++i) {
-      const Rational size = abs(op.coefs[i]);
-      if (size == Rational(1) || program.at(op.args[i]).kind == OpKind::number) {
-        terms.add(op.coefs[i], at(op.args[i]));
-        continue;
-      }
-      any = true;
-      Operation number;
-      number.kind = OpKind::factor;
-      number.value = size;
-      const int factor = builder.leaf(number), arg = at(op.args[i]);
-      const Operation& product = builder.at(arg);
-      const bool open = product.kind == OpKind::product && product.name.empty();
-      std::vector<int> args = open ? product.args : std::vector{arg},
-                       exponents = open ? product.exponents : std::vector{1};
-      args.push_back(factor), exponents.push_back(1);
-      terms.add(op.coefs[i] / size, builder.product(std::move(args), std::move(exponents)));
-    }
-    return builder.sum(std::move(terms), op.name);
-  });
-  return any ? std::optional(std::move(opened)) : std::nullopt;
-}
-
-// The factor of a product that is a sum of its own, say s in k s = k x + k y; none: the number of factors.
-std::size_t sum_among(const Program& program, const Operation& product, const std::vector<int>& uses) {
-  std::size_t i = 0;
-  for (; product.kind == OpKind::product && i < product.args.size(); ++i) {
-    const Operation& sum = program.at(product.args[i]);
-    const bool own =
-        sum.kind == OpKind::sum && sum.name.empty() && uses[static_cast<std::size_t>(product.args[i])] == 1;
-    const auto is_position = [&](int arg) { return program.at(arg).is_position; };
-    if (own && product.exponents[i] == 1 && std::ranges::none_of(sum.args, is_position)) return i;
-  }
-  return product.args.size();
-}
-
-// k (x + y) as k x + k y: what is taken out of the terms later may be shared. Empty if there is no such product.
-std::optional<Program> distributed(const Program& program) {
-  const std::vector<int> uses = use_counts(program);
-  bool any = false;
-  Program opened = rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
-    const std::size_t i = sum_among(program, op, uses);
-    if (i == op.args.size()) return std::nullopt;
-    any = true;
-    const Operation& sum = program.at(op.args[i]);
-    Summands terms;
-    for (std::size_t k = 0; k < sum.args.size(); ++k) {
-      std::vector<int> factors = op.args, exponents = op.exponents;
-      factors[i] = sum.args[k];
-      const Operation& term = program.at(sum.args[k]);
-      if (term.kind == OpKind::product && term.name.empty()) {
-        factors[i] = term.args[0], exponents[i] = term.exponents[0];
-        factors.insert(factors.end(), term.args.begin() + 1, term.args.end());
-        exponents.insert(exponents.end(), term.exponents.begin() + 1, term.exponents.end());
-      }
-      for (int& factor : factors) factor = at(factor);
-      terms.add(sum.coefs[k], builder.product(std::move(factors), std::move(exponents)));
-    }
-    return builder.sum(std::move(terms), op.name);
-  });
-  return any ? std::optional(flatten_sums(opened)) : std::nullopt;
-}
-
 Program cheaper(Program a, Program b) { return weight(count(a)) <= weight(count(b)) ? std::move(a) : std::move(b); }
 
 }  // namespace
@@ -304,10 +256,19 @@ Program simplify(const Program& program) {
   const Program start = exhaust(program, cancel_terms);
   Program best = searched(start);
   if (find_cancelling(program)) best = cheaper(std::move(best), searched(program));
-  for (const std::optional<Program>& from : {std::optional(start), distributed(start)}) {
-    const std::optional<Program> opened = from ? with_numbers_as_factors(*from) : std::nullopt;
-    if (opened) best = cheaper(std::move(best), searched(*opened));
-  }
+  const auto try_from = [&](const std::optional<Program>& from) {
+    if (from) best = cheaper(std::move(best), searched(*from));
+  };
+  const auto with_numbers = [](const std::optional<Program>& from) {
+    return from ? with_numbers_as_factors(flatten_sums(*from)) : std::nullopt;
+  };
+  // h^2 + k h^2 is one product.
+  const Program factored = take_out_coefficients(flatten_sums(exhaust(start, take_out_factor)));
+  const std::optional<Program> beside = with_products_beside_squares_opened(flatten_sums(factored));
+  for (const std::optional<Program>& from : {std::optional(start), distributed(start), beside})
+    try_from(with_numbers(from));
+  try_from(beside);
+  try_from(with_products_beside_squares_opened(best));
   return best;
 }
 

@@ -1050,7 +1050,7 @@ struct constant_velocity {
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 71 +, 113 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 71 +, 112 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1088,18 +1088,6 @@ struct constant_velocity {
           w_a_x_w_a_x_fa_x_y + fb_x_z * w_a_x_w_a_x_fa_x_z;
       const T dot_w_a_x_fa_x_w_b_x_fb_x = w_a_x_fa_x_z * w_b_x_fb_x_z + w_a_x_fa_x_y *
           w_b_x_fb_x_y + w_a_x_fa_x_x * w_b_x_fb_x_x;
-      const T dot_w_b_x_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_w_b_x_fb_x_x + fa_z_y *
-          w_b_x_w_b_x_fb_x_y + fa_z_z * w_b_x_w_b_x_fb_x_z;
-      const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-      const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
-      const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-      const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-      const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-      const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-      const T dot_w_a_x_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_w_a_x_fa_z_x + fb_x_y *
-          w_a_x_w_a_x_fa_z_y + fb_x_z * w_a_x_w_a_x_fa_z_z;
-      const T dot_w_a_x_fa_z_w_b_x_fb_x = w_a_x_fa_z_z * w_b_x_fb_x_z + w_a_x_fa_z_y *
-          w_b_x_fb_x_y + w_a_x_fa_z_x * w_b_x_fb_x_x;
       const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
           w_b_x_fb_x_z;
       const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
@@ -1107,15 +1095,27 @@ struct constant_velocity {
       const T g1_2 = dot_w_b_x_fb_x_fa_x + dot_w_a_x_fa_x_fb_x;
       const T dot_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_fb_x_x + fa_z_y * w_b_x_fb_x_y + fa_z_z *
           w_b_x_fb_x_z;
+      const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
+      const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
+      const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
       const T dot_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_fa_z_x + fb_x_y * w_a_x_fa_z_y + fb_x_z *
           w_a_x_fa_z_z;
       const T g1_3 = dot_w_b_x_fb_x_fa_z + dot_w_a_x_fa_z_fb_x;
-      g[0] = g1_1 * ((dot_w_b_x_w_b_x_fb_x_fa_z + dot_w_a_x_w_a_x_fa_z_fb_x + T(2) *
-          dot_w_a_x_fa_z_w_b_x_fb_x) * dot_fa_x_fb_x -
-          (dot_w_b_x_w_b_x_fb_x_fa_x + dot_w_a_x_w_a_x_fa_x_fb_x + T(2) *
-          dot_w_a_x_fa_x_w_b_x_fb_x) * dot_fa_z_fb_x + T(2) *
-          (g1_2 * dot_fa_x_fb_x + g1_3 * dot_fa_z_fb_x) *
-          (g1_2 * dot_fa_z_fb_x - g1_3 * dot_fa_x_fb_x) * g1_1);
+      const T g1_4 = T(2) * g1_1 * (g1_2 * dot_fa_z_fb_x - g1_3 * dot_fa_x_fb_x);
+      const T dot_w_b_x_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_w_b_x_fb_x_x + fa_z_y *
+          w_b_x_w_b_x_fb_x_y + fa_z_z * w_b_x_w_b_x_fb_x_z;
+      const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
+      const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
+      const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
+      const T dot_w_a_x_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_w_a_x_fa_z_x + fb_x_y *
+          w_a_x_w_a_x_fa_z_y + fb_x_z * w_a_x_w_a_x_fa_z_z;
+      const T dot_w_a_x_fa_z_w_b_x_fb_x = w_a_x_fa_z_z * w_b_x_fb_x_z + w_a_x_fa_z_y *
+          w_b_x_fb_x_y + w_a_x_fa_z_x * w_b_x_fb_x_x;
+      g[0] = g1_1 * (dot_fa_z_fb_x *
+          (g1_4 * g1_3 - dot_w_b_x_w_b_x_fb_x_fa_x - dot_w_a_x_w_a_x_fa_x_fb_x -
+          dot_w_a_x_fa_x_w_b_x_fb_x * T(2)) + dot_fa_x_fb_x *
+          (dot_w_b_x_w_b_x_fb_x_fa_z + dot_w_a_x_w_a_x_fa_z_fb_x + dot_w_a_x_fa_z_w_b_x_fb_x *
+          T(2) + g1_4 * g1_2));
     }
 
     // dC/dt at fixed q: nothing
@@ -1124,7 +1124,7 @@ struct constant_velocity {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 170 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 163 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -1150,49 +1150,48 @@ struct constant_velocity {
       const T H4_4 = H4_3 * fb_x_y;
       const T fa_z_x_fb_x_x = fa_z_y * fb_x_z - fa_z_z * fb_x_y;
       const T fa_z_x_fb_x_y = fa_z_z * fb_x_x - fa_z_x * fb_x_z;
+      const T H4_5 = T(2) * H4_1 * H4_2;
       const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
       const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
-      const T H4_5 = lambda[0] * H4_1 * H4_1 * T(2) *
-          (dot_fa_x_fb_x * fa_z_x_fb_x_x - dot_fa_z_fb_x * fa_x_x_fb_x_x);
-      const T H4_6 = H4_5 * dot_fa_x_fb_x - H4_2 * fa_z_x_fb_x_x;
-      const T H4_7 = fb_x_z * H4_6 - H4_4;
-      const T H4_8 = dot_fa_x_fb_x * H4_2;
-      const T H4_9 = H4_8 * fb_x_y;
-      const T H4_10 = H4_2 * fa_x_x_fb_x_x + H4_5 * dot_fa_z_fb_x;
-      const T H4_11 = H4_9 + fb_x_z * H4_10;
-      const T H4_12 = H4_3 * fb_x_z;
-      const T H4_13 = H4_12 + fb_x_y * H4_6;
-      const T H4_14 = H4_8 * fb_x_z;
-      const T H4_15 = fb_x_y * H4_10 - H4_14;
-      const T H4_16 = fa_x_y * H4_7 + fa_z_y * H4_11 - fa_x_z * H4_13 - fa_z_z * H4_15;
-      const T H4_1_2 = fa_x_z * H4_6 + fa_z_z * H4_10;
-      const T H4_2_2 = fb_x_x * H4_1_2 - fa_x_x * H4_7 - fa_z_x * H4_11;
-      const T H4_1_3 = fa_x_y * H4_6 + fa_z_y * H4_10;
-      const T H4_2_3 = fa_x_x * H4_13 + fa_z_x * H4_15 - fb_x_x * H4_1_3;
-      const T H4_1_4 = H4_3 * fa_x_y - H4_8 * fa_z_y;
+      const T H4_6 = H4_5 * (dot_fa_x_fb_x * fa_z_x_fb_x_x - dot_fa_z_fb_x * fa_x_x_fb_x_x);
+      const T H4_7 = H4_6 * dot_fa_x_fb_x - H4_2 * fa_z_x_fb_x_x;
+      const T H4_8 = fb_x_z * H4_7 - H4_4;
+      const T H4_9 = dot_fa_x_fb_x * H4_2;
+      const T H4_10 = H4_9 * fb_x_y;
+      const T H4_11 = H4_2 * fa_x_x_fb_x_x + H4_6 * dot_fa_z_fb_x;
+      const T H4_12 = H4_10 + fb_x_z * H4_11;
+      const T H4_13 = H4_3 * fb_x_z;
+      const T H4_14 = H4_13 + fb_x_y * H4_7;
+      const T H4_15 = H4_9 * fb_x_z;
+      const T H4_16 = fb_x_y * H4_11 - H4_15;
+      const T H4_17 = fa_x_y * H4_8 + fa_z_y * H4_12 - fa_x_z * H4_14 - fa_z_z * H4_16;
+      const T H4_1_2 = fa_x_z * H4_7 + fa_z_z * H4_11;
+      const T H4_2_2 = fb_x_x * H4_1_2 - fa_x_x * H4_8 - fa_z_x * H4_12;
+      const T H4_1_3 = fa_x_y * H4_7 + fa_z_y * H4_11;
+      const T H4_2_3 = fa_x_x * H4_14 + fa_z_x * H4_16 - fb_x_x * H4_1_3;
+      const T H4_1_4 = H4_3 * fa_x_y - H4_9 * fa_z_y;
       const T H4_2_4 = H4_1_2 + H4_1_4;
-      const T H4_3_2 = H4_3 * fa_x_z - H4_8 * fa_z_z;
+      const T H4_3_2 = H4_3 * fa_x_z - H4_9 * fa_z_z;
       const T H4_4_2 = H4_1_3 - H4_3_2;
       const T H4_5_2 = fb_x_y * H4_2_4 - fb_x_z * H4_4_2;
-      const T H4_1_5 = fa_x_x * H4_6 + fa_z_x * H4_10;
+      const T H4_1_5 = fa_x_x * H4_7 + fa_z_x * H4_11;
       const T H4_2_5 = fb_x_z * H4_1_5 - fb_x_x * H4_2_4;
       const T H4_1_6 = fb_x_x * H4_4_2 - fb_x_y * H4_1_5;
       const T H5_1 = H4_3 * fb_x_x;
-      const T H5_2 = lambda[0] * H4_1 * H4_1 * T(2) *
-          (dot_fa_x_fb_x * fa_z_x_fb_x_y - fa_x_x_fb_x_y * dot_fa_z_fb_x);
+      const T H5_2 = H4_5 * (dot_fa_x_fb_x * fa_z_x_fb_x_y - fa_x_x_fb_x_y * dot_fa_z_fb_x);
       const T H5_3 = H5_2 * dot_fa_x_fb_x - H4_2 * fa_z_x_fb_x_y;
       const T H5_4 = H5_1 + fb_x_z * H5_3;
-      const T H5_5 = H4_8 * fb_x_x;
+      const T H5_5 = H4_9 * fb_x_x;
       const T H5_6 = H4_2 * fa_x_x_fb_x_y + H5_2 * dot_fa_z_fb_x;
       const T H5_7 = fb_x_z * H5_6 - H5_5;
       const T H5_8 = fa_x_z * H5_3 + fa_z_z * H5_6;
       const T H5_9 = fa_x_y * H5_4 + fa_z_y * H5_7 - fb_x_y * H5_8;
-      const T H5_1_2 = fb_x_x * H5_3 - H4_12;
-      const T H5_2_2 = H4_14 + fb_x_x * H5_6;
+      const T H5_1_2 = fb_x_x * H5_3 - H4_13;
+      const T H5_2_2 = H4_15 + fb_x_x * H5_6;
       const T H5_3_2 = fa_x_z * H5_1_2 - fa_x_x * H5_4 - fa_z_x * H5_7 + fa_z_z * H5_2_2;
       const T H5_1_3 = fa_x_x * H5_3 + fa_z_x * H5_6;
       const T H5_2_3 = fb_x_y * H5_1_3 - fa_x_y * H5_1_2 - fa_z_y * H5_2_2;
-      const T H5_1_4 = H4_3 * fa_x_x - H4_8 * fa_z_x;
+      const T H5_1_4 = H4_3 * fa_x_x - H4_9 * fa_z_x;
       const T H5_2_4 = H5_8 - H5_1_4;
       const T H5_3_3 = fa_x_y * H5_3 + fa_z_y * H5_6;
       const T H5_4_2 = fb_x_y * H5_2_4 - fb_x_z * H5_3_3;
@@ -1201,8 +1200,7 @@ struct constant_velocity {
       const T H5_1_6 = fb_x_x * H5_3_3 - fb_x_y * H5_1_5;
       const T fa_z_x_fb_x_z = fa_z_x * fb_x_y - fa_z_y * fb_x_x;
       const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
-      const T H6_1 = lambda[0] * H4_1 * H4_1 * T(2) *
-          (dot_fa_x_fb_x * fa_z_x_fb_x_z - fa_x_x_fb_x_z * dot_fa_z_fb_x);
+      const T H6_1 = H4_5 * (dot_fa_x_fb_x * fa_z_x_fb_x_z - fa_x_x_fb_x_z * dot_fa_z_fb_x);
       const T H6_2 = H6_1 * dot_fa_x_fb_x - H4_2 * fa_z_x_fb_x_z;
       const T H6_3 = fb_x_y * H6_2 - H5_1;
       const T H6_4 = H4_2 * fa_x_x_fb_x_z + H6_1 * dot_fa_z_fb_x;
@@ -1210,7 +1208,7 @@ struct constant_velocity {
       const T H6_6 = fa_x_y * H6_2 + fa_z_y * H6_4;
       const T H6_7 = fb_x_z * H6_6 - fa_x_z * H6_3 - fa_z_z * H6_5;
       const T H6_1_2 = H4_4 + fb_x_x * H6_2;
-      const T H6_2_2 = fb_x_x * H6_4 - H4_9;
+      const T H6_2_2 = fb_x_x * H6_4 - H4_10;
       const T H6_3_2 = fa_x_x * H6_2 + fa_z_x * H6_4;
       const T H6_4_2 = fa_x_z * H6_1_2 + fa_z_z * H6_2_2 - fb_x_z * H6_3_2;
       const T H6_1_3 = fa_x_x * H6_3 + fa_z_x * H6_5 - fa_x_y * H6_1_2 - fa_z_y * H6_2_2;
@@ -1220,7 +1218,7 @@ struct constant_velocity {
       const T H6_1_5 = H6_3_2 - H4_1_4;
       const T H6_2_4 = fb_x_z * H6_1_5 - fb_x_x * H6_1_4;
       const T H6_1_6 = fb_x_x * H6_2_3 - fb_x_y * H6_1_5;
-      H[3][3] = H4_16;
+      H[3][3] = H4_17;
       H[3][4] = H4_2_2;
       H[3][5] = H4_2_3;
       H[3][9] = H4_5_2;
@@ -1238,7 +1236,7 @@ struct constant_velocity {
       H[5][9] = H6_3_3;
       H[5][10] = H6_2_4;
       H[5][11] = H6_1_6;
-      H[9][3] = -H4_16;
+      H[9][3] = -H4_17;
       H[9][4] = -H4_2_2;
       H[9][5] = -H4_2_3;
       H[9][9] = -H4_5_2;
@@ -1579,7 +1577,7 @@ struct constant_velocity {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 170 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 163 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -1605,49 +1603,48 @@ struct constant_velocity {
       const T H4_4 = H4_3 * fb_x_y;
       const T fa_y_x_fb_x_x = fa_y_y * fb_x_z - fa_y_z * fb_x_y;
       const T fa_y_x_fb_x_y = fa_y_z * fb_x_x - fa_y_x * fb_x_z;
+      const T H4_5 = T(2) * H4_1 * H4_2;
       const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
       const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
-      const T H4_5 = lambda[0] * H4_1 * H4_1 * T(2) *
-          (dot_fa_y_fb_x * fa_x_x_fb_x_x - dot_fa_x_fb_x * fa_y_x_fb_x_x);
-      const T H4_6 = H4_2 * fa_y_x_fb_x_x + H4_5 * dot_fa_x_fb_x;
-      const T H4_7 = H4_4 + fb_x_z * H4_6;
-      const T H4_8 = dot_fa_x_fb_x * H4_2;
-      const T H4_9 = H4_8 * fb_x_y;
-      const T H4_10 = H4_5 * dot_fa_y_fb_x - H4_2 * fa_x_x_fb_x_x;
-      const T H4_11 = fb_x_z * H4_10 - H4_9;
-      const T H4_12 = H4_3 * fb_x_z;
-      const T H4_13 = fb_x_y * H4_6 - H4_12;
-      const T H4_14 = H4_8 * fb_x_z;
-      const T H4_15 = H4_14 + fb_x_y * H4_10;
-      const T H4_16 = fa_x_y * H4_7 + fa_y_y * H4_11 - fa_x_z * H4_13 - fa_y_z * H4_15;
-      const T H4_1_2 = fa_x_z * H4_6 + fa_y_z * H4_10;
-      const T H4_2_2 = fb_x_x * H4_1_2 - fa_x_x * H4_7 - fa_y_x * H4_11;
-      const T H4_1_3 = fa_x_y * H4_6 + fa_y_y * H4_10;
-      const T H4_2_3 = fa_x_x * H4_13 + fa_y_x * H4_15 - fb_x_x * H4_1_3;
-      const T H4_1_4 = H4_3 * fa_x_y - H4_8 * fa_y_y;
+      const T H4_6 = H4_5 * (dot_fa_y_fb_x * fa_x_x_fb_x_x - dot_fa_x_fb_x * fa_y_x_fb_x_x);
+      const T H4_7 = H4_2 * fa_y_x_fb_x_x + H4_6 * dot_fa_x_fb_x;
+      const T H4_8 = H4_4 + fb_x_z * H4_7;
+      const T H4_9 = dot_fa_x_fb_x * H4_2;
+      const T H4_10 = H4_9 * fb_x_y;
+      const T H4_11 = H4_6 * dot_fa_y_fb_x - H4_2 * fa_x_x_fb_x_x;
+      const T H4_12 = fb_x_z * H4_11 - H4_10;
+      const T H4_13 = H4_3 * fb_x_z;
+      const T H4_14 = fb_x_y * H4_7 - H4_13;
+      const T H4_15 = H4_9 * fb_x_z;
+      const T H4_16 = H4_15 + fb_x_y * H4_11;
+      const T H4_17 = fa_x_y * H4_8 + fa_y_y * H4_12 - fa_x_z * H4_14 - fa_y_z * H4_16;
+      const T H4_1_2 = fa_x_z * H4_7 + fa_y_z * H4_11;
+      const T H4_2_2 = fb_x_x * H4_1_2 - fa_x_x * H4_8 - fa_y_x * H4_12;
+      const T H4_1_3 = fa_x_y * H4_7 + fa_y_y * H4_11;
+      const T H4_2_3 = fa_x_x * H4_14 + fa_y_x * H4_16 - fb_x_x * H4_1_3;
+      const T H4_1_4 = H4_3 * fa_x_y - H4_9 * fa_y_y;
       const T H4_2_4 = H4_1_2 - H4_1_4;
-      const T H4_3_2 = H4_3 * fa_x_z - H4_8 * fa_y_z;
+      const T H4_3_2 = H4_3 * fa_x_z - H4_9 * fa_y_z;
       const T H4_4_2 = H4_1_3 + H4_3_2;
       const T H4_5_2 = fb_x_y * H4_2_4 - fb_x_z * H4_4_2;
-      const T H4_1_5 = fa_x_x * H4_6 + fa_y_x * H4_10;
+      const T H4_1_5 = fa_x_x * H4_7 + fa_y_x * H4_11;
       const T H4_2_5 = fb_x_z * H4_1_5 - fb_x_x * H4_2_4;
       const T H4_1_6 = fb_x_x * H4_4_2 - fb_x_y * H4_1_5;
       const T H5_1 = H4_3 * fb_x_x;
-      const T H5_2 = lambda[0] * H4_1 * H4_1 * T(2) *
-          (fa_x_x_fb_x_y * dot_fa_y_fb_x - dot_fa_x_fb_x * fa_y_x_fb_x_y);
+      const T H5_2 = H4_5 * (fa_x_x_fb_x_y * dot_fa_y_fb_x - dot_fa_x_fb_x * fa_y_x_fb_x_y);
       const T H5_3 = H4_2 * fa_y_x_fb_x_y + H5_2 * dot_fa_x_fb_x;
       const T H5_4 = fb_x_z * H5_3 - H5_1;
-      const T H5_5 = H4_8 * fb_x_x;
+      const T H5_5 = H4_9 * fb_x_x;
       const T H5_6 = H5_2 * dot_fa_y_fb_x - H4_2 * fa_x_x_fb_x_y;
       const T H5_7 = H5_5 + fb_x_z * H5_6;
       const T H5_8 = fa_x_z * H5_3 + fa_y_z * H5_6;
       const T H5_9 = fa_x_y * H5_4 + fa_y_y * H5_7 - fb_x_y * H5_8;
-      const T H5_1_2 = H4_12 + fb_x_x * H5_3;
-      const T H5_2_2 = fb_x_x * H5_6 - H4_14;
+      const T H5_1_2 = H4_13 + fb_x_x * H5_3;
+      const T H5_2_2 = fb_x_x * H5_6 - H4_15;
       const T H5_3_2 = fa_x_z * H5_1_2 - fa_x_x * H5_4 - fa_y_x * H5_7 + fa_y_z * H5_2_2;
       const T H5_1_3 = fa_x_x * H5_3 + fa_y_x * H5_6;
       const T H5_2_3 = fb_x_y * H5_1_3 - fa_x_y * H5_1_2 - fa_y_y * H5_2_2;
-      const T H5_1_4 = H4_3 * fa_x_x - H4_8 * fa_y_x;
+      const T H5_1_4 = H4_3 * fa_x_x - H4_9 * fa_y_x;
       const T H5_2_4 = H5_8 + H5_1_4;
       const T H5_3_3 = fa_x_y * H5_3 + fa_y_y * H5_6;
       const T H5_4_2 = fb_x_y * H5_2_4 - fb_x_z * H5_3_3;
@@ -1656,8 +1653,7 @@ struct constant_velocity {
       const T H5_1_6 = fb_x_x * H5_3_3 - fb_x_y * H5_1_5;
       const T fa_y_x_fb_x_z = fa_y_x * fb_x_y - fa_y_y * fb_x_x;
       const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
-      const T H6_1 = lambda[0] * H4_1 * H4_1 * T(2) *
-          (fa_x_x_fb_x_z * dot_fa_y_fb_x - dot_fa_x_fb_x * fa_y_x_fb_x_z);
+      const T H6_1 = H4_5 * (fa_x_x_fb_x_z * dot_fa_y_fb_x - dot_fa_x_fb_x * fa_y_x_fb_x_z);
       const T H6_2 = H4_2 * fa_y_x_fb_x_z + H6_1 * dot_fa_x_fb_x;
       const T H6_3 = H5_1 + fb_x_y * H6_2;
       const T H6_4 = H6_1 * dot_fa_y_fb_x - H4_2 * fa_x_x_fb_x_z;
@@ -1665,7 +1661,7 @@ struct constant_velocity {
       const T H6_6 = fa_x_y * H6_2 + fa_y_y * H6_4;
       const T H6_7 = fb_x_z * H6_6 - fa_x_z * H6_3 - fa_y_z * H6_5;
       const T H6_1_2 = fb_x_x * H6_2 - H4_4;
-      const T H6_2_2 = H4_9 + fb_x_x * H6_4;
+      const T H6_2_2 = H4_10 + fb_x_x * H6_4;
       const T H6_3_2 = fa_x_x * H6_2 + fa_y_x * H6_4;
       const T H6_4_2 = fa_x_z * H6_1_2 + fa_y_z * H6_2_2 - fb_x_z * H6_3_2;
       const T H6_1_3 = fa_x_x * H6_3 + fa_y_x * H6_5 - fa_x_y * H6_1_2 - fa_y_y * H6_2_2;
@@ -1675,7 +1671,7 @@ struct constant_velocity {
       const T H6_1_5 = H6_3_2 + H4_1_4;
       const T H6_2_4 = fb_x_z * H6_1_5 - fb_x_x * H6_1_4;
       const T H6_1_6 = fb_x_x * H6_2_3 - fb_x_y * H6_1_5;
-      H[3][3] = H4_16;
+      H[3][3] = H4_17;
       H[3][4] = H4_2_2;
       H[3][5] = H4_2_3;
       H[3][9] = H4_5_2;
@@ -1693,7 +1689,7 @@ struct constant_velocity {
       H[5][9] = H6_3_3;
       H[5][10] = H6_2_4;
       H[5][11] = H6_1_6;
-      H[9][3] = -H4_16;
+      H[9][3] = -H4_17;
       H[9][4] = -H4_2_2;
       H[9][5] = -H4_2_3;
       H[9][9] = -H4_5_2;

@@ -1623,7 +1623,7 @@ struct cylindrical {
       D[0][13] = D1_1 * b.e2 - D1_2 * b.e1 + D1_3 * b.e0;
     }
 
-    // -Jdot v - d/dt(dC/dt): 40 +, 48 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 41 +, 47 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1649,19 +1649,16 @@ struct cylindrical {
       const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
       const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
           w_a_x_fa_x_z;
-      const T g1_2 = vb.wx - va.wx;
+      const T g1_2 = (dot_w_b_x_fb_x_fa_x + dot_w_a_x_fa_x_fb_x) * g1_1;
       const T fa_x_fb_x_x = fa_x_x + fb_x_x;
       const T fa_x_fb_x_y = fa_x_y + fb_x_y;
-      const T g1_3 = vb.wy - va.wy;
-      const T g1_4 = vb.wz - va.wz;
-      const T fa_x_fb_x_z = fa_x_z + fb_x_z;
       const T w_a_x_fa_x_w_b_x_fb_x_x = w_a_x_fa_x_x + w_b_x_fb_x_x;
       const T w_a_x_fa_x_w_b_x_fb_x_y = w_a_x_fa_x_y + w_b_x_fb_x_y;
+      const T fa_x_fb_x_z = fa_x_z + fb_x_z;
       const T w_a_x_fa_x_w_b_x_fb_x_z = w_a_x_fa_x_z + w_b_x_fb_x_z;
-      g[0] = g1_1 * ((dot_w_b_x_fb_x_fa_x + dot_w_a_x_fa_x_fb_x) *
-          (g1_2 * fa_x_fb_x_x + g1_3 * fa_x_fb_x_y + g1_4 * fa_x_fb_x_z) * g1_1 - g1_2 *
-          w_a_x_fa_x_w_b_x_fb_x_x - g1_3 * w_a_x_fa_x_w_b_x_fb_x_y - g1_4 *
-          w_a_x_fa_x_w_b_x_fb_x_z);
+      g[0] = -g1_1 * ((vb.wx - va.wx) * (w_a_x_fa_x_w_b_x_fb_x_x - g1_2 * fa_x_fb_x_x) +
+          (vb.wy - va.wy) * (w_a_x_fa_x_w_b_x_fb_x_y - g1_2 * fa_x_fb_x_y) + (vb.wz - va.wz) *
+          (w_a_x_fa_x_w_b_x_fb_x_z - g1_2 * fa_x_fb_x_z));
     }
 
     // dC/dt at fixed q: nothing

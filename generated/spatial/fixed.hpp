@@ -916,7 +916,7 @@ struct fixed {
     C_t[5] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 205 +, 301 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 205 +, 290 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[6],
       T (&H)[12][12]) {
@@ -954,14 +954,15 @@ struct fixed {
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T H4_7 = T(0.5) * (lambda[4] * fb_x_x - lambda[3] * fb_x_y);
     const T H4_8 = fa_z_z * H4_5 + fa_y_z * H4_6 + lambda[2] * ra_z + fa_x_z * H4_7;
-    const T H4_1_2 = fa_z_y * fb_z_z + fa_x_y * fb_x_z + fa_y_y * fb_y_z;
-    const T H4_2_2 = fa_z_z * fb_z_y + fa_x_z * fb_x_y + fa_y_z * fb_y_y;
-    const T H4_3_2 = lambda[3] * T(0.5) * (H4_1_2 - H4_2_2);
+    const T H4_1_2 = lambda[3] * T(0.5);
+    const T H4_2_2 = fa_z_y * fb_z_z + fa_x_y * fb_x_z + fa_y_y * fb_y_z;
+    const T H4_3_2 = fa_z_z * fb_z_y + fa_x_z * fb_x_y + fa_y_z * fb_y_y;
+    const T H4_4_2 = H4_1_2 * (H4_2_2 - H4_3_2);
     const T H4_1_3 = T(0.5) * lambda[4];
     const T H4_2_3 = H4_1_3 * fa_x_y;
     const T H4_3_3 = lambda[5] * T(0.5);
-    const T H4_4_2 = H4_3_3 * fa_x_z;
-    const T H4_5_2 = H4_2_3 + H4_4_2;
+    const T H4_4_3 = H4_3_3 * fa_x_z;
+    const T H4_5_2 = H4_2_3 + H4_4_3;
     const T H4_6_2 = H4_1_3 * fa_y_y;
     const T H4_7_2 = H4_3_3 * fa_y_z;
     const T H4_8_2 = H4_6_2 + H4_7_2;
@@ -975,21 +976,20 @@ struct fixed {
     const T H5_2 = T(0.5) * (lambda[5] * fb_y_y - lambda[4] * fb_y_z);
     const T H5_3 = T(0.5) * (lambda[5] * fb_z_y - lambda[4] * fb_z_z);
     const T H5_1_2 = fa_z_x * H5_3 + fa_y_x * H5_2 + lambda[0] * ra_x + fa_x_x * H5_1;
-    const T H5_1_3 = lambda[3] * T(0.5);
-    const T H5_2_2 = H5_1_3 * fa_x_x;
-    const T H5_3_2 = H5_2_2 + H4_4_2;
-    const T H5_4 = H5_1_3 * fa_y_x;
-    const T H5_5 = H5_4 + H4_7_2;
-    const T H5_6 = H5_1_3 * fa_z_x;
-    const T H5_7 = H5_6 + H4_10;
+    const T H5_1_3 = H4_1_2 * fa_x_x;
+    const T H5_2_2 = H5_1_3 + H4_4_3;
+    const T H5_3_2 = H4_1_2 * fa_y_x;
+    const T H5_4 = H5_3_2 + H4_7_2;
+    const T H5_5 = H4_1_2 * fa_z_x;
+    const T H5_6 = H5_5 + H4_10;
     const T H5_1_4 = fa_z_x * fb_z_z + fa_x_x * fb_x_z + fa_y_x * fb_y_z;
-    const T H5_2_3 = T(0.5) * lambda[4] * (H4_12 - H5_1_4);
+    const T H5_2_3 = H4_1_3 * (H4_12 - H5_1_4);
     const T H5_1_5 = fa_z_x * fb_z_y + fa_x_x * fb_x_y + fa_y_x * fb_y_y;
-    const T H6_1 = H5_2_2 + H4_2_3;
-    const T H6_2 = H5_4 + H4_6_2;
-    const T H6_3 = H5_6 + H4_9;
+    const T H6_1 = H5_1_3 + H4_2_3;
+    const T H6_2 = H5_3_2 + H4_6_2;
+    const T H6_3 = H5_5 + H4_9;
     const T H6_1_2 = T(0.5) * H5_1_4;
-    const T H6_1_3 = lambda[5] * T(0.5) * (H5_1_5 - H4_1_4);
+    const T H6_1_3 = H4_3_3 * (H5_1_5 - H4_1_4);
     const T H10_1 = H4_1_3 * fb_x_y;
     const T H10_2 = H4_3_3 * fb_x_z;
     const T H10_3 = H10_1 + H10_2;
@@ -1010,11 +1010,11 @@ struct fixed {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T H10_7_2 = T(0.5) * (lambda[3] * fa_x_y - lambda[4] * fa_x_x);
     const T H10_8_2 = fb_z_z * H10_5_2 + fb_y_z * H10_6_2 - lambda[2] * rb_z + fb_x_z * H10_7_2;
-    const T H11_1 = H5_1_3 * fb_x_x;
+    const T H11_1 = H4_1_2 * fb_x_x;
     const T H11_2 = H11_1 + H10_2;
-    const T H11_3 = H5_1_3 * fb_y_x;
+    const T H11_3 = H4_1_2 * fb_y_x;
     const T H11_4 = H11_3 + H10_5;
-    const T H11_5 = H5_1_3 * fb_z_x;
+    const T H11_5 = H4_1_2 * fb_z_x;
     const T H11_6 = H11_5 + H10_8;
     const T H11_1_2 = T(0.5) * (lambda[4] * fa_x_z - lambda[5] * fa_x_y);
     const T H11_2_2 = T(0.5) * (lambda[4] * fa_y_z - lambda[5] * fa_y_y);
@@ -1026,34 +1026,34 @@ struct fixed {
     H[3][3] = H4_4 - H4_8;
     H[3][4] = lambda[1] * ra_x - fa_x_x * H4_3 - fa_y_x * H4_2 - fa_z_x * H4_1;
     H[3][5] = lambda[2] * ra_x + fa_x_x * H4_7 + fa_y_x * H4_6 + fa_z_x * H4_5;
-    H[3][9] = H4_3_2;
+    H[3][9] = H4_4_2;
     H[3][10] = fb_x_z * H4_5_2 + fb_y_z * H4_8_2 + fb_z_z * H4_11 + lambda[3] * H4_13;
-    H[3][11] = -fb_x_y * H4_5_2 - fb_y_y * H4_8_2 - fb_z_y * H4_11 - lambda[3] * T(0.5) * H4_1_4;
+    H[3][11] = -fb_x_y * H4_5_2 - fb_y_y * H4_8_2 - fb_z_y * H4_11 - H4_1_2 * H4_1_4;
     H[4][3] = lambda[0] * ra_y + fa_x_y * H5_1 + fa_y_y * H5_2 + fa_z_y * H5_3;
     H[4][4] = -H5_1_2 - H4_8;
     H[4][5] = lambda[2] * ra_y + fa_x_y * H4_7 + fa_y_y * H4_6 + fa_z_y * H4_5;
-    H[4][9] = -fb_x_z * H5_3_2 - fb_y_z * H5_5 - fb_z_z * H5_7 - T(0.5) * lambda[4] * H4_2_2;
+    H[4][9] = -fb_x_z * H5_2_2 - fb_y_z * H5_4 - fb_z_z * H5_6 - H4_1_3 * H4_3_2;
     H[4][10] = H5_2_3;
-    H[4][11] = fb_x_x * H5_3_2 + fb_y_x * H5_5 + fb_z_x * H5_7 + T(0.5) * lambda[4] * H5_1_5;
+    H[4][11] = fb_x_x * H5_2_2 + fb_y_x * H5_4 + fb_z_x * H5_6 + H4_1_3 * H5_1_5;
     H[5][3] = lambda[0] * ra_z + fa_x_z * H5_1 + fa_y_z * H5_2 + fa_z_z * H5_3;
     H[5][4] = lambda[1] * ra_z - fa_x_z * H4_3 - fa_y_z * H4_2 - fa_z_z * H4_1;
     H[5][5] = H4_4 - H5_1_2;
-    H[5][9] = fb_x_y * H6_1 + fb_y_y * H6_2 + fb_z_y * H6_3 + lambda[5] * T(0.5) * H4_1_2;
+    H[5][9] = fb_x_y * H6_1 + fb_y_y * H6_2 + fb_z_y * H6_3 + H4_3_3 * H4_2_2;
     H[5][10] = -fb_x_x * H6_1 - fb_y_x * H6_2 - fb_z_x * H6_3 - lambda[5] * H6_1_2;
     H[5][11] = H6_1_3;
-    H[9][3] = H4_3_2;
+    H[9][3] = H4_4_2;
     H[9][4] = -fa_x_z * H10_3 - fa_y_z * H10_6 - fa_z_z * H10_9 - lambda[3] * H6_1_2;
-    H[9][5] = fa_x_y * H10_3 + fa_y_y * H10_6 + fa_z_y * H10_9 + lambda[3] * T(0.5) * H5_1_5;
+    H[9][5] = fa_x_y * H10_3 + fa_y_y * H10_6 + fa_z_y * H10_9 + H4_1_2 * H5_1_5;
     H[9][9] = H10_4_2 - H10_8_2;
     H[9][10] = -lambda[1] * rb_x - fb_x_x * H10_3_2 - fb_y_x * H10_2_2 - fb_z_x * H10_1_2;
     H[9][11] = fb_x_x * H10_7_2 - lambda[2] * rb_x + fb_y_x * H10_6_2 + fb_z_x * H10_5_2;
-    H[10][3] = fa_x_z * H11_2 + fa_y_z * H11_4 + fa_z_z * H11_6 + T(0.5) * lambda[4] * H4_1_2;
+    H[10][3] = fa_x_z * H11_2 + fa_y_z * H11_4 + fa_z_z * H11_6 + H4_1_3 * H4_2_2;
     H[10][4] = H5_2_3;
-    H[10][5] = -fa_x_x * H11_2 - fa_y_x * H11_4 - fa_z_x * H11_6 - T(0.5) * lambda[4] * H4_1_4;
+    H[10][5] = -fa_x_x * H11_2 - fa_y_x * H11_4 - fa_z_x * H11_6 - H4_1_3 * H4_1_4;
     H[10][9] = fb_x_y * H11_1_2 - lambda[0] * rb_y + fb_y_y * H11_2_2 + fb_z_y * H11_3_2;
     H[10][10] = -H11_1_3 - H10_8_2;
     H[10][11] = fb_x_y * H10_7_2 - lambda[2] * rb_y + fb_y_y * H10_6_2 + fb_z_y * H10_5_2;
-    H[11][3] = -fa_x_y * H12_1 - fa_y_y * H12_2 - fa_z_y * H12_3 - lambda[5] * T(0.5) * H4_2_2;
+    H[11][3] = -fa_x_y * H12_1 - fa_y_y * H12_2 - fa_z_y * H12_3 - H4_3_3 * H4_3_2;
     H[11][4] = fa_x_x * H12_1 + fa_y_x * H12_2 + fa_z_x * H12_3 + lambda[5] * H4_13;
     H[11][5] = H6_1_3;
     H[11][9] = fb_x_z * H11_1_2 - lambda[0] * rb_z + fb_y_z * H11_2_2 + fb_z_z * H11_3_2;

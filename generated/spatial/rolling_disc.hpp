@@ -441,7 +441,7 @@ struct rolling_disc {
     const IsotropicInverseMass<T>& ma = m[0];
     const IsotropicInverseMass<T>& mb = m[1];
     const T K11_1 = ma.m + mb.m;
-    const T K11_2 = J.radius * mb.I * J.radius;
+    const T K11_2 = J.radius * J.radius * mb.I;
     const T dot_fa_x_x_dir_m_x_k_fa_x_x_dir_m_x_k = J.fa_x_x_dir_m_x_k_x * J.fa_x_x_dir_m_x_k_x +
         J.fa_x_x_dir_m_x_k_y * J.fa_x_x_dir_m_x_k_y + J.fa_x_x_dir_m_x_k_z * J.fa_x_x_dir_m_x_k_z;
     const T dot_fa_x_x_dir_m_x_k_k_x_dir_m_x_fa_y = J.fa_x_x_dir_m_x_k_x * J.k_x_dir_m_x_fa_y_x +
@@ -1353,7 +1353,7 @@ struct rolling_disc::a_immovable : rolling_disc {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[6]) {
     const IsotropicInverseMass<T>& mb = m[1];
-    const T K11_1 = J.radius * mb.I * J.radius;
+    const T K11_1 = J.radius * J.radius * mb.I;
     const T dot_fa_x_x_dir_m_x_k_fa_x_x_dir_m_x_k = J.fa_x_x_dir_m_x_k_x * J.fa_x_x_dir_m_x_k_x +
         J.fa_x_x_dir_m_x_k_y * J.fa_x_x_dir_m_x_k_y + J.fa_x_x_dir_m_x_k_z * J.fa_x_x_dir_m_x_k_z;
     const T dot_fa_x_x_dir_m_x_k_k_x_dir_m_x_fa_y = J.fa_x_x_dir_m_x_k_x * J.k_x_dir_m_x_fa_y_x +

@@ -1919,7 +1919,7 @@ struct six_dof {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 170 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 163 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -1945,47 +1945,48 @@ struct six_dof {
       const T H4_4 = H4_3 * fb_z_y;
       const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
       const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
+      const T H4_5 = T(2) * H4_1 * H4_2;
       const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
       const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
-      const T H4_5 = lambda[0] * H4_1 * H4_1 * T(2) * (rzz * fa_y_x_fb_z_x - ryz * fa_z_x_fb_z_x);
-      const T H4_6 = H4_2 * fa_z_x_fb_z_x + H4_5 * ryz;
-      const T H4_7 = H4_4 + fb_z_z * H4_6;
-      const T H4_8 = ryz * H4_2;
-      const T H4_9 = H4_8 * fb_z_y;
-      const T H4_10 = H4_5 * rzz - H4_2 * fa_y_x_fb_z_x;
-      const T H4_11 = fb_z_z * H4_10 - H4_9;
-      const T H4_12 = H4_3 * fb_z_z;
-      const T H4_13 = fb_z_y * H4_6 - H4_12;
-      const T H4_14 = H4_8 * fb_z_z;
-      const T H4_15 = H4_14 + fb_z_y * H4_10;
-      const T H4_16 = fa_y_y * H4_7 + fa_z_y * H4_11 - fa_y_z * H4_13 - fa_z_z * H4_15;
-      const T H4_1_2 = fa_y_z * H4_6 + fa_z_z * H4_10;
-      const T H4_2_2 = fb_z_x * H4_1_2 - fa_y_x * H4_7 - fa_z_x * H4_11;
-      const T H4_1_3 = fa_y_y * H4_6 + fa_z_y * H4_10;
-      const T H4_2_3 = fa_y_x * H4_13 + fa_z_x * H4_15 - fb_z_x * H4_1_3;
-      const T H4_1_4 = H4_3 * fa_y_y - H4_8 * fa_z_y;
+      const T H4_6 = H4_5 * (rzz * fa_y_x_fb_z_x - ryz * fa_z_x_fb_z_x);
+      const T H4_7 = H4_2 * fa_z_x_fb_z_x + H4_6 * ryz;
+      const T H4_8 = H4_4 + fb_z_z * H4_7;
+      const T H4_9 = ryz * H4_2;
+      const T H4_10 = H4_9 * fb_z_y;
+      const T H4_11 = H4_6 * rzz - H4_2 * fa_y_x_fb_z_x;
+      const T H4_12 = fb_z_z * H4_11 - H4_10;
+      const T H4_13 = H4_3 * fb_z_z;
+      const T H4_14 = fb_z_y * H4_7 - H4_13;
+      const T H4_15 = H4_9 * fb_z_z;
+      const T H4_16 = H4_15 + fb_z_y * H4_11;
+      const T H4_17 = fa_y_y * H4_8 + fa_z_y * H4_12 - fa_y_z * H4_14 - fa_z_z * H4_16;
+      const T H4_1_2 = fa_y_z * H4_7 + fa_z_z * H4_11;
+      const T H4_2_2 = fb_z_x * H4_1_2 - fa_y_x * H4_8 - fa_z_x * H4_12;
+      const T H4_1_3 = fa_y_y * H4_7 + fa_z_y * H4_11;
+      const T H4_2_3 = fa_y_x * H4_14 + fa_z_x * H4_16 - fb_z_x * H4_1_3;
+      const T H4_1_4 = H4_3 * fa_y_y - H4_9 * fa_z_y;
       const T H4_2_4 = H4_1_2 - H4_1_4;
-      const T H4_3_2 = H4_3 * fa_y_z - H4_8 * fa_z_z;
+      const T H4_3_2 = H4_3 * fa_y_z - H4_9 * fa_z_z;
       const T H4_4_2 = H4_1_3 + H4_3_2;
       const T H4_5_2 = fb_z_y * H4_2_4 - fb_z_z * H4_4_2;
-      const T H4_1_5 = fa_y_x * H4_6 + fa_z_x * H4_10;
+      const T H4_1_5 = fa_y_x * H4_7 + fa_z_x * H4_11;
       const T H4_2_5 = fb_z_z * H4_1_5 - fb_z_x * H4_2_4;
       const T H4_1_6 = fb_z_x * H4_4_2 - fb_z_y * H4_1_5;
       const T H5_1 = H4_3 * fb_z_x;
-      const T H5_2 = lambda[0] * H4_1 * H4_1 * T(2) * (fa_y_x_fb_z_y * rzz - ryz * fa_z_x_fb_z_y);
+      const T H5_2 = H4_5 * (fa_y_x_fb_z_y * rzz - ryz * fa_z_x_fb_z_y);
       const T H5_3 = H4_2 * fa_z_x_fb_z_y + H5_2 * ryz;
       const T H5_4 = fb_z_z * H5_3 - H5_1;
-      const T H5_5 = H4_8 * fb_z_x;
+      const T H5_5 = H4_9 * fb_z_x;
       const T H5_6 = H5_2 * rzz - H4_2 * fa_y_x_fb_z_y;
       const T H5_7 = H5_5 + fb_z_z * H5_6;
       const T H5_8 = fa_y_z * H5_3 + fa_z_z * H5_6;
       const T H5_9 = fa_y_y * H5_4 + fa_z_y * H5_7 - fb_z_y * H5_8;
-      const T H5_1_2 = H4_12 + fb_z_x * H5_3;
-      const T H5_2_2 = fb_z_x * H5_6 - H4_14;
+      const T H5_1_2 = H4_13 + fb_z_x * H5_3;
+      const T H5_2_2 = fb_z_x * H5_6 - H4_15;
       const T H5_3_2 = fa_y_z * H5_1_2 - fa_y_x * H5_4 - fa_z_x * H5_7 + fa_z_z * H5_2_2;
       const T H5_1_3 = fa_y_x * H5_3 + fa_z_x * H5_6;
       const T H5_2_3 = fb_z_y * H5_1_3 - fa_y_y * H5_1_2 - fa_z_y * H5_2_2;
-      const T H5_1_4 = H4_3 * fa_y_x - H4_8 * fa_z_x;
+      const T H5_1_4 = H4_3 * fa_y_x - H4_9 * fa_z_x;
       const T H5_2_4 = H5_8 + H5_1_4;
       const T H5_3_3 = fa_y_y * H5_3 + fa_z_y * H5_6;
       const T H5_4_2 = fb_z_y * H5_2_4 - fb_z_z * H5_3_3;
@@ -1994,7 +1995,7 @@ struct six_dof {
       const T H5_1_6 = fb_z_x * H5_3_3 - fb_z_y * H5_1_5;
       const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
       const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
-      const T H6_1 = lambda[0] * H4_1 * H4_1 * T(2) * (fa_y_x_fb_z_z * rzz - ryz * fa_z_x_fb_z_z);
+      const T H6_1 = H4_5 * (fa_y_x_fb_z_z * rzz - ryz * fa_z_x_fb_z_z);
       const T H6_2 = H4_2 * fa_z_x_fb_z_z + H6_1 * ryz;
       const T H6_3 = H5_1 + fb_z_y * H6_2;
       const T H6_4 = H6_1 * rzz - H4_2 * fa_y_x_fb_z_z;
@@ -2002,7 +2003,7 @@ struct six_dof {
       const T H6_6 = fa_y_y * H6_2 + fa_z_y * H6_4;
       const T H6_7 = fb_z_z * H6_6 - fa_y_z * H6_3 - fa_z_z * H6_5;
       const T H6_1_2 = fb_z_x * H6_2 - H4_4;
-      const T H6_2_2 = H4_9 + fb_z_x * H6_4;
+      const T H6_2_2 = H4_10 + fb_z_x * H6_4;
       const T H6_3_2 = fa_y_x * H6_2 + fa_z_x * H6_4;
       const T H6_4_2 = fa_y_z * H6_1_2 + fa_z_z * H6_2_2 - fb_z_z * H6_3_2;
       const T H6_1_3 = fa_y_x * H6_3 + fa_z_x * H6_5 - fa_y_y * H6_1_2 - fa_z_y * H6_2_2;
@@ -2012,7 +2013,7 @@ struct six_dof {
       const T H6_1_5 = H6_3_2 + H4_1_4;
       const T H6_2_4 = fb_z_z * H6_1_5 - fb_z_x * H6_1_4;
       const T H6_1_6 = fb_z_x * H6_2_3 - fb_z_y * H6_1_5;
-      H[3][3] = H4_16;
+      H[3][3] = H4_17;
       H[3][4] = H4_2_2;
       H[3][5] = H4_2_3;
       H[3][9] = H4_5_2;
@@ -2030,7 +2031,7 @@ struct six_dof {
       H[5][9] = H6_3_3;
       H[5][10] = H6_2_4;
       H[5][11] = H6_1_6;
-      H[9][3] = -H4_16;
+      H[9][3] = -H4_17;
       H[9][4] = -H4_2_2;
       H[9][5] = -H4_2_3;
       H[9][9] = -H4_5_2;
@@ -2847,7 +2848,7 @@ struct six_dof {
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 71 +, 113 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 71 +, 112 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -2892,11 +2893,6 @@ struct six_dof {
       const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
       const T dot_w_a_x_fa_x_w_b_x_fb_y = w_a_x_fa_x_z * w_b_x_fb_y_z + w_a_x_fa_x_y *
           w_b_x_fb_y_y + w_a_x_fa_x_x * w_b_x_fb_y_x;
-      const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
-      const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
-      const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
-      const T dot_w_b_x_w_b_x_fb_y_fa_x = fa_x_x * w_b_x_w_b_x_fb_y_x + fa_x_y *
-          w_b_x_w_b_x_fb_y_y + fa_x_z * w_b_x_w_b_x_fb_y_z;
       const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
           w_b_x_fb_x_z;
       const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
@@ -2907,12 +2903,17 @@ struct six_dof {
       const T dot_w_b_x_fb_y_fa_x = fa_x_x * w_b_x_fb_y_x + fa_x_y * w_b_x_fb_y_y + fa_x_z *
           w_b_x_fb_y_z;
       const T g1_3 = dot_w_b_x_fb_y_fa_x + dot_w_a_x_fa_x_fb_y;
-      g[0] = g1_1 * ((dot_w_b_x_w_b_x_fb_y_fa_x + dot_w_a_x_w_a_x_fa_x_fb_y + T(2) *
-          dot_w_a_x_fa_x_w_b_x_fb_y) * dot_fa_x_fb_x -
-          (dot_w_b_x_w_b_x_fb_x_fa_x + dot_w_a_x_w_a_x_fa_x_fb_x + T(2) *
-          dot_w_a_x_fa_x_w_b_x_fb_x) * dot_fa_x_fb_y + T(2) *
-          (g1_2 * dot_fa_x_fb_x + g1_3 * dot_fa_x_fb_y) *
-          (g1_2 * dot_fa_x_fb_y - g1_3 * dot_fa_x_fb_x) * g1_1);
+      const T g1_4 = T(2) * g1_1 * (g1_2 * dot_fa_x_fb_y - g1_3 * dot_fa_x_fb_x);
+      const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
+      const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
+      const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
+      const T dot_w_b_x_w_b_x_fb_y_fa_x = fa_x_x * w_b_x_w_b_x_fb_y_x + fa_x_y *
+          w_b_x_w_b_x_fb_y_y + fa_x_z * w_b_x_w_b_x_fb_y_z;
+      g[0] = g1_1 * (dot_fa_x_fb_y *
+          (g1_4 * g1_3 - dot_w_b_x_w_b_x_fb_x_fa_x - dot_w_a_x_w_a_x_fa_x_fb_x -
+          dot_w_a_x_fa_x_w_b_x_fb_x * T(2)) + dot_fa_x_fb_x *
+          (dot_w_b_x_w_b_x_fb_y_fa_x + dot_w_a_x_w_a_x_fa_x_fb_y + dot_w_a_x_fa_x_w_b_x_fb_y *
+          T(2) + g1_4 * g1_2));
     }
 
     // dC/dt at fixed q: nothing
@@ -2921,7 +2922,7 @@ struct six_dof {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 119 +, 164 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 166 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -2932,10 +2933,10 @@ struct six_dof {
       const Pose<T>& b = q[1];
       const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
       const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
       const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
       const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
       const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
       const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
       const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
       const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
@@ -2943,118 +2944,113 @@ struct six_dof {
       const T dot_fa_x_fb_y = fa_x_x * fb_y_x + fa_x_y * fb_y_y + fa_x_z * fb_y_z;
       const T H4_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_x_fb_y * dot_fa_x_fb_y);
       const T H4_2 = lambda[0] * H4_1;
-      const T H4_3 = fa_x_y * fb_y_z;
-      const T H4_4 = fb_y_y * fa_x_z;
-      const T fa_x_x_fb_y_x = H4_3 - H4_4;
-      const T H4_5 = fb_y_x * fa_x_z;
-      const T fa_x_x_fb_y_y = H4_5 - fa_x_x * fb_y_z;
-      const T H4_6 = dot_fa_x_fb_x * H4_2;
-      const T H4_7 = H4_1 * T(2);
-      const T H4_8 = H4_6 * H4_7;
-      const T H4_9 = dot_fa_x_fb_y * H4_2;
-      const T H4_10 = H4_9 * H4_7;
-      const T H4_11 = fa_x_y * fb_x_z;
-      const T H4_12 = fb_x_y * fa_x_z;
-      const T fa_x_x_fb_x_x = H4_11 - H4_12;
-      const T H4_13 = fa_x_z * fb_x_x;
-      const T fa_x_x_fb_x_y = H4_13 - fa_x_x * fb_x_z;
-      const T H4_14 = H4_8 * fa_x_x_fb_y_x - H4_10 * fa_x_x_fb_x_x;
-      const T H4_15 = H4_14 * dot_fa_x_fb_x - H4_2 * fa_x_x_fb_y_x;
-      const T H4_16 = H4_2 * fa_x_x_fb_x_x + H4_14 * dot_fa_x_fb_y;
-      const T H4_17 = fb_x_z * H4_15 + fb_y_z * H4_16;
-      const T H4_18 = H4_9 * fb_x_y - H4_6 * fb_y_y;
-      const T H4_19 = H4_17 - H4_18;
-      const T H4_20 = fb_x_y * H4_15 + fb_y_y * H4_16;
-      const T H4_21 = H4_9 * fb_x_z - H4_6 * fb_y_z;
-      const T H4_22 = H4_20 + H4_21;
-      const T H4_23 = fa_x_y * H4_19 - fa_x_z * H4_22;
-      const T H4_1_2 = fb_x_x * H4_15 + fb_y_x * H4_16;
-      const T H4_2_2 = fa_x_z * H4_1_2 - fa_x_x * H4_19;
-      const T H4_1_3 = fa_x_x * H4_22 - fa_x_y * H4_1_2;
-      const T H4_1_4 = H4_9 * fa_x_y;
-      const T H4_2_3 = H4_1_4 + fa_x_z * H4_15;
-      const T H4_3_2 = H4_6 * fa_x_y;
-      const T H4_4_2 = fa_x_z * H4_16 - H4_3_2;
-      const T H4_5_2 = H4_9 * fa_x_z;
-      const T H4_6_2 = fa_x_y * H4_15 - H4_5_2;
-      const T H4_7_2 = H4_6 * fa_x_z;
-      const T H4_8_2 = H4_7_2 + fa_x_y * H4_16;
-      const T H4_9_2 = fb_x_y * H4_2_3 + fb_y_y * H4_4_2 - fb_x_z * H4_6_2 - fb_y_z * H4_8_2;
-      const T H4_1_5 = fa_x_x * H4_17 - fb_x_x * H4_2_3 - fb_y_x * H4_4_2;
-      const T H4_1_6 = fb_x_x * H4_6_2 + fb_y_x * H4_8_2 - fa_x_x * H4_20;
-      const T H5_1 = H4_9 * fb_x_x - H4_6 * fb_y_x;
-      const T H5_2 = H4_8 * fa_x_x_fb_y_y - H4_10 * fa_x_x_fb_x_y;
+      const T H4_3 = H4_2 * (fb_y_y * dot_fa_x_fb_x - fb_x_y * dot_fa_x_fb_y);
+      const T fa_x_x_fb_y_x = fa_x_y * fb_y_z - fa_x_z * fb_y_y;
+      const T fa_x_x_fb_y_y = fa_x_z * fb_y_x - fa_x_x * fb_y_z;
+      const T H4_4 = T(2) * H4_1 * H4_2;
+      const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
+      const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
+      const T H4_5 = H4_4 * (dot_fa_x_fb_x * fa_x_x_fb_y_x - dot_fa_x_fb_y * fa_x_x_fb_x_x);
+      const T H4_6 = H4_5 * dot_fa_x_fb_x - H4_2 * fa_x_x_fb_y_x;
+      const T H4_7 = H4_2 * fa_x_x_fb_x_x + H4_5 * dot_fa_x_fb_y;
+      const T H4_8 = fb_x_z * H4_6 + fb_y_z * H4_7;
+      const T H4_9 = H4_3 + H4_8;
+      const T H4_10 = H4_2 * (fb_x_z * dot_fa_x_fb_y - fb_y_z * dot_fa_x_fb_x);
+      const T H4_11 = fb_x_y * H4_6 + fb_y_y * H4_7;
+      const T H4_12 = H4_10 + H4_11;
+      const T H4_13 = fa_x_y * H4_9 - fa_x_z * H4_12;
+      const T H4_1_2 = fb_x_x * H4_6 + fb_y_x * H4_7;
+      const T H4_2_2 = fa_x_z * H4_1_2 - fa_x_x * H4_9;
+      const T H4_1_3 = fa_x_x * H4_12 - fa_x_y * H4_1_2;
+      const T H4_1_4 = dot_fa_x_fb_y * H4_2;
+      const T H4_2_3 = H4_1_4 * fa_x_y;
+      const T H4_3_2 = H4_2_3 + fa_x_z * H4_6;
+      const T H4_4_2 = dot_fa_x_fb_x * H4_2;
+      const T H4_5_2 = H4_4_2 * fa_x_y;
+      const T H4_6_2 = fa_x_z * H4_7 - H4_5_2;
+      const T H4_7_2 = H4_1_4 * fa_x_z;
+      const T H4_8_2 = fa_x_y * H4_6 - H4_7_2;
+      const T H4_9_2 = H4_4_2 * fa_x_z;
+      const T H4_10_2 = H4_9_2 + fa_x_y * H4_7;
+      const T H4_11_2 = fb_x_y * H4_3_2 + fb_y_y * H4_6_2 - fb_x_z * H4_8_2 - fb_y_z * H4_10_2;
+      const T H4_1_5 = fa_x_x * H4_8 - fb_x_x * H4_3_2 - fb_y_x * H4_6_2;
+      const T H4_1_6 = fb_x_x * H4_8_2 + fb_y_x * H4_10_2 - fa_x_x * H4_11;
+      const T H5_1 = H4_2 * (fb_x_x * dot_fa_x_fb_y - fb_y_x * dot_fa_x_fb_x);
+      const T H5_2 = H4_4 * (dot_fa_x_fb_x * fa_x_x_fb_y_y - dot_fa_x_fb_y * fa_x_x_fb_x_y);
       const T H5_3 = H5_2 * dot_fa_x_fb_x - H4_2 * fa_x_x_fb_y_y;
       const T H5_4 = H4_2 * fa_x_x_fb_x_y + H5_2 * dot_fa_x_fb_y;
-      const T H5_5 = H5_1 + fb_x_z * H5_3 + fb_y_z * H5_4;
-      const T H5_6 = fb_x_y * H5_3 + fb_y_y * H5_4;
-      const T H5_7 = fa_x_y * H5_5 - fa_x_z * H5_6;
+      const T H5_5 = fb_x_z * H5_3 + fb_y_z * H5_4;
+      const T H5_6 = H5_1 + H5_5;
+      const T H5_7 = fb_x_y * H5_3 + fb_y_y * H5_4;
+      const T H5_8 = fa_x_y * H5_6 - fa_x_z * H5_7;
       const T H5_1_2 = fb_x_x * H5_3 + fb_y_x * H5_4;
-      const T H5_2_2 = H5_1_2 - H4_21;
-      const T H5_3_2 = fa_x_z * H5_2_2 - fa_x_x * H5_5;
-      const T H5_1_3 = fa_x_x * H5_6 - fa_x_y * H5_2_2;
-      const T H5_1_4 = H4_9 * fa_x_x;
+      const T H5_2_2 = H5_1_2 - H4_10;
+      const T H5_3_2 = fa_x_z * H5_2_2 - fa_x_x * H5_6;
+      const T H5_1_3 = fa_x_x * H5_7 - fa_x_y * H5_2_2;
+      const T H5_1_4 = H4_1_4 * fa_x_x;
       const T H5_2_3 = fa_x_z * H5_3 - H5_1_4;
-      const T H5_3_3 = H4_6 * fa_x_x;
+      const T H5_3_3 = H4_4_2 * fa_x_x;
       const T H5_4_2 = H5_3_3 + fa_x_z * H5_4;
-      const T H5_5_2 = fb_x_y * H5_2_3 - H4_11 * H5_3 - H4_3 * H5_4 + fb_y_y * H5_4_2;
-      const T H5_1_5 = H4_5_2 + fa_x_x * H5_3;
-      const T H5_2_4 = fa_x_x * H5_4 - H4_7_2;
+      const T H5_5_2 = fb_x_y * H5_2_3 + fb_y_y * H5_4_2 - fa_x_y * H5_5;
+      const T H5_1_5 = H4_7_2 + fa_x_x * H5_3;
+      const T H5_2_4 = fa_x_x * H5_4 - H4_9_2;
       const T H5_3_4 = fb_x_z * H5_1_5 - fb_x_x * H5_2_3 - fb_y_x * H5_4_2 + fb_y_z * H5_2_4;
       const T H5_1_6 = fa_x_y * H5_1_2 - fb_x_y * H5_1_5 - fb_y_y * H5_2_4;
       const T fa_x_x_fb_y_z = fa_x_x * fb_y_y - fa_x_y * fb_y_x;
       const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
-      const T H6_1 = H4_8 * fa_x_x_fb_y_z - H4_10 * fa_x_x_fb_x_z;
+      const T H6_1 = H4_4 * (dot_fa_x_fb_x * fa_x_x_fb_y_z - dot_fa_x_fb_y * fa_x_x_fb_x_z);
       const T H6_2 = H6_1 * dot_fa_x_fb_x - H4_2 * fa_x_x_fb_y_z;
       const T H6_3 = H4_2 * fa_x_x_fb_x_z + H6_1 * dot_fa_x_fb_y;
       const T H6_4 = fb_x_z * H6_2 + fb_y_z * H6_3;
-      const T H6_5 = fb_x_y * H6_2 - H5_1 + fb_y_y * H6_3;
-      const T H6_6 = fa_x_y * H6_4 - fa_x_z * H6_5;
-      const T H6_1_2 = H4_18 + fb_x_x * H6_2 + fb_y_x * H6_3;
-      const T H6_2_2 = fa_x_z * H6_1_2 - fa_x_x * H6_4;
-      const T H6_1_3 = fa_x_x * H6_5 - fa_x_y * H6_1_2;
+      const T H6_5 = fb_x_y * H6_2 + fb_y_y * H6_3;
+      const T H6_6 = H6_5 - H5_1;
+      const T H6_7 = fa_x_y * H6_4 - fa_x_z * H6_6;
+      const T H6_1_2 = fb_x_x * H6_2 + fb_y_x * H6_3;
+      const T H6_2_2 = H6_1_2 - H4_3;
+      const T H6_3_2 = fa_x_z * H6_2_2 - fa_x_x * H6_4;
+      const T H6_1_3 = fa_x_x * H6_6 - fa_x_y * H6_2_2;
       const T H6_1_4 = H5_1_4 + fa_x_y * H6_2;
       const T H6_2_3 = fa_x_y * H6_3 - H5_3_3;
-      const T H6_3_2 = H4_12 * H6_2 + H4_4 * H6_3 - fb_x_z * H6_1_4 - fb_y_z * H6_2_3;
-      const T H6_1_5 = fa_x_x * H6_2 - H4_1_4;
-      const T H6_2_4 = H4_3_2 + fa_x_x * H6_3;
-      const T H6_3_3 = fb_x_z * H6_1_5 - H4_13 * H6_2 - H4_5 * H6_3 + fb_y_z * H6_2_4;
+      const T H6_3_3 = fa_x_z * H6_5 - fb_x_z * H6_1_4 - fb_y_z * H6_2_3;
+      const T H6_1_5 = fa_x_x * H6_2 - H4_2_3;
+      const T H6_2_4 = H4_5_2 + fa_x_x * H6_3;
+      const T H6_3_4 = fb_x_z * H6_1_5 + fb_y_z * H6_2_4 - fa_x_z * H6_1_2;
       const T H6_1_6 = fb_x_x * H6_1_4 + fb_y_x * H6_2_3 - fb_x_y * H6_1_5 - fb_y_y * H6_2_4;
-      H[3][3] = H4_23;
+      H[3][3] = H4_13;
       H[3][4] = H4_2_2;
       H[3][5] = H4_1_3;
-      H[3][9] = H4_9_2;
+      H[3][9] = H4_11_2;
       H[3][10] = H4_1_5;
       H[3][11] = H4_1_6;
-      H[4][3] = H5_7;
+      H[4][3] = H5_8;
       H[4][4] = H5_3_2;
       H[4][5] = H5_1_3;
       H[4][9] = H5_5_2;
       H[4][10] = H5_3_4;
       H[4][11] = H5_1_6;
-      H[5][3] = H6_6;
-      H[5][4] = H6_2_2;
+      H[5][3] = H6_7;
+      H[5][4] = H6_3_2;
       H[5][5] = H6_1_3;
-      H[5][9] = H6_3_2;
-      H[5][10] = H6_3_3;
+      H[5][9] = H6_3_3;
+      H[5][10] = H6_3_4;
       H[5][11] = H6_1_6;
-      H[9][3] = -H4_23;
+      H[9][3] = -H4_13;
       H[9][4] = -H4_2_2;
       H[9][5] = -H4_1_3;
-      H[9][9] = -H4_9_2;
+      H[9][9] = -H4_11_2;
       H[9][10] = -H4_1_5;
       H[9][11] = -H4_1_6;
-      H[10][3] = -H5_7;
+      H[10][3] = -H5_8;
       H[10][4] = -H5_3_2;
       H[10][5] = -H5_1_3;
       H[10][9] = -H5_5_2;
       H[10][10] = -H5_3_4;
       H[10][11] = -H5_1_6;
-      H[11][3] = -H6_6;
-      H[11][4] = -H6_2_2;
+      H[11][3] = -H6_7;
+      H[11][4] = -H6_3_2;
       H[11][5] = -H6_1_3;
-      H[11][9] = -H6_3_2;
-      H[11][10] = -H6_3_3;
+      H[11][9] = -H6_3_3;
+      H[11][10] = -H6_3_4;
       H[11][11] = -H6_1_6;
     }
 

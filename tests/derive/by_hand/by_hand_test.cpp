@@ -215,8 +215,11 @@ const std::vector<Line>& all() {
     in_the_plane<planar::parabola, by_hand::parabola>(lines);
     in_the_plane<planar::superellipse, by_hand::superellipse>(lines);
     in_the_plane<planar::wave, by_hand::wave>(lines);
+    in_space<spatial::cone, by_hand::cone>(lines);
+    in_space<spatial::cylinder, by_hand::cylinder>(lines);
     in_space<spatial::ellipsoid, by_hand::ellipsoid>(lines);
     in_space<spatial::helicoid, by_hand::helicoid>(lines);
+    in_space<spatial::monkey_saddle, by_hand::monkey_saddle>(lines);
     in_space<spatial::paraboloid, by_hand::paraboloid>(lines);
     in_space<spatial::saddle, by_hand::saddle>(lines);
     in_space<spatial::torus, by_hand::torus>(lines);

@@ -140,4 +140,57 @@ struct helicoid {
   }
 };
 
+// With w = z - (z . e) e, C = w . w - r^2 and n = 2 w.
+struct cylinder {
+  template <class T, class P>
+  static V3<T> off_axis(V3<T> z, const P& p) {
+    const V3<T> e = {p.t_x, p.t_y, p.t_z};
+    return z - dot(z, e) * e;
+  }
+  template <class T, class P>
+  static void position(V3<T> z, const P& p, T& C) {
+    const V3<T> w = off_axis(z, p);
+    C = dot(w, w) - p.radius * p.radius;
+  }
+  template <class T, class P>
+  static void gradient(const cdot::spatial::Pose<T>& b, V3<T> z, const P& p, T& C, V3<T>& n) {
+    const V3<T> w = off_axis(z, p);
+    C = dot(w, w) - p.radius * p.radius;
+    n = turned(b, w + w);
+  }
+};
+
+// With w = z - (1 + slope^2) (z . e) e, C = z . w and n = 2 w.
+struct cone {
+  template <class T, class P>
+  static void position(V3<T> z, const P& p, T& C) {
+    const V3<T> e = {p.t_x, p.t_y, p.t_z};
+    const T h = dot(z, e);
+    C = dot(z, z) - h * h * (T(1) + p.slope * p.slope);
+  }
+  template <class T, class P>
+  static void gradient(const cdot::spatial::Pose<T>& b, V3<T> z, const P& p, T& C, V3<T>& n) {
+    const V3<T> e = {p.t_x, p.t_y, p.t_z};
+    const V3<T> w = z - (T(1) + p.slope * p.slope) * dot(z, e) * e;
+    C = dot(z, w);
+    n = turned(b, w + w);
+  }
+};
+
+// n = (-3 k (x^2 - y^2), 6 k x y, 1) in the axes of b.
+struct monkey_saddle {
+  template <class T, class P>
+  static void position(V3<T> s, const P& p, T& C) {
+    C = s.z - p.k * s.x * (s.x * s.x - T(3) * s.y * s.y);
+  }
+  template <class T, class P>
+  static void gradient(const cdot::spatial::Pose<T>& b, V3<T> s, const P& p, T& C, V3<T>& n) {
+    const T x = p.k * s.x, y = p.k * s.y, X = x * s.x, Y = T(3) * y * s.y;
+    C = s.z - s.x * (X - Y);
+    const T along_x = T(3) * X - Y, along_y = T(6) * x * s.y;
+    n = {b.xz - along_x * b.xx + along_y * b.xy, b.yz - along_x * b.yx + along_y * b.yy,
+         b.zz - along_x * b.zx + along_y * b.zy};
+  }
+};
+
 }  // namespace by_hand

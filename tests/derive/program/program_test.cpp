@@ -107,6 +107,17 @@ TEST(Simplify, shares_sums_and_products) {
   EXPECT_EQ(count(products), (Count{0, 2, 0, 0, 0, 0})) << text(count(products));
 }
 
+// A cylinder: u . u - (u . t)^2 = u . (u - (u . t) t), and the gradient has these differences.
+TEST(Simplify, opens_a_product_beside_squares) {
+  Pool pool;
+  const Expr x = pool.symbol("x", Role::given), y = pool.symbol("y", Role::given), s = pool.symbol("s", Role::given),
+             t = pool.symbol("t", Role::given), h = s * x + t * y;
+  const Expr value = x * x + y * y - h * h;
+  const Expr along_x = Rational(2) * x - Rational(2) * s * h, along_y = Rational(2) * y - Rational(2) * t * h;
+  const Program program = simplify(assemble({{"C[0]", value}, {"C[1]", along_x}, {"C[2]", along_y}}));
+  EXPECT_LE(count(program).total(), 12) << text(count(program));
+}
+
 TEST(Simplify, takes_minus_signs_out_where_that_costs_nothing) {
   Pool pool;
   const Expr a = pool.symbol("a", Role::given), b = pool.symbol("b", Role::given), c = pool.symbol("c", Role::given),
