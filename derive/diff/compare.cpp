@@ -102,7 +102,7 @@ void compare_sizes(Entry& entry, const HandItem& item, const std::string& what, 
 // Each leaf of C that moves with a body, and the term of the product rule that it brings into `quantity`, which picks
 // an entry of J or all of Cdot.
 template <class Quantity>
-std::vector<Contribution> contributions(const Entry& entry, const ScalarRow& row, Rational scale, Quantity quantity) {
+std::vector<Contribution> contributions(const Entry& entry, const ScalarRow& row, Expr scale, Quantity quantity) {
   std::vector<Contribution> sources;
   if (row.kind == RowKind::velocity) return sources;
   for (const Expr leaf : leaves_of(std::span(&row.C, 1))) {
@@ -110,7 +110,7 @@ std::vector<Contribution> contributions(const Entry& entry, const ScalarRow& row
     ScalarRow only;
     only.Cdot = time_derivative(row.C, entry.joint, {entry.immovable, leaf});
     only.J = isolate_velocities(only.Cdot, entry.joint);
-    sources.push_back({leaf, scale * quantity(only)});
+    sources.push_back({leaf, scaled(scale, quantity(only))});
   }
   return sources;
 }
@@ -151,7 +151,7 @@ struct Quantity {
     for (int r = 0; r < generated.rows; ++r) {
       for (int c = 0; c < generated.columns; ++c) {
         Expr& e = generated.entries[static_cast<std::size_t>(r * generated.columns + c)];
-        e = scale_of(r, c) * e;
+        e = scaled(scale_of(r, c), e);
       }
     }
     const std::size_t before = entry.verdict.differences.size();
@@ -168,7 +168,7 @@ struct Quantity {
               [&](int r, int c) { return confirm(r, c, generated.at(r, c), published.at(r, c)); });
   }
 
-  Rational scale(int r) const { return part.scale[static_cast<std::size_t>(r)]; }
+  Expr scale(int r) const { return part.scale[static_cast<std::size_t>(r)]; }
   const ScalarRow& row(int r) const { return part.rows[static_cast<std::size_t>(r)]; }
 };
 
@@ -217,7 +217,7 @@ void judge_Cdot(Entry& entry, const Part& part, const HandItem& item) {
   const Matrix generated_rates = without_baumgarte(entry, part, item, part.generated.Cdot);
   Cdot.compare(generated_rates, one_column, scale, describe, [&](int r, int c, Expr generated, Expr published) {
     const auto rate = [&](const Sample& sample) {
-      return scale(r, c).value() * entry.confirm().rate(Cdot.row(r), sample);
+      return values_at({scale(r, c)}, sample)[0] * entry.confirm().rate(Cdot.row(r), sample);
     };
     return entry.confirm().against(rate, generated, published);
   });
@@ -241,7 +241,7 @@ void judge_J(Entry& entry, const Part& part, const HandItem& item) {
       [&](int r, int c, Expr generated, Expr published) {
         const Confirm confirm = entry.confirm();
         const auto slope = [&](const Sample& sample) {
-          return J.scale(r).value() * confirm.columns(J.row(r), sample)[static_cast<std::size_t>(c)];
+          return values_at({J.scale(r)}, sample)[0] * confirm.columns(J.row(r), sample)[static_cast<std::size_t>(c)];
         };
         return confirm.against(slope, generated, published);
       });
@@ -257,7 +257,7 @@ void judge_K(Entry& entry, const Part& part, const HandItem& item) {
       [&](int r, int c, Expr generated, Expr published) {
         const Confirm confirm = entry.confirm();
         const auto mass = [&](const Sample& sample) {
-          return scale(r, c).value() * confirm.mass(K.row(r), K.row(c), sample);
+          return values_at({scale(r, c)}, sample)[0] * confirm.mass(K.row(r), K.row(c), sample);
         };
         return confirm.against(mass, generated, published);
       });

@@ -13,8 +13,11 @@ struct Part {
   const HandPart* hand = nullptr;
   std::vector<ScalarRow> rows;
   Generated generated;
-  std::vector<Rational> scale;  // of each row: C of the source is that of the spec times this, -1 for the opposite sign
+  // Of each row: C of the source is that of the spec times this: -1 for the opposite sign, a number, or 1/l.
+  std::vector<Expr> scale;
 };
+// scale * e; signs and numbers go into sums.
+inline Expr scaled(Expr scale, Expr e) { return scale->kind == Kind::number ? scale->value * e : scale * e; }
 
 // Of the quantity that an item is about; Cdot for b = -Cdot.
 const Matrix& generated_of(const Part& part, const HandItem& item);

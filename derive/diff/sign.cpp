@@ -23,16 +23,16 @@ int block_of(const Entry& entry, int column) {
 
 // Adds the misfit of one row of an item, if the row has this scale.
 void add_misfit(Misfit& misfit, const Entry& entry, const Part& part, const HandItem& item, std::size_t row,
-                Rational scale) {
+                Expr scale) {
   if (!item.value) return;
   const Generated& g = part.generated;
   const Matrix& mine = item.what == "C" ? g.C : item.what == "J" ? g.J : g.Cdot;
   if (item.value->rows != mine.rows || item.value->columns != mine.columns) return;
-  const Rational factor = item.what == "b" ? -scale : scale;
+  const Expr factor = item.what == "b" ? -scale : scale;
   int block = -1;  // columns of v, or of w, of one body count as one
   for (int c = 0; c < mine.columns; ++c) {
     const Expr hand = item.value->at(static_cast<int>(row), c);
-    const Expr generated = factor * mine.at(static_cast<int>(row), c);
+    const Expr generated = scaled(factor, mine.at(static_cast<int>(row), c));
     if (entry.poses().equal(hand, generated)) continue;
     const Leftover left = leftover_terms(hand, generated, entry.joint, Opened::everything);
     misfit.blocks += block_of(entry, c) == block ? 0 : 1;
@@ -52,11 +52,11 @@ std::vector<std::size_t> first_of_equation(const std::vector<ScalarRow>& rows) {
 }
 
 // From K alone: D K D with the D = diag(+-1) that fits best; the first equation's sign is free.
-std::vector<Rational> signs_of_mass(const Entry& entry, const Part& part) {
+std::vector<Expr> signs_of_mass(const Entry& entry, const Part& part) {
   const Matrix& K = part.generated.K;
   const std::vector<std::size_t> first = first_of_equation(part.rows);
   int best = -1;
-  std::vector<Rational> kept = part.scale;
+  std::vector<Rational> kept(part.rows.size(), Rational(1));
   for (unsigned pattern = 0; pattern < (1u << part.rows.size()); pattern += 2) {
     std::vector<Rational> sign;
     bool together = true;
@@ -78,7 +78,9 @@ std::vector<Rational> signs_of_mass(const Entry& entry, const Part& part) {
     }
     if (agreed > best) best = agreed, kept = sign;
   }
-  return kept;
+  std::vector<Expr> scale;
+  for (const Rational sign : kept) scale.push_back(entry.pool().number(sign));
+  return scale;
 }
 
 // The rational number with a small denominator that k is, but for round-off.
@@ -92,31 +94,73 @@ std::optional<Rational> rational_near(double k) {
   return {};
 }
 
-// The numbers by which the source's C may be that of the spec: 1, -1, and their constant ratio where there is one.
-std::vector<Rational> candidates(const Entry& entry, const Part& part, std::size_t first, std::size_t rows) {
-  std::vector<Rational> all = {Rational(1), Rational(-1)};
+// True if e is undefined where p is 0.
+bool divides_by(Expr e, Expr p) {
+  return std::ranges::any_of(topological(std::span(&e, 1)), [&](Expr part) {
+    for (std::size_t i = 0; part->kind == Kind::product && i < part->args.size(); ++i)
+      if (part->args[i] == p && part->exponents[i] < 0) return true;
+    return false;
+  });
+}
+
+// 1, and powers of a parameter that are not zero wherever this C and the source's are defined.
+std::vector<Expr> factors_without_zeros(const Joint& joint, Expr C) {
+  std::vector<Expr> factors = {joint.pool->number(1)};
+  for (const Parameter& p : joint.parameters) {
+    if (p.kind != ParameterKind::scalar) continue;
+    const bool never_zero = p.above >= 0 || p.below <= 0;
+    for (const int power : {-1, -2, 1, 2})
+      if (power < 0 || never_zero || divides_by(C, p.symbol)) factors.push_back(pow(p.symbol, power));
+  }
+  return factors;
+}
+
+// The constant k with published = k * generated in these rows, if it is a rational number.
+std::optional<Rational> common_ratio(const Entry& entry, const Matrix& published, const Matrix& generated, Expr factor,
+                                     std::size_t first, std::size_t rows) {
+  std::optional<Rational> common;
+  for (std::size_t r = first; r < first + rows; ++r) {
+    const std::optional<double> ratio =
+        entry.poses().constant_ratio(published.entries[r], scaled(factor, generated.entries[r]));
+    const std::optional<Rational> k = ratio ? rational_near(*ratio) : std::nullopt;
+    if (!k || (common && *common != *k)) return {};
+    common = k;
+  }
+  return common;
+}
+
+// The scales by which the source's C may be that of the spec: 1, -1, and their ratio where that is a number, or a
+// number times a power of a parameter.
+std::vector<Expr> candidates(const Entry& entry, const Part& part, std::size_t first, std::size_t rows) {
+  Pool& pool = entry.pool();
+  std::vector<Expr> all = {pool.number(1), pool.number(-1)};
   if (!part.rows[first].row) return all;  // the value of a coordinate counts, not its zero alone
   for (const HandItem& item : part.hand->items) {
     if (item.kind != HandItem::Kind::quantity || item.what != "C" || !item.value) continue;
     const Matrix& mine = part.generated.C;
     if (item.value->rows != mine.rows || item.value->columns != 1) continue;
-    std::optional<Rational> common;
-    for (std::size_t r = first; r < first + rows; ++r) {
-      const std::optional<double> ratio = entry.poses().constant_ratio(item.value->entries[r], mine.entries[r]);
-      const std::optional<Rational> k = ratio ? rational_near(*ratio) : std::nullopt;
-      if (!k || (common && *common != *k)) return all;
-      common = k;
+    for (const Expr factor : factors_without_zeros(entry.joint, mine.entries[first])) {
+      const std::optional<Rational> k = common_ratio(entry, *item.value, mine, factor, first, rows);
+      if (!k) continue;
+      const Expr scale = *k * factor;
+      if (std::ranges::find(all, scale) == all.end()) all.push_back(scale);
+      break;
     }
-    if (common && abs(*common) != Rational(1)) all.push_back(*common);
   }
   return all;
+}
+
+// 2/l for 2*1/l
+std::string as_quotient(std::string product) {
+  if (const std::size_t at = product.find("*1/"); at != product.npos) product.erase(at, 2);
+  return product;
 }
 
 }  // namespace
 
 void find_signs(const Entry& entry, std::vector<Part>& parts) {
   struct Evidence {
-    std::vector<Rational> scales;
+    std::vector<Expr> scales;
     std::vector<Misfit> misfits;
   };
   std::map<std::string, Evidence> evidence;  // by the first row of an equation; several parts may have it
@@ -141,7 +185,7 @@ void find_signs(const Entry& entry, std::vector<Part>& parts) {
     for (const std::size_t first : first_of_equation(part.rows)) {
       const auto found = evidence.find(part.rows[first].name);
       any = any || found != evidence.end();
-      Rational scale(1);
+      Expr scale = entry.pool().number(1);
       if (found != evidence.end()) {
         const std::vector<Misfit>& misfits = found->second.misfits;
         scale =
@@ -156,21 +200,25 @@ void find_signs(const Entry& entry, std::vector<Part>& parts) {
 
 // Of which equations C has another sign or scale, and the consequence.
 std::vector<std::string> remarks_on_signs(const std::vector<Part>& parts) {
-  std::map<Rational, std::string> names;  // of equations, by their scale
+  std::map<std::string, std::pair<Expr, std::string>> names;  // of equations, by the text of their scale
   for (const Part& part : parts) {
     for (std::size_t i = 0; i < part.rows.size(); ++i) {
       const std::string name = "`" + (part.rows[i].row ? part.rows[i].row->name : part.rows[i].name) + "`";
-      std::string& said = names[part.scale[i]];
+      auto& [scale, said] = names[text(part.scale[i])];
+      scale = part.scale[i];
       if (said.find(name) == said.npos) said += (said.empty() ? "" : ", ") + name;
     }
   }
   std::vector<std::string> remarks;
-  for (const auto& [scale, equations] : names) {
-    if (scale == Rational(1)) continue;
+  for (const auto& [words, of_scale] : names) {
+    const auto& [scale, equations] = of_scale;
+    if (is_one(scale)) continue;
     const std::string of = names.size() == 1 ? "" : " of " + equations;
     remarks.push_back(
-        scale != Rational(-1)
-            ? fmt::format("C{} is {} times that of the spec: J is, too, and K twice over", of, scale.text())
+        scale->kind != Kind::number
+            ? fmt::format("C{} is scaled by {}: J is, too, and K twice over", of, as_quotient(words))
+        : !is_number(scale, -1)
+            ? fmt::format("C{} is {} times that of the spec: J is, too, and K twice over", of, words)
         : names.size() == 1
             ? "C has the opposite sign: J changes its sign, K does not"
             : fmt::format("C{} has the opposite sign: its rows of J change their sign, and K between them "

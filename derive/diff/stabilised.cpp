@@ -51,11 +51,11 @@ std::string in_short(Expr e, const Entry& entry, const std::string& otherwise) {
 Matrix without_baumgarte(Entry& entry, const Part& part, const HandItem& item, Matrix generated) {
   if (item.what != "b" || item.value->rows != generated.rows || item.value->columns != 1) return generated;
   for (std::size_t r = 0; r < part.rows.size(); ++r) {
-    const Expr published = item.value->entries[r], C = part.scale[r] * part.generated.C.entries[r];
-    const Expr added = published + part.scale[r] * generated.entries[r];
+    const Expr published = item.value->entries[r], C = scaled(part.scale[r], part.generated.C.entries[r]);
+    const Expr added = published + scaled(part.scale[r], generated.entries[r]);
     if (is_zero(C) || entry.poses().equal(added, C->pool->number(0))) continue;
     if (!is_constant_share(added, C, -1, entry.poses())) continue;
-    generated.entries[r] = Rational(-1) / part.scale[r] * published;
+    generated.entries[r] = scaled(-pow(part.scale[r], -1), published);
     entry.verdict.remarks.push_back(fmt::format("b agrees in row {}, plus a Baumgarte term that drives C to 0: {}",
                                                 name_of_row(part, static_cast<int>(r)),
                                                 in_short(added, entry, "a multiple of C")));
@@ -68,12 +68,12 @@ Matrix without_softness(Entry& entry, const Part& part, const HandItem& item, Ma
   const Expr one = entry.pool().number(1);
   for (std::size_t r = 0; r < part.rows.size(); ++r) {
     const std::size_t at = r * part.rows.size() + r;
-    const Rational square = part.scale[r] * part.scale[r];
+    const Expr square = part.scale[r] * part.scale[r];
     const Expr published = item.value->entries[at],
-               added = difference_of(published, square * generated.entries[at], entry.joint);
+               added = difference_of(published, scaled(square, generated.entries[at]), entry.joint);
     if (is_zero(added) || free_symbols(added).empty() || depends_on_masses(added)) continue;
     if (!is_constant_share(added, one, 1, entry.poses())) continue;
-    generated.entries[at] = Rational(1) / square * published;
+    generated.entries[at] = scaled(pow(square, -1), published);
     entry.verdict.remarks.push_back(fmt::format("K agrees in row {}, plus softness on the diagonal: {}",
                                                 name_of_row(part, static_cast<int>(r)),
                                                 in_short(added, entry, "a positive number")));

@@ -206,6 +206,29 @@ TEST(Diff, OrderAndScaleAreTheAuthorsChoice) {
       Agreement::differs);
 }
 
+// 1/l has no zero, l has one: there l C = 0 holds wherever the bodies are.
+TEST(Diff, AScaleByAParameterIsTheAuthorsChoiceIfItHasNoZero) {
+  const auto scaled = [](const std::string& by, const std::string& of_K) {
+    return judged("distance", "  C = (norm(u) - l)" + by + "\n  J = [ n'" + by + ", cross(ra, n)" + by + ", -n'" + by +
+                                  ", -cross(rb, n)" + by + " ]\n  K = (1/m(a) + 1/m(b) + cross(ra, n)^2/I(a) + " +
+                                  "cross(rb, n)^2/I(b))" + of_K + "\n");
+  };
+  const Judgement right = scaled("/l", "/l^2");
+  EXPECT_EQ(right.agreement, Agreement::agrees);
+  ASSERT_EQ(right.remarks.size(), 1u);
+  EXPECT_EQ(right.remarks[0], "C is scaled by 1/l: J is, too, and K twice over");
+  EXPECT_EQ(scaled("/l", "/l").agreement, Agreement::differs);
+  EXPECT_EQ(scaled("*l", "*l^2").agreement, Agreement::differs);
+  const Judgement twice = scaled("*(-2)/l", "*4/l^2");
+  EXPECT_EQ(twice.agreement, Agreement::agrees);
+  EXPECT_EQ(twice.remarks.at(0), "C is scaled by -2/l: J is, too, and K twice over");
+  const Judgement one_row = judged("prismatic",
+                                   "  C = [ dot(t, u) ; (angle(a) - angle(b) - phi)/phi ]\n"
+                                   "  J = [ t', cross(ra, t), -t', -cross(rb + u, t) ; 0, 1/phi, 0, -1/phi ]\n");
+  EXPECT_EQ(one_row.agreement, Agreement::agrees);
+  EXPECT_EQ(one_row.remarks.at(0), "C of `angular` is scaled by 1/phi: J is, too, and K twice over");
+}
+
 // Terms that a solver adds on purpose; with the wrong sign, or of a mass, they are mistakes.
 TEST(Diff, BaumgarteTermsAndSoftnessAreNoMistakes) {
   const std::string C = "(angle(a) - angle(b) - phi)", rate = "(w(a) - w(b))";
