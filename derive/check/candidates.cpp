@@ -2,12 +2,15 @@
 #include <algorithm>
 
 #include "derive/check/mass.hpp"
+#include "derive/expression/shared.hpp"
 #include "derive/proof/words.hpp"
 
 namespace cdot::derive {
 namespace {
 
 constexpr std::size_t most_vectors = 12, longest_name = 60, most_candidates = 60;
+// A text has about a letter per node at least; that of a large expression is not even written to be measured.
+constexpr double most_nodes = 3 * longest_name;
 
 // A component along an axis of the world means nothing to a joint.
 bool of_world(Expr e) {
@@ -56,6 +59,7 @@ class Candidates {
     if (e->kind == Kind::scale && e->name.empty()) return add(e->args[0]), add(e->args[1]);
     if (e->kind == Kind::norm) return add(e->args[0]);
     if (e->kind == Kind::number || e->unit_length || is_zero(e)) return;
+    if (written_size(e, [](Expr part) { return !part->name.empty(); }) > most_nodes) return;
     const std::string name = spec_text(e->vector ? e : with_leading_sign(e), joint_);
     const auto same = [&](const Candidate& c) { return c.e == e || c.name == name; };
     if (name.size() <= longest_name && std::ranges::none_of(all_, same)) all_.push_back({e, name});

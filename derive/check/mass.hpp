@@ -63,6 +63,7 @@ struct Singular {
   std::vector<std::string> zeros;  // K is singular under each of these conditions: "u = 0"
   bool by_parameters = false;      // no pose of the bodies alone was found there: parameters had to change
   bool of_poses = false;           // at least one of them depends on the pose
+  bool given_up = false;           // the search was too long: there may be more
   std::vector<Sample> poses{};     // if they are asked for: one for each zero, else one
 };
 // With `drawn`, a regular pose is added to it, and the singular ones have poses near that.

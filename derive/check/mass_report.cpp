@@ -97,6 +97,7 @@ void check_mass(const Subject& subject, Findings& findings, std::vector<PoseToDr
     add("while " + conditions + ", " + text);
     if (poses != nullptr) draw(singular[f], "while " + conditions + ", ", *poses);
   }
+  if (singular[0].given_up) add("the search for poses at which K is singular was given up: too long");
 }
 
 }  // namespace cdot::derive

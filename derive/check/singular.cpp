@@ -15,15 +15,20 @@ constexpr std::size_t starts = 3;   // with the spec's defaults, and as many oth
 constexpr double dependent = 1e-5;  // share of a row that is no combination of the rows before it
 constexpr double guarded = 1e-9;    // a divisor or a length below counts as 0, for which kernels have guards
 constexpr std::size_t most_conditions = 2;
+constexpr double most_work = 2e7;  // evaluated nodes
 
 class Search {
  public:
   Search(const Subject& subject, std::vector<Freedom> freedoms)
-      : subject_(subject), freedoms_(std::move(freedoms)), found_(freedoms_.size()) {
+      : subject_(subject),
+        freedoms_(std::move(freedoms)),
+        found_(freedoms_.size()),
+        candidates_(candidates_for_zero(subject)) {
     for (const ScalarRow& row : subject.block.rows) {
       if (row.kind != RowKind::velocity) C_.push_back(row.C);
     }
     J_ = columns_of(subject.block.rows);
+    for (const std::vector<Expr>& row : J_) work_of_J_ += work_of(row);
     usual_.resize(J_.size());
     for (const Sample& sample : subject.anywhere) {
       const Gradients J = jacobian_at(subject.block, sample);
@@ -41,13 +46,13 @@ class Search {
   std::vector<Singular> run() {
     if (poses_.empty()) return found_;
     for (std::size_t f = 0; f < freedoms_.size(); ++f) found_[f].where = where_at_starts(f);
-    const std::vector<Candidate> candidates = candidates_for_zero(subject_);
     for (const bool only_bodies : {true, false}) {
-      for (const Candidate& candidate : candidates) try_zero(candidate, only_bodies);
+      for (const Candidate& candidate : candidates_) try_zero(candidate, only_bodies);
       for (std::size_t f = 0; only_bodies && f < freedoms_.size(); ++f) {
         if (found_[f].where == Singular::Where::nowhere) try_anything(f);
       }
     }
+    for (Singular& found : found_) found.given_up = given_up();
     return found_;
   }
 
@@ -76,7 +81,8 @@ class Search {
     for (const auto& row : J_) entries.insert(entries.end(), row.begin(), row.end());
     for (const Expr e : topological(entries)) {
       const bool guarded = e->kind == Kind::unit || e->kind == Kind::norm;
-      if (!guarded || names.size() == most_conditions || poses_.empty() || !breaks(e)) continue;
+      const bool enough = names.size() == most_conditions || poses_.empty() || given_up();
+      if (!guarded || enough || !breaks(e)) continue;
       const std::string name = spec_text(e->args[0], subject_.joint);
       if (std::ranges::find(names, name) == names.end()) names.push_back(name);
     }
@@ -84,6 +90,11 @@ class Search {
   }
 
  private:
+  static double work_of(const std::vector<Expr>& expressions) {
+    return static_cast<double>(topological(expressions).size());
+  }
+  bool given_up() const { return work_ > most_work; }
+
   std::vector<Sample> poses_near(const Sample& near, std::size_t f) const {
     const auto singular = [&](const Sample& sample) { return is_singular(sample, f); };
     std::vector<Sample> poses;
@@ -104,8 +115,9 @@ class Search {
           for (const Expr component : components_of(zero)) equations.push_back(component);
           const bool only_bodies = !found_[f].by_parameters;
           poses.push_back(near);
-          if (!reaches(equations, poses.back(), only_bodies) || !singular(poses.back()))
-            poses.back() = moved(equations, only_bodies).front();
+          if (reaches(equations, poses.back(), only_bodies) && singular(poses.back())) continue;
+          for (std::size_t i = poses_.size(); i-- > 0;)  // the first that gets there
+            if (Sample start = poses_[i]; reaches(equations, start, only_bodies)) poses.back() = start;
         }
     }
     for (Sample& pose : poses) pose = completed(pose, near);
@@ -127,13 +139,14 @@ class Search {
     const auto singular = [&](const Sample& sample) { return is_singular(sample, 0); };
     const auto J = J_;
     bool any = false;
-    for (const Candidate& candidate : candidates_for_zero(subject_)) {
-      if (any || zeros.empty() || !candidate.e->vector || direction->kind != Kind::unit) continue;
+    for (const Candidate& candidate : candidates_) {
+      if (any || zeros.empty() || !candidate.e->vector || direction->kind != Kind::unit || given_up()) continue;
       const std::map<const Node*, Expr> guard = {{&*direction, unit(candidate.e)}};
       for (auto& row : J_)
         for (Expr& entry : row) entry = substitute(entry, guard, KeepNames::no);
       any = std::ranges::all_of(zeros, singular);
       J_ = J;
+      numbers_.emplace(poses_[0], guarded);
     }
     return any || (!zeros.empty() && std::ranges::all_of(zeros, singular));
   }
@@ -146,11 +159,11 @@ class Search {
       const bool more = known.where == Singular::Where::at_zeros && known.by_parameters != only_bodies;
       if (known.where == Singular::Where::nowhere || (more && known.zeros.size() < most_conditions)) open.push_back(f);
     }
-    if (open.empty()) return;
+    if (open.empty() || given_up()) return;
     std::vector<Expr> equations = C_;
     for (const Expr component : components_of(candidate.e)) equations.push_back(component);
     const std::vector<Sample> zeros = moved(equations, only_bodies);
-    if (zeros.empty()) return;
+    if (zeros.empty() || given_up()) return;
     for (const std::size_t f : open) {
       const auto singular = [&](const Sample& sample) { return is_singular(sample, f); };
       const auto known = [&](const Sample& sample) { return is_known(sample, f); };
@@ -164,8 +177,8 @@ class Search {
   }
 
   void try_anything(std::size_t f) {
-    if (std::ranges::any_of(poses_, [&](Sample sample) { return move_to_dependence(C_, sample, f); }))
-      found_[f].where = Singular::Where::somewhere;
+    const auto depends = [&](Sample sample) { return !given_up() && move_to_dependence(C_, sample, f); };
+    if (std::ranges::any_of(poses_, depends)) found_[f].where = Singular::Where::somewhere;
   }
 
   // Moves the bodies to where the equations hold and a row of J is a combination of the others, if it gets there.
@@ -182,13 +195,14 @@ class Search {
   std::vector<Sample> moved(const std::vector<Expr>& equations, bool only_bodies) const {
     std::vector<Sample> there;
     for (Sample sample : poses_)
-      if (reaches(equations, sample, only_bodies)) there.push_back(sample);
+      if (!given_up() && reaches(equations, sample, only_bodies)) there.push_back(sample);
     return there;
   }
 
   bool reaches(const std::vector<Expr>& equations, Sample& sample, bool only_bodies) const {
     Numbers numbers(poses_[0]);
-    const auto values = [&](const Sample& at) {
+    const auto values = [&, work = work_of(equations)](const Sample& at) {
+      work_ += work;
       numbers.move_to(at);
       return numbers.of(equations);
     };
@@ -215,6 +229,7 @@ class Search {
   // The least share of a row of J, in the columns that may move, that is no combination of the rows before it.
   double independence(const Sample& sample, std::size_t f) const {
     Gradients J;
+    work_ += work_of_J_;
     numbers_->move_to(sample);
     const std::size_t width = columns_per_body(subject_.joint.dimension);
     const std::size_t linear = static_cast<std::size_t>(subject_.joint.dimension);
@@ -250,6 +265,9 @@ class Search {
   std::size_t by_defaults_ = 0;
   mutable std::optional<Numbers> numbers_;  // those of the kernel, moved from sample to sample
   std::map<std::size_t, std::vector<Expr>> vanishing_;
+  const std::vector<Candidate> candidates_;
+  double work_of_J_ = 0;
+  mutable double work_ = 0;
 };
 
 }  // namespace

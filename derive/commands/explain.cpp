@@ -44,16 +44,7 @@ std::string explanation(const Derivation& derivation, const Options& options) {
   return explanation_text(steps);
 }
 
-int run(const Options& options) {
-  const SpecsFolder folder(options.specs_folder);
-  const ReadResult read = folder.read(folder.find(options.spec));
-  std::cerr << render(*read.file, read.diagnostics);
-  if (!read.joint) return 2;
-  if (read.joint->dimension == 2 && options.form != "global") {
-    fmt::print(stderr, "cdot explain: --form is for spatial joints: in the plane w is one number, in every form\n");
-    return 2;
-  }
-  const std::string text = explanation(derive(*read.joint), options);
+int print(const std::string& text, const Options& options) {
   if (options.output.empty()) {
     std::cout << text;
     return std::cout.flush() ? 0 : 2;
@@ -63,6 +54,32 @@ int run(const Options& options) {
   if (out.flush()) return 0;
   fmt::print(stderr, "cdot explain: cannot write {}\n", options.output);
   return 2;
+}
+
+// A spec that can be read but not derived.
+int refused(const ReadResult& read, const std::string& reason) {
+  Diagnostics diagnostics;
+  diagnostics.error(read.joint->rows.empty() ? Span{} : read.joint->rows.front().where, reason);
+  std::cerr << render(*read.file, diagnostics);
+  return 2;
+}
+
+int run(const Options& options) {
+  const SpecsFolder folder(options.specs_folder);
+  const ReadResult read = folder.read(folder.find(options.spec));
+  std::cerr << render(*read.file, read.diagnostics);
+  if (!read.joint) return 2;
+  if (read.joint->dimension == 2 && options.form != "global") {
+    fmt::print(stderr, "cdot explain: --form is for spatial joints: in the plane w is one number, in every form\n");
+    return 2;
+  }
+  try {
+    return print(explanation(derive(*read.joint), options), options);
+  } catch (const NotLinear& e) {
+    return refused(read, e.what());
+  } catch (const NumberTooLarge& e) {
+    return refused(read, e.what());
+  }
 }
 
 void add_options(Line& line, Options& options) {

@@ -21,6 +21,13 @@ double total(std::span<const Expr> roots, const std::map<const Node*, double>& s
 
 }  // namespace
 
+double written_size(Expr e, bool (*named)(Expr)) {
+  std::map<const Node*, double> sizes;
+  for (const Expr part : topological(std::span(&e, 1)))
+    sizes[&*part] = part != e && named(part) ? 1 : written(part, sizes);
+  return sizes.at(&*e);
+}
+
 std::vector<Expr> shared_parts(std::span<const Expr> roots, bool (*named)(Expr)) {
   const std::vector<Expr> order = topological(roots);
   std::map<const Node*, double> sizes;

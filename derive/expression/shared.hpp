@@ -10,4 +10,7 @@ namespace cdot::derive {
 // roots together are short. `named`: has a name already.
 std::vector<Expr> shared_parts(std::span<const Expr> roots, bool (*named)(Expr));
 
+// The nodes of e as it is written out, where a part with a name of its own is one.
+double written_size(Expr e, bool (*named)(Expr));
+
 }  // namespace cdot::derive

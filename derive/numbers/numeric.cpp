@@ -233,6 +233,8 @@ void draw_leaf(const Joint& joint, Expr leaf, Random& random, Sample& sample) {
   }
   if (is_world_axis(leaf) || is_body_axis(joint, *leaf)) {
     sample.local[leaf->symbol] = unit_axis(joint.dimension == 2 ? 'x' : leaf->symbol.back());
+    for (std::size_t k = 0; axis.triad && k < 3; ++k)  // whoever sees one axis may ask for the others
+      sample.local[(*axis.triad)[k]->symbol] = unit_axis("xyz"[k]);
   } else if (axis.triad) {
     sample.triads.emplace(axis.triad, random_orientation(random));
   } else if (leaf->unit_length) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <stdexcept>
 
+#include "derive/expression/shared.hpp"
 #include "derive/proof/ginac.hpp"
 
 namespace cdot::derive {
@@ -177,11 +178,15 @@ ex Algebra::turned(bool cosine, const ex& angle) {
   return reduced(cosine ? c : s);
 }
 
+// Larger sums have no use as variables: multiplied out, they lengthen polynomials.
+constexpr double most_written = 200;  // nodes
+
 // A change of variables shortens polynomials: for u = x_a + ra - x_b - rb in the joint, u replaces x_a. Then |u|^2 has
 // two terms, not twenty.
 void Algebra::shorten(Expr root) {
   for (const Expr u : topological(std::span(&root, 1))) {
     if (!u->vector || u->kind != Kind::sum) continue;
+    if (written_size(u, [](Expr) { return false; }) > most_written) continue;
     const Triple<ex> components = of_vector(u);
     for (const Expr part : u->args) {
       if (part->kind != Kind::symbol || part->role != Role::position) continue;
