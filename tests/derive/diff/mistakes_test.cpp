@@ -247,7 +247,22 @@ const std::vector<Mistake>& mistakes() {
 
 // All joints of the plane; in space those that take seconds.
 std::vector<std::string> catalogue() {
-  std::vector<std::string> names = {"spatial/cone", "spatial/n1", "spatial/distance"};
+  std::vector<std::string> names = {"spatial/cone",
+                                    "spatial/n1",
+                                    "spatial/distance",
+                                    "spatial/max_distance",
+                                    "spatial/n2",
+                                    "spatial/point_on_plane",
+                                    "spatial/point_on_line",
+                                    "spatial/rack_and_pinion",
+                                    "spatial/gear",
+                                    "spatial/pulley",
+                                    "spatial/spherical_spherical",
+                                    "spatial/p1",
+                                    "spatial/p2",
+                                    "spatial/spherical",
+                                    "spatial/driven",
+                                    "spatial/rolling_sphere"};
   for (const fs::path& spec : SpecsFolder(specs_folder()).all())
     if (spec.parent_path().filename() == "planar")
       names.push_back(spec.parent_path().filename().string() + "/" + spec.stem().string());
