@@ -50,7 +50,7 @@ ex Minors::of(const std::vector<std::size_t>& columns) {
     const ex part = entry * of(others);
     sum = k % 2 == 0 ? sum + part : sum - part;
   }
-  return made_.emplace(columns, expanded_if_short(sum)).first->second;
+  return made_.emplace(columns, expanded_if_short(sum).value_or(sum)).first->second;
 }
 
 bool is_positive(const ex& expanded, const std::vector<ex>& symbols) {

@@ -211,11 +211,15 @@ Modular pow(Modular base, std::uint64_t exponent) {
 Modular inverse(Modular x) { return pow(x, Modular::prime - 2); }
 
 Nullity difference_modulo_prime(Expr a, Expr b) {
-  return nullity([&](std::uint64_t seed) {
+  return nullity([&](std::uint64_t seed) -> std::optional<std::pair<Modular, bool>> {
     Pose pose(seed);
     Evaluation<Modular> values(pose);
-    const Modular difference = values.scalar(a) - values.scalar(b);
-    return std::pair(difference, pose.holds_for_reals());
+    try {
+      const Modular difference = values.scalar(a) - values.scalar(b);
+      return std::pair(difference, pose.holds_for_reals());
+    } catch (const UndefinedHere&) {
+      return std::nullopt;
+    }
   });
 }
 

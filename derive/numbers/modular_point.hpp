@@ -2,12 +2,16 @@
 // rely. Our own expressions and GiNaC's are both evaluated by it.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "derive/numbers/modular.hpp"
 #include "derive/numbers/numeric.hpp"
 
 namespace cdot::derive {
+
+inline constexpr std::uint64_t attempts_at_points = 16384;  // of one zero-test, most of them undefined
 
 // Thrown for the root of a non-square and for a division by zero: the caller tries another point.
 struct UndefinedHere {};
@@ -54,19 +58,17 @@ class ModularPoint {
   bool holds_for_reals_ = true;
 };
 
-// The zero-test of a formula. `value_at(seed)` returns its value at a point, and whether that holds for the reals. With
-// n roots, one point in 2^n is defined.
+// The zero-test of a formula. `value_at(seed)` returns its value at a point, and whether that holds for the reals; none
+// where it is undefined. With n roots, one point in 2^n is defined.
 template <class ValueAt>
-Nullity nullity(ValueAt value_at) {
-  constexpr std::uint64_t attempts = 16384;
+Nullity nullity(ValueAt value_at, std::uint64_t attempts = attempts_at_points) {
   int points = 0;
   for (std::uint64_t seed = 1; seed <= attempts && points < exact_points; ++seed) {
-    try {
-      const auto [value, holds_for_reals] = value_at(seed);
-      if (!value.is_zero()) return holds_for_reals ? Nullity::differs : Nullity::unknown;
-      ++points;
-    } catch (const UndefinedHere&) {
-    }
+    const std::optional<std::pair<Modular, bool>> found = value_at(seed);
+    if (!found) continue;
+    const auto [value, holds_for_reals] = *found;
+    if (!value.is_zero()) return holds_for_reals ? Nullity::differs : Nullity::unknown;
+    ++points;
   }
   return points == exact_points ? Nullity::zero : Nullity::unknown;
 }

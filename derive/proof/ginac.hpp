@@ -97,12 +97,15 @@ class Algebra final : public Arithmetic<ex> {
   ex symbol_for(const ex& compound);
   void relate(Atom::Kind kind, const ex& symbol, const ex& operand);
   std::string difference_at(const ex& e, std::uint64_t seed);
-  Nullity nullity_of(const ex& e) const;
+  Nullity nullity_of(const ex& e);
 
   // Budgets of one test and of all tests together, in factors of multiplied terms. A test that exceeds its budget
   // halves that of the next one, which is likely to be as expensive.
   static constexpr std::int64_t most_work = 500000, least_work = most_work / 64;
   static constexpr std::int64_t most_work_in_all = 6 * most_work;
+  // Steps at points of all tests together, some twenty times what our hardest specs take. Later tests give up earlier.
+  static constexpr std::int64_t most_work_at_points = 200000000;
+  static constexpr std::uint64_t least_attempts = attempts_at_points / 256;
   struct TooLong : std::runtime_error {
     TooLong() : std::runtime_error("too much to multiply out") {}
   };
@@ -140,6 +143,12 @@ class Algebra final : public Arithmetic<ex> {
   std::vector<std::pair<ex, ex>> meanings_;              // of symbols without a name, as they came up
   std::int64_t allowance_ = most_work, left_for_test_ = most_work, left_in_all_ = most_work_in_all;
   PointValues prints_{1, PointValues::Roots::of_all};  // of every symbol, by when it came up
+  Steps steps_;                                        // of all expressions tested so far
+  std::vector<Modular> values_of_steps_;               // at the last point
+  // By the place of a root, quotient or function: the seeds of points at which it has no value.
+  std::unordered_map<std::size_t, std::vector<bool>> without_value_;
+  std::size_t symbols_of_points_ = 0;
+  std::int64_t left_for_points_ = most_work_at_points;
   Evaluation<ex> evaluation_;
 };
 

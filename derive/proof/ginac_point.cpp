@@ -1,5 +1,6 @@
 #include "derive/proof/ginac_point.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 
@@ -78,34 +79,54 @@ Modular PointValues::function(const std::optional<Fn>& fn, std::span<const Modul
 
 std::size_t Steps::place_of(const ex& e) {
   if (const auto found = places_.find(e); found != places_.end()) return found->second;
-  const bool sum = is_a<GiNaC::add>(e), product = is_a<GiNaC::mul>(e);
   const bool power = is_a<GiNaC::power>(e) && is_a<numeric>(e.op(1));
-  using Kind = Step::Kind;
-  const Kind kind = e.nops() == 0 ? Kind::leaf
-                    : sum         ? Kind::sum
-                    : product     ? Kind::product
-                    : power       ? Kind::power
-                                  : Kind::function;
+  const Kind kind = e.nops() == 0         ? Kind::leaf
+                    : is_a<GiNaC::add>(e) ? Kind::sum
+                    : is_a<GiNaC::mul>(e) ? Kind::product
+                    : power               ? Kind::power
+                                          : Kind::function;
   std::vector<std::size_t> operands;
   for (std::size_t i = 0; i < (power ? 1 : e.nops()); ++i) operands.push_back(place_of(e.op(i)));
   const std::size_t begin = operands_.size();
   operands_.insert(operands_.end(), operands.begin(), operands.end());
-  steps_.push_back({power ? e.op(1) : kind == Kind::leaf ? e : ex(0), function_in(e), kind, begin, operands_.size()});
+  const bool whole = kind == Kind::sum || kind == Kind::product;
+  steps_.push_back({kind, whole ? ex(0) : e, function_in(e), begin, operands_.size()});
   return places_[e] = steps_.size() - 1;
 }
 
-Modular PointValues::of(const Steps& e) {
-  std::vector<Modular> values;
-  values.reserve(e.steps_.size());
-  for (const Steps::Step& step : e.steps_) values.push_back(of_step(e, step, values));
-  return values.back();
+std::vector<std::size_t> Steps::parts_of(std::size_t last) {
+  visits_.resize(steps_.size());
+  ++visit_;
+  std::vector<std::size_t> parts{last};
+  visits_[last] = visit_;
+  for (std::size_t next = 0; next < parts.size(); ++next) {
+    const Step& step = steps_[parts[next]];
+    for (std::size_t i = step.begin; i < step.end; ++i) {
+      if (visits_[operands_[i]] != visit_) parts.push_back(operands_[i]);
+      visits_[operands_[i]] = visit_;
+    }
+  }
+  std::ranges::sort(parts);
+  return parts;
+}
+
+Modular PointValues::of(const Steps& all, std::span<const std::size_t> parts, std::vector<Modular>& values) {
+  values.resize(all.size());
+  for (const std::size_t place : parts) {
+    try {
+      values[place] = of_step(all, all.steps_[place], values);
+    } catch (const UndefinedHere&) {
+      throw NoValue{place};
+    }
+  }
+  return values[parts.back()];
 }
 
 Modular PointValues::of_step(const Steps& all, const Steps::Step& step, const std::vector<Modular>& values) {
   const auto operand = [&](std::size_t i) { return values[all.operands_[i]]; };
-  using Kind = Steps::Step::Kind;
+  using Kind = Steps::Kind;
   if (step.kind == Kind::leaf) return of(step.e);
-  if (step.kind == Kind::power) return power(operand(step.begin), ex_to<numeric>(step.e));
+  if (step.kind == Kind::power) return power(operand(step.begin), ex_to<numeric>(step.e.op(1)));
   if (step.kind == Kind::function) {
     std::vector<Modular> args;
     for (std::size_t i = step.begin; i < step.end; ++i) args.push_back(operand(i));

@@ -10,25 +10,32 @@
 
 namespace cdot::derive {
 
-// An expression as steps, operands before their users: quicker than the tree where several points follow.
+// Expressions as steps, operands before their users, each part once: quicker than trees where many points and
+// expressions follow.
 class Steps {
  public:
-  explicit Steps(const ex& e) { place_of(e); }
+  std::size_t place_of(const ex& e);  // of its last step
+  // The places of all parts of the expression at `last`, operands first.
+  std::vector<std::size_t> parts_of(std::size_t last);
+  // Powers and functions may have no value.
+  bool is_partial(std::size_t place) const { return steps_[place].kind >= Kind::power; }
+  std::size_t size() const { return steps_.size(); }
 
  private:
   friend class PointValues;
+  enum class Kind { leaf, sum, product, power, function };
   struct Step {
-    ex e;                  // a leaf, or the exponent of a power
-    std::optional<Fn> fn;  // none of a function that no table knows
-    enum class Kind { leaf, sum, product, power, function } kind;
+    Kind kind;
+    ex e;                    // of a leaf, power or function
+    std::optional<Fn> fn;    // none of a function that no table knows
     std::size_t begin, end;  // its operands
   };
-
-  std::size_t place_of(const ex& e);
 
   std::vector<Step> steps_;
   std::vector<std::size_t> operands_;
   std::unordered_map<ex, std::size_t, std::hash<ex>, SameExpression> places_;
+  std::vector<std::size_t> visits_;  // by place: the last one
+  std::size_t visit_ = 0;
 };
 
 class PointValues {
@@ -42,7 +49,11 @@ class PointValues {
   void put_direction(const std::vector<ex>& unit_vector);
 
   Modular of(const ex& e);
-  Modular of(const Steps& e);
+  // The value of the last of these parts. Throws the place of a part that has none.
+  struct NoValue {
+    std::size_t place;
+  };
+  Modular of(const Steps& all, std::span<const std::size_t> parts, std::vector<Modular>& values);
   bool holds_for_reals() const { return point_.holds_for_reals(); }
 
  private:

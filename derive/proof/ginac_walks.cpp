@@ -132,9 +132,9 @@ class Expansion {
 
 }  // namespace
 
-ex expanded_if_short(const ex& e) {
+std::optional<ex> expanded_if_short(const ex& e) {
   constexpr double most_terms = 20000;
-  return Expansion().of(e).work > most_terms ? e : e.expand();
+  return Expansion().of(e).work > most_terms ? std::nullopt : std::optional(e.expand());
 }
 
 ex substituted(const ex& e, const GiNaC::exmap& symbols) { return Rebuilt(symbols)(e); }

@@ -2,6 +2,7 @@
 // once for each path that leads to it: in nested names, as u = sin(t) cos(t), twice as often with each name.
 #pragma once
 
+#include <optional>
 #include <set>
 #include <unordered_map>
 #include <utility>
@@ -31,8 +32,8 @@ ex substituted(const ex& e, const GiNaC::exmap& symbols);
 // The value of e in decimals, where every symbol has a rational value.
 ex in_decimals(const ex& e, const GiNaC::exmap& symbols);
 
-// e multiplied out, unless that takes more than 20,000 terms.
-ex expanded_if_short(const ex& e);
+// e multiplied out; none if that takes more than 20,000 terms.
+std::optional<ex> expanded_if_short(const ex& e);
 
 // The symbols in e.
 std::set<ex, GiNaC::ex_is_less> symbols_of(const ex& e);

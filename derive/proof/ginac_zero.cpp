@@ -206,12 +206,13 @@ void Algebra::shorten(Expr root) {
 // name.
 bool Algebra::replace(const ex& x, const ex& compound, const std::string& name) {
   if (change_.contains(x)) return false;
-  const ex now = compound.subs(change_, GiNaC::subs_options::no_pattern).expand();
-  const ex slope = now.coeff(x);
+  const std::optional<ex> now = expanded_if_short(substituted(compound, change_));
+  if (!now) return false;
+  const ex slope = now->coeff(x);
   if (!is_a<numeric>(slope) || slope.is_zero()) return false;
   const ex symbol = fresh_symbol(name);
   if (name.empty()) meanings_.emplace_back(symbol, compound);
-  const ex value = (symbol - now) / slope + x;
+  const ex value = (symbol - *now) / slope + x;
   for (auto& [symbol, earlier] : change_) {
     earlier = earlier.subs(x == value, GiNaC::subs_options::no_pattern);
   }
@@ -259,23 +260,47 @@ std::string Algebra::difference_at(const ex& e, std::uint64_t seed) try {
 }
 
 std::string Algebra::witness(const ex& e) {
+  constexpr std::int64_t work_of_decimals = 100;  // in steps modulo the prime
   const long before = GiNaC::Digits;
   GiNaC::Digits = digits;
   std::string witness;
-  for (std::uint64_t seed = 1; seed <= random_poses && witness.empty(); ++seed) witness = difference_at(e, seed);
+  const std::uint64_t poses = left_for_points_ > 0 ? random_poses : 1;
+  const auto work = work_of_decimals * static_cast<std::int64_t>(steps_.parts_of(steps_.place_of(e)).size());
+  for (std::uint64_t seed = 1; seed <= poses && witness.empty(); ++seed) {
+    left_for_points_ -= work;
+    witness = difference_at(e, seed);
+  }
   GiNaC::Digits = before;
   return witness;
 }
 
-Nullity Algebra::nullity_of(const ex& e) const {
-  const Steps steps(e);
-  return nullity([&](std::uint64_t seed) {
+// A part without a value at a point has none there in later tests: with n roots, one point in 2^n has all values. New
+// symbols change the points.
+Nullity Algebra::nullity_of(const ex& e) {
+  const std::vector<std::size_t> parts = steps_.parts_of(steps_.place_of(e));
+  if (symbols_of_points_ != leaves_.size()) without_value_.clear();
+  symbols_of_points_ = leaves_.size();
+  std::vector<std::vector<bool>*> known;  // of the parts that may have no value
+  for (const std::size_t place : parts) {
+    if (!steps_.is_partial(place)) continue;
+    known.push_back(&without_value_[place]);
+    known.back()->resize(attempts_at_points + 1);
+  }
+  const auto value_at = [&](std::uint64_t seed) -> std::optional<std::pair<Modular, bool>> {
+    if (std::ranges::any_of(known, [&](const auto* seeds) { return (*seeds)[seed]; })) return std::nullopt;
+    left_for_points_ -= static_cast<std::int64_t>(parts.size() + 4 * leaves_.size());
     PointValues values(seed, PointValues::Roots::of_squares);
     for (const auto& [name, leaf] : leaves_) values.put(leaf.symbol);
     for (const std::vector<ex>& u : units_) values.put_direction(u);
-    const Modular value = values.of(steps);
-    return std::pair(value, values.holds_for_reals());
-  });
+    try {
+      const Modular value = values.of(steps_, parts, values_of_steps_);
+      return std::pair(value, values.holds_for_reals());
+    } catch (const PointValues::NoValue& none) {
+      if (steps_.is_partial(none.place)) without_value_.at(none.place)[seed] = true;
+      return std::nullopt;
+    }
+  };
+  return nullity(value_at, left_for_points_ > 0 ? attempts_at_points : least_attempts);
 }
 
 Algebra::Zero Algebra::is_zero(const ex& e) {
