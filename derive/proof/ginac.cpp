@@ -1,10 +1,46 @@
 // Expressions to GiNaC's, over either set of coordinates, and the chain rule over them.
 #include "derive/proof/ginac.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace cdot::derive {
 
 Algebra::Algebra(const Joint& joint, Route route, int immovable)
     : joint_(joint), route_(route), immovable_(immovable), evaluation_(*this) {}
+
+namespace {
+
+struct NumbersTooLong final : NumberTooLarge {
+  const char* what() const noexcept override {
+    return "exact numbers in the proof would have more than 30000 digits: names with fractions are raised to powers, "
+           "one inside the other";
+  }
+};
+
+double bits_of(Rational value) {
+  return std::log2(1 + std::abs(static_cast<double>(value.num()))) + std::log2(static_cast<double>(value.den())) - 1;
+}
+
+}  // namespace
+
+// GiNaC takes numbers out of powers: (c x)^3 = c^3 x^3, so nested names have numbers of 3^n digits. A sum needs about
+// the digits of its longest term, a product those of all factors.
+Expr Algebra::with_short_numbers(Expr root) {
+  constexpr double most_bits = 100000;
+  if (bits_.contains(&*root)) return root;
+  for (const Expr e : topological(std::span(&root, 1))) {
+    double bits = e->kind == Kind::number ? bits_of(e->value) : 0;
+    for (std::size_t i = 0; i < e->args.size(); ++i) {
+      const double of_arg = bits_.at(&*e->args[i]);
+      if (e->kind == Kind::sum) bits = std::max(bits, of_arg + bits_of(e->coefs[i]));
+      else bits += of_arg * (e->kind == Kind::product ? std::abs(e->exponents[i]) : 1);
+    }
+    if (bits > most_bits) throw NumbersTooLong();
+    bits_[&*e] = bits;
+  }
+  return root;
+}
 
 ex Algebra::leaf(const std::string& name, const ex& rate) {
   const auto found = leaves_.find(name);

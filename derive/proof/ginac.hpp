@@ -25,8 +25,9 @@ class Algebra final : public Arithmetic<ex> {
   enum class Route { names, raw };
   Algebra(const Joint& joint, Route route, int immovable = -1);
 
-  ex of(Expr scalar) { return evaluation_.scalar(scalar); }
-  Triple<ex> of_vector(Expr vector) { return evaluation_.vector(vector); }
+  // Both throw NumberTooLarge where the numbers of GiNaC's exact form would never end.
+  ex of(Expr scalar) { return evaluation_.scalar(with_short_numbers(scalar)); }
+  Triple<ex> of_vector(Expr vector) { return evaluation_.vector(with_short_numbers(vector)); }
   // Introduces variables for the sums of vectors in `root`, which shortens the polynomials of the zero-test.
   void shorten(Expr root);
   // The coordinate and velocity symbols of a body: x, y, theta and v_x, v_y, w; in space x, y, z, e0, e1, e2, e3 and
@@ -79,6 +80,7 @@ class Algebra final : public Arithmetic<ex> {
     ex rate;
   };
 
+  Expr with_short_numbers(Expr e);
   ex leaf(const std::string& name, const ex& rate);
   Triple<ex> free_vector(const Node& symbol);
   Triple<ex> vector_of_body(const Node& symbol);
@@ -96,7 +98,7 @@ class Algebra final : public Arithmetic<ex> {
   ex turned(bool cosine, const ex& angle);
   ex symbol_for(const ex& compound);
   void relate(Atom::Kind kind, const ex& symbol, const ex& operand);
-  std::string difference_at(const ex& e, std::uint64_t seed);
+  std::string difference_at(const ex& e, std::span<const std::size_t> parts, std::uint64_t seed);
   Nullity nullity_of(const ex& e);
 
   // Budgets of one test and of all tests together, in factors of multiplied terms. A test that exceeds its budget
@@ -149,6 +151,7 @@ class Algebra final : public Arithmetic<ex> {
   std::unordered_map<std::size_t, std::vector<bool>> without_value_;
   std::size_t symbols_of_points_ = 0;
   std::int64_t left_for_points_ = most_work_at_points;
+  std::unordered_map<const Node*, double> bits_;  // of the numbers in an expression, at most
   Evaluation<ex> evaluation_;
 };
 

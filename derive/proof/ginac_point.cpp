@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <stdexcept>
 
 namespace cdot::derive {
 
@@ -108,6 +109,37 @@ std::vector<std::size_t> Steps::parts_of(std::size_t last) {
   }
   std::ranges::sort(parts);
   return parts;
+}
+
+numeric Steps::in_decimals(std::span<const std::size_t> parts, const GiNaC::exmap& symbols) const {
+  std::vector<numeric> values(steps_.size());
+  for (const std::size_t place : parts) values[place] = in_decimals(steps_[place], values, symbols);
+  return values[parts.back()];
+}
+
+numeric Steps::in_decimals(const Step& step, const std::vector<numeric>& values, const GiNaC::exmap& symbols) const {
+  if (step.kind == Kind::sum || step.kind == Kind::product) {
+    numeric total(step.kind == Kind::sum ? 0 : 1);
+    for (std::size_t i = step.begin; i < step.end; ++i) {
+      const numeric& operand = values[operands_[i]];
+      total = step.kind == Kind::sum ? total.add(operand) : total.mul(operand);
+    }
+    return total;
+  }
+  ex value = step.e;
+  if (step.kind == Kind::power) {
+    value = pow(ex(values[operands_[step.begin]]), value.op(1));
+  } else if (step.kind == Kind::function) {
+    GiNaC::exvector args;
+    for (std::size_t i = step.begin; i < step.end; ++i) args.push_back(values[operands_[i]]);
+    value = is_a<GiNaC::power>(value) ? pow(args[0], args[1])
+                                      : ex(GiNaC::function(ex_to<GiNaC::function>(value).get_serial(), args));
+  } else if (const auto known = symbols.find(value); known != symbols.end()) {
+    value = known->second;
+  }
+  value = value.evalf();
+  if (!is_a<numeric>(value)) throw std::domain_error("a part has no value");
+  return ex_to<numeric>(value);
 }
 
 Modular PointValues::of(const Steps& all, std::span<const std::size_t> parts, std::vector<Modular>& values) {

@@ -20,6 +20,9 @@ class Steps {
   // Powers and functions may have no value.
   bool is_partial(std::size_t place) const { return steps_[place].kind >= Kind::power; }
   std::size_t size() const { return steps_.size(); }
+  // The value of the last of these parts where symbols have these values, with GiNaC's present number of digits. Throws
+  // where it has none.
+  numeric in_decimals(std::span<const std::size_t> parts, const GiNaC::exmap& symbols) const;
 
  private:
   friend class PointValues;
@@ -30,6 +33,8 @@ class Steps {
     std::optional<Fn> fn;    // none of a function that no table knows
     std::size_t begin, end;  // its operands
   };
+
+  numeric in_decimals(const Step& step, const std::vector<numeric>& values, const GiNaC::exmap& symbols) const;
 
   std::vector<Step> steps_;
   std::vector<std::size_t> operands_;

@@ -60,20 +60,17 @@ ex Slope::of_function(const ex& e) {
 namespace {
 
 // Rebuilds an expression from its leaves, each part once.
-class Rebuilt : public GiNaC::map_function {
+class Rebuilt final : public GiNaC::map_function {
  public:
   explicit Rebuilt(const GiNaC::exmap& symbols) : symbols_(symbols) {}
 
   ex operator()(const ex& e) override {
     if (e.nops() == 0) return leaf(e);
     if (const auto found = done_.find(e); found != done_.end()) return found->second;
-    const ex rebuilt = made(e.map(*this));
+    const ex rebuilt = e.map(*this);
     done_.emplace(e, rebuilt);
     return rebuilt;
   }
-
- protected:
-  virtual ex made(const ex& e) const { return e; }
 
  private:
   ex leaf(const ex& e) const {
@@ -83,14 +80,6 @@ class Rebuilt : public GiNaC::map_function {
 
   const GiNaC::exmap& symbols_;
   std::unordered_map<ex, ex, std::hash<ex>, SameExpression> done_;
-};
-
-class InDecimals final : public Rebuilt {
- public:
-  using Rebuilt::Rebuilt;
-
- private:
-  ex made(const ex& e) const override { return e.evalf(); }
 };
 
 // Bounds on what multiplying out takes: the terms of the result, and of all parts on all paths to them.
@@ -138,8 +127,6 @@ std::optional<ex> expanded_if_short(const ex& e) {
 }
 
 ex substituted(const ex& e, const GiNaC::exmap& symbols) { return Rebuilt(symbols)(e); }
-
-ex in_decimals(const ex& e, const GiNaC::exmap& symbols) { return InDecimals(symbols)(e).evalf(); }
 
 std::set<ex, GiNaC::ex_is_less> symbols_of(const ex& e) {
   std::set<ex, GiNaC::ex_is_less> symbols;

@@ -29,9 +29,6 @@ class Slope {
 // e with other expressions in place of symbols.
 ex substituted(const ex& e, const GiNaC::exmap& symbols);
 
-// The value of e in decimals, where every symbol has a rational value.
-ex in_decimals(const ex& e, const GiNaC::exmap& symbols);
-
 // e multiplied out; none if that takes more than 20,000 terms.
 std::optional<ex> expanded_if_short(const ex& e);
 

@@ -237,7 +237,7 @@ std::optional<ex> Algebra::numerator(const ex& e, bool cancelled) {
 
 // Signs, logarithms and angles need the order of the reals. So long decimals at a random rational pose decide where
 // arithmetic modulo the prime does not; a reader can check them. Empty if e is zero or undefined there.
-std::string Algebra::difference_at(const ex& e, std::uint64_t seed) try {
+std::string Algebra::difference_at(const ex& e, std::span<const std::size_t> parts, std::uint64_t seed) try {
   Random random(seed);
   GiNaC::exmap pose;
   for (const auto& [name, leaf] : leaves_) pose[leaf.symbol] = random_fraction(random);
@@ -245,8 +245,8 @@ std::string Algebra::difference_at(const ex& e, std::uint64_t seed) try {
     const std::vector<ex> direction = random_direction(random, u.size());
     for (std::size_t k = 0; k < u.size(); ++k) pose[u[k]] = direction[k];
   }
-  const ex value = in_decimals(e, pose);
-  if (!is_a<numeric>(value) || abs(ex_to<numeric>(value)) < pow(numeric(10), -60)) return "";
+  const numeric value = steps_.in_decimals(parts, pose);
+  if (abs(value) < pow(numeric(10), -60)) return "";
   const auto shown = [](const ex& x) { return fmt::format("{:.4g}", real(ex_to<numeric>(x)).to_double()); };
   std::string witness = "by " + shown(value) + " at";
   const auto symbols = symbols_of(e);
@@ -265,10 +265,11 @@ std::string Algebra::witness(const ex& e) {
   GiNaC::Digits = digits;
   std::string witness;
   const std::uint64_t poses = left_for_points_ > 0 ? random_poses : 1;
-  const auto work = work_of_decimals * static_cast<std::int64_t>(steps_.parts_of(steps_.place_of(e)).size());
+  const std::vector<std::size_t> parts = steps_.parts_of(steps_.place_of(e));
+  const auto work = work_of_decimals * static_cast<std::int64_t>(parts.size());
   for (std::uint64_t seed = 1; seed <= poses && witness.empty(); ++seed) {
     left_for_points_ -= work;
-    witness = difference_at(e, seed);
+    witness = difference_at(e, parts, seed);
   }
   GiNaC::Digits = before;
   return witness;
