@@ -1,4 +1,4 @@
-// Sparse polynomials with rational coefficients, for the zero-test: GiNaC's trees take some thirty times as long to
+// Sparse polynomials with rational coefficients, for the zero-test: GiNaC's trees take twenty to fifty times as long to
 // multiply out. GiNaC's expressions go in, and come out where they are needed.
 #pragma once
 
