@@ -21,9 +21,10 @@ struct Summands {
   void add(Rational coef, int arg) { args.push_back(arg), coefs.push_back(coef); }
 };
 
-class ProgramBuilder {
+// The rules that bring an operation into its normal form. Who stores operations, and where, is left to the heirs.
+class Builder {
  public:
-  explicit ProgramBuilder(std::size_t expected = 0) { program_.ops.reserve(expected), by_hash_.reserve(expected); }
+  virtual ~Builder() = default;
   int number(Rational value);
   // Numeric coefficients of operands move into sums and out of products; nothing is flattened.
   int sum(Summands terms, std::string name = {});
@@ -33,18 +34,36 @@ class ProgramBuilder {
   // The same operation with other operands.
   int rebuild(const Operation& op, std::vector<int> args);
 
-  const Operation& at(int op) const { return program_.at(op); }
+  virtual const Operation& at(int op) const = 0;
+
+ protected:
+  // The operation equal to `op`, or its negative if that is known, or `op` itself, stored.
+  virtual int intern(Operation op) = 0;
+
+ private:
+  // Takes the numeric factor out of an operand: a sum with one term, or a number.
+  Rational pull_coefficient(int& arg) const;
+};
+
+class ProgramBuilder final : public Builder {
+ public:
+  explicit ProgramBuilder(std::size_t expected = 0) { program_.ops.reserve(expected), by_hash_.reserve(expected); }
+
+  const Operation& at(int op) const override { return program_.at(op); }
   int size() const { return static_cast<int>(program_.ops.size()); }
   void output(std::string name, int op) { program_.outputs.push_back({std::move(name), op}); }
   Program finish() { return std::move(program_); }
 
  private:
-  int intern(Operation op);
-  // Takes the numeric factor out of an operand: a sum with one term, or a number.
-  Rational pull_coefficient(int& arg) const;
+  int intern(Operation op) override;
 
   Program program_;
   std::unordered_multimap<std::size_t, int> by_hash_;
 };
+
+// The same for a sum and its negative.
+std::size_t hash_of(const Operation& op);
+// The sign s with a = s b; 0 if there is none. Only sums of several terms are negatives of each other.
+int sign_between(const Operation& a, const Operation& b);
 
 }  // namespace cdot::derive

@@ -10,32 +10,6 @@
 namespace cdot::derive {
 namespace {
 
-// The same for a sum and its negative.
-std::size_t hash_of(const Operation& op) {
-  std::uint64_t hash = op.kind == OpKind::input ? std::hash<std::string>()(op.input) : 0;
-  const auto add = [&](std::int64_t n) {
-    hash = (hash ^ static_cast<std::uint64_t>(n)) * 0x9E3779B97F4A7C15u;
-    hash ^= hash >> 32;
-  };
-  const auto add_size = [&](Rational r) { add(abs(r).num()), add(r.den()); };
-  add(static_cast<int>(op.kind));
-  add(static_cast<int>(op.fn));
-  add_size(op.value);
-  for (const int arg : op.args) add(arg);
-  for (const Rational coef : op.coefs) add_size(coef);
-  for (const int exponent : op.exponents) add(exponent);
-  return hash;
-}
-
-// The sign s with a = s b; 0 if there is none. Only sums of several terms are negatives of each other.
-int sign_between(const Operation& a, const Operation& b) {
-  if (a.kind != b.kind || a.fn != b.fn || a.args != b.args || a.exponents != b.exponents) return 0;
-  if (a.value != b.value || a.input != b.input) return 0;
-  if (a.coefs == b.coefs) return 1;
-  const bool negative = std::ranges::equal(a.coefs, b.coefs, [](Rational c, Rational d) { return c == -d; });
-  return negative && a.args.size() > 1 ? -1 : 0;
-}
-
 void add_cost(const Program& program, const Operation& op, Count& count) {
   const int n = static_cast<int>(op.args.size());
   if (op.kind == OpKind::sum) {
@@ -58,6 +32,30 @@ void add_cost(const Program& program, const Operation& op, Count& count) {
 }
 
 }  // namespace
+
+std::size_t hash_of(const Operation& op) {
+  std::uint64_t hash = op.kind == OpKind::input ? std::hash<std::string>()(op.input) : 0;
+  const auto add = [&](std::int64_t n) {
+    hash = (hash ^ static_cast<std::uint64_t>(n)) * 0x9E3779B97F4A7C15u;
+    hash ^= hash >> 32;
+  };
+  const auto add_size = [&](Rational r) { add(abs(r).num()), add(r.den()); };
+  add(static_cast<int>(op.kind));
+  add(static_cast<int>(op.fn));
+  add_size(op.value);
+  for (const int arg : op.args) add(arg);
+  for (const Rational coef : op.coefs) add_size(coef);
+  for (const int exponent : op.exponents) add(exponent);
+  return hash;
+}
+
+int sign_between(const Operation& a, const Operation& b) {
+  if (a.kind != b.kind || a.fn != b.fn || a.args != b.args || a.exponents != b.exponents) return 0;
+  if (a.value != b.value || a.input != b.input) return 0;
+  if (a.coefs == b.coefs) return 1;
+  const bool negative = std::ranges::equal(a.coefs, b.coefs, [](Rational c, Rational d) { return c == -d; });
+  return negative && a.args.size() > 1 ? -1 : 0;
+}
 
 Lead lead_of(const Program& program, const Operation& sum) {
   for (std::size_t i = 0; i < sum.args.size(); ++i) {
@@ -85,22 +83,22 @@ int ProgramBuilder::intern(Operation op) {
   return size() - 1;
 }
 
-int ProgramBuilder::number(Rational value) {
+int Builder::number(Rational value) {
   Operation op;
   op.value = value;
   return intern(std::move(op));
 }
 
-int ProgramBuilder::leaf(const Operation& op) { return intern(op); }
+int Builder::leaf(const Operation& op) { return intern(op); }
 
-Rational ProgramBuilder::pull_coefficient(int& arg) const {
+Rational Builder::pull_coefficient(int& arg) const {
   const Operation& op = at(arg);
   if (op.kind != OpKind::sum || op.args.size() != 1) return Rational(1);
   arg = op.args[0];
   return op.coefs[0];
 }
 
-int ProgramBuilder::sum(Summands terms, std::string name) {
+int Builder::sum(Summands terms, std::string name) {
   auto& [args, coefs] = terms;
   std::size_t n = 0;  // terms so far
   for (std::size_t i = 0; i < args.size(); ++i) {
@@ -129,7 +127,7 @@ int ProgramBuilder::sum(Summands terms, std::string name) {
   return intern(std::move(op));
 }
 
-int ProgramBuilder::product(std::vector<int> args, std::vector<int> exponents, std::string name) {
+int Builder::product(std::vector<int> args, std::vector<int> exponents, std::string name) {
   Rational coef(1);
   std::size_t n = 0;  // factors so far
   for (std::size_t i = 0; i < args.size(); ++i) {
@@ -157,7 +155,7 @@ int ProgramBuilder::product(std::vector<int> args, std::vector<int> exponents, s
   return coef == Rational(1) ? core : sum({{core}, {coef}}, std::move(name));
 }
 
-int ProgramBuilder::function(Fn fn, std::vector<int> args, std::string name) {
+int Builder::function(Fn fn, std::vector<int> args, std::string name) {
   Operation op;
   op.kind = OpKind::function;
   op.fn = fn;
@@ -176,7 +174,7 @@ int ProgramBuilder::function(Fn fn, std::vector<int> args, std::string name) {
   return intern(std::move(op));
 }
 
-int ProgramBuilder::rebuild(const Operation& op, std::vector<int> args) {
+int Builder::rebuild(const Operation& op, std::vector<int> args) {
   switch (op.kind) {
     case OpKind::number: return number(op.value);
     case OpKind::factor:

@@ -74,6 +74,9 @@ Program assemble(const std::vector<NamedExpr>& outputs);
 
 // The cheapest program that the passes find: they share pairs of terms and of factors, and take out common factors.
 Program simplify(const Program& program);
+// The same with the work that the search may do (effort.hpp): where it is spent, the cheapest program so far.
+struct Effort;
+Program simplify(const Program& program, Effort& effort);
 
 // How often each operation is used by needed operations and outputs.
 std::vector<int> use_counts(const Program& program);
