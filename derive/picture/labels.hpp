@@ -17,7 +17,7 @@ class Labels {
  public:
   Labels(double width, double height) : width_(width), height_(height) {}
 
-  // What labels keep off.
+  // The places that labels keep off.
   void avoid(OnPaper from, OnPaper to) { lines_.push_back({from, to}); }
   // The box of a label of this text beside `at`, taken from now on.
   LabelBox place(OnPaper at, const std::string& text, double font);

@@ -23,7 +23,7 @@ class Graph final : public Builder {
   // The replacement of an operation, built from `now` of its operands; nullopt to leave it as it is.
   using Rewrite = std::function<std::optional<int>(Graph&, const Operation&)>;
   void rewrite(const std::vector<int>& ops, const Rewrite& rewrite);
-  // What became of an operand of the operation that is being rewritten.
+  // The present number of an operand of the operation that is being rewritten.
   int now(int op) const { return now_[index(op)]; }
 
   const Operation& at(int op) const override { return ops_[index(op)]; }

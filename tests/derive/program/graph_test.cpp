@@ -132,7 +132,7 @@ TEST(Graph, rewrites_kernels_as_copies_do) {
   }
 }
 
-// What is left when c is taken out of the first sum is known, but comes later: c (a + b), then d (a + b).
+// The rest of the first sum without c is known, but comes later: c (a + b), then d (a + b).
 class LaterSum : public testing::Test {
  protected:
   static Program program(Rational of_a, Rational of_b) {

@@ -9,8 +9,8 @@
 
 namespace cdot::test {
 
-// What a spec has declared so far, and expressions over it. Each function gives an expression of at most `depth` nested
-// operators that has brackets where it needs them.
+// Names that a spec has declared so far, and expressions over them. Each function gives an expression of at most
+// `depth` nested operators that has brackets where it needs them.
 class Vocabulary {
  public:
   Vocabulary(std::uint64_t seed, int dimension, int bodies);
