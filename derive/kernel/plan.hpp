@@ -8,6 +8,7 @@
 
 #include "derive/derivation/derivation.hpp"
 #include "derive/expression/components.hpp"
+#include "derive/program/effort.hpp"
 #include "derive/program/program.hpp"
 
 namespace cdot::derive {
@@ -51,8 +52,18 @@ struct Kernel {
 };
 
 Kernel plan(const Derivation& derivation);
-// Common terms and factors shared in every function; of two ways, the cheaper one.
-Kernel simplified(Kernel kernel);
+// Work of the searches for cheap programs, in the units of program/effort.hpp: of all of a kernel, and of each one.
+struct SearchBounds {
+  std::int64_t kernel, program;
+};
+inline constexpr SearchBounds usual_bounds = {10 * most_effort, most_effort};
+// A function whose search a bound ended: a cheaper program may exist.
+struct CutShort {
+  std::string function;  // "jacobian"
+  int operations = 0;    // of the cheapest program so far
+};
+// Common terms and factors shared in every function; of two ways, the cheaper one. Adds to `cut_short`, if given.
+Kernel simplified(Kernel kernel, std::vector<CutShort>* cut_short = nullptr, SearchBounds bounds = usual_bounds);
 
 // Writes expressions out in components of poses and parameters: an arm becomes c l_x - s l_y, in space xx l_x + xy l_y
 // + xz l_z. Kernels, ledger and hand derivations share it, so all are counted alike.

@@ -1,5 +1,6 @@
 #include "derive/pipeline/pipeline.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "derive/derivation/free_coordinates.hpp"
@@ -45,6 +46,20 @@ void prove_derivation(const Derivation& derivation, const ProofRecord& record, O
   outcome.said += shown_text(outcome.proofs);
 }
 
+// A warning with the number of functions that may be too long, and the longest of them.
+std::string warning_of(const std::vector<CutShort>& cut_short, const Joint& joint) {
+  if (cut_short.empty()) return "";
+  const CutShort& longest = *std::ranges::max_element(cut_short, {}, &CutShort::operations);
+  const std::string text = fmt::format(
+      "functions of the kernel that may have more operations than need be: {}; the longest is {}, with {} operations. "
+      "The search for shorter programs ended at its bound of counted work",
+      cut_short.size(), longest.function, longest.operations);
+  Diagnostics warning;
+  warning.warning(joint.rows.empty() ? Span{} : joint.rows.front().where, text,
+                  "none is needed: the kernel is right, only slower");
+  return render(*joint.file, warning);
+}
+
 // Adds the costs of the published derivations beside it, as far as they are right.
 void judge_hand(const fs::path& spec, const ReadResult& read, Outcome& outcome) {
   const fs::path hand = fs::path(spec).replace_extension(".hand");
@@ -58,7 +73,7 @@ void judge_hand(const fs::path& spec, const ReadResult& read, Outcome& outcome) 
 
 }  // namespace
 
-Outcome derive_spec(const fs::path& spec, const SpecsFolder& folder, const ProofRecord& record) {
+Outcome derive_spec(const fs::path& spec, const SpecsFolder& folder, const ProofRecord& record, SearchBounds bounds) {
   Outcome outcome;
   const ReadResult read = folder.read(spec);  // text to C(q) = 0
   outcome.complaints = render(*read.file, read.diagnostics);
@@ -67,9 +82,11 @@ Outcome derive_spec(const fs::path& spec, const SpecsFolder& folder, const Proof
   const Derivation derivation = derive(*read.joint);  // C to Cdot, J, K, gamma; also with a body immovable
   prove_derivation(derivation, record, outcome);      // by GiNaC, all of it
   if (!outcome.proved) return outcome;
-  const Kernel planned = plan(derivation);    // one program a function
-  const Kernel kernel = simplified(planned);  // common terms and factors shared
-  outcome.joint = print(kernel);              // C++ and what it costs
+  std::vector<CutShort> cut_short;
+  const Kernel planned = plan(derivation);                        // one program a function
+  const Kernel kernel = simplified(planned, &cut_short, bounds);  // common terms and factors shared
+  outcome.complaints += warning_of(cut_short, derivation.joint);
+  outcome.joint = print(kernel);  // C++ and what it costs
   judge_hand(spec, read, outcome);
   return outcome;
 }

@@ -27,7 +27,8 @@ struct Outcome {
   std::vector<LedgerRow> hand_costs;  // of the published derivations beside it that agree
 };
 
-// Proves what is not on record.
-Outcome derive_spec(const std::filesystem::path& spec, const SpecsFolder& folder, const ProofRecord& record);
+// Proves what is not on record. Warns of programs whose search for fewer operations these bounds ended.
+Outcome derive_spec(const std::filesystem::path& spec, const SpecsFolder& folder, const ProofRecord& record,
+                    SearchBounds bounds = usual_bounds);
 
 }  // namespace cdot::derive

@@ -186,10 +186,6 @@ Program cheaper(Program a, Program b) { return weight(count(a)) <= weight(count(
 
 }  // namespace
 
-// Units of work for one program. The costliest of the catalogue takes 2.6 million; the costliest of a dihedral angle
-// over four bodies, with 5,834 operations, takes 56 million.
-constexpr std::int64_t most_effort = 100'000'000;
-
 Program simplify(const Program& program, Effort& effort) {
   const Program start = without_cancelling(program, effort);
   Program best = searched(start, effort);
