@@ -26,6 +26,25 @@ void add_spring(BasicWorld<S>& world, SpringDefinition spring) {
   world.add_spring(spring);
 }
 
+// After the joints and effects, whose defaults are of the written poses.
+template <class S>
+void move_to_start(BasicWorld<S>& world, const Scene& scene) {
+  for (int body = 0; body < std::ssize(scene.bodies); ++body) {
+    const SceneBody& source = scene.bodies[static_cast<std::size_t>(body)];
+    if (!source.started) continue;
+    const auto put = [&](const auto& start) {
+      typename S::Exact::Scalar numbers[S::freedom];
+      double written[S::freedom];
+      S::InDoubles::write(start.velocity, written);
+      std::copy_n(written, S::freedom, numbers);
+      world.set_pose(body, start.place);
+      world.set_velocity(body, S::Exact::read_velocity(numbers));
+    };
+    if constexpr (S::dimension == Dimension::planar) put(source.planar_start);
+    else put(source.spatial_start);
+  }
+}
+
 // "C2 = -0.25, Cdot1 = -3": positions first; several rows are numbered.
 std::string rows_text(std::span<const Inconsistency> rows, std::size_t joint_rows) {
   std::string list;
@@ -91,6 +110,7 @@ BasicWorld<S> build_world_in(const Scene& scene) {
   }
   if (mistakes > 0) throw SceneError(report, mistakes);
   for (const SpringDefinition& spring : scene.springs) add_spring(world, spring);
+  move_to_start(world, scene);
   return world;
 }
 

@@ -7,6 +7,7 @@
 #include "runtime/rows/parameters.hpp"
 #include "runtime/tool/scene/keys.hpp"
 #include "runtime/tool/scene/read.hpp"
+#include "runtime/tool/scene/start.hpp"
 
 namespace cdot {
 namespace {
@@ -170,6 +171,8 @@ void read_soft(Entry& joint, const char* key, JointReading& to) {
   to.joint.definition.soft = read_softness(joint, key);
 }
 
+void read_start(Entry& joint, const char* key, JointReading& to) { read_starts(joint, key, *to.type, to.joint); }
+
 struct SpringReading {
   const BodyNames& names;
   std::map<std::string, Span>& used;
@@ -224,6 +227,8 @@ constexpr Key<JointReading> joint_keys[] = {
     {"bodies", "the spec's a, b, … in this order; \"world\" never moves", "required", read_bodies_of_joint},
     {"at", "place in the world at the start of all points without a key of their own [m]", "", read_parameters},
     {"soft", "{ frequency, damping_ratio } or { stiffness, damping }: the joint is a spring", "exact", read_soft},
+    {start_key, "{ angle = \"30 deg\" }: coordinates at the start; the bodies follow from their written poses", "as written", read_start},
+    {start_rate_key, "{ angle = 2 }: rates of coordinates at the start; the velocities follow", "by the written velocities", read_start},
     {"breaking", "the joint breaks after a step with a larger load [N, N m]", "never", read_number<Sign::positive, &JointReading::joint, &SceneJoint::breaking>},
 };
 constexpr Key<SpringReading> spring_keys[] = {

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "runtime/tool/scene/depth.hpp"
+#include "runtime/tool/scene/start.hpp"
 
 namespace cdot {
 namespace {
@@ -162,8 +163,9 @@ Scene read_scene(std::string_view text, const std::string& name) {
   } catch (const toml::parse_error& error) {
     mistakes->add(span_of(error.source()), syntax_error(error.description()));
   }
-  if (!mistakes->none()) throw SceneError(mistakes->report(), mistakes->count());
   scene.source = mistakes;
+  if (mistakes->none()) find_starts(scene, *mistakes);
+  if (!mistakes->none()) throw SceneError(mistakes->report(), mistakes->count());
   return scene;
 }
 

@@ -30,11 +30,21 @@ struct Shape {
   double depth = 0;  // along the body's z axis, in space: of a box, and the thickness of a disc
 };
 
+// Pose and velocity at the start, where joints start by their coordinates.
+template <class S>
+struct BodyStart {
+  typename S::Place place{};
+  typename S::Velocity velocity{};
+};
+
 struct SceneBody {
   std::string name;
-  BodyDefinition definition;      // of a planar scene
-  SpatialBodyDefinition spatial;  // of a scene in space
-  bool is_static = false;         // of either
+  BodyDefinition definition;      // of a planar scene, as written
+  SpatialBodyDefinition spatial;  // of a scene in space, likewise
+  bool started = false;           // one of these replaces the written pose and velocity:
+  BodyStart<Planar<double>> planar_start;
+  BodyStart<Spatial<double>> spatial_start;
+  bool is_static = false;  // of either
   Shape shape;
   std::vector<Vec3> traces;  // points of the body whose paths the viewer draws
 };
@@ -42,12 +52,20 @@ struct SceneBody {
 // Of its centre of mass at the start.
 Vec3 position_of(const SceneBody& body, Dimension dimension);
 
+// The value [m, rad] and rate of a free coordinate at the start.
+struct CoordinateStart {
+  std::string coordinate;
+  std::optional<double> value, rate;
+  Span where;
+};
+
 struct SceneJoint {
   std::string name;
   JointDefinition definition;  // its bodies are indices into Scene::bodies, or world_body
   std::vector<CoordinateEffects> effects;
   std::optional<double> breaking;
   Span where;  // its header in the file
+  std::vector<CoordinateStart> starts;
 };
 
 inline constexpr double default_step = 0.001;      // [s] of a scene that names a method without a step
