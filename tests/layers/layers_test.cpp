@@ -34,6 +34,7 @@ const std::vector<std::string> rooms = {
     "derive/picture",      // a joint at a pose, drawn
     "derive/derivation",   // C to Cdot, J, K, gamma
     "derive/program",      // expressions to straight-line code, simplified
+    "derive/interpret",    // expressions of a scene, read and evaluated without a compiler
     "derive/explain",      // the derivation as a lecture
     "derive/proof",        // the laws, by GiNaC
     "derive/kernel",       // programs to C++
