@@ -17,6 +17,10 @@ Run derive_command(Line& line);
 Run explain_command(Line& line);
 Run diff_command(Line& line);
 Run check_command(Line& line);
+Run compile_command(Line& line);  // its line in the help
+
+// `cdot compile`: becomes the program `cdot-compile`, which lies beside `cdot`. Returns the exit status if it cannot.
+int run_compile(char** argv);
 
 // Writes through a temporary file, so that nobody reads half of one; a device, a pipe or a link is written in place.
 void write_file(const std::filesystem::path& path, const std::string& content);

@@ -64,9 +64,15 @@ class StatementPrinter {
 
   bool is_zero(int op) const { return at(op).kind == OpKind::number && at(op).value.is_zero(); }
 
-  // The stem for names of nameless quantities of an output: "K21" for "K[1]", "wb" for "J.wb", "g1" for "g[0]".
+  // The stem for names of nameless quantities of an output: "K21" for "K[1]", "wb" for "J.wb", "g1" for "g[0]",
+  // "d_arm_x" for "d[arm].x".
   static std::string plain(const std::string& output) {
     const std::size_t open = output.find('[');
+    if (open != std::string::npos && output.find_first_not_of("0123456789", open + 1) != output.find(']')) {
+      std::string stem;
+      for (const char c : output) stem += std::string_view(letters).find(c) == std::string_view::npos ? '_' : c;
+      return stem.replace(stem.find("__"), 2, "_");
+    }
     if (output.compare(0, 2, "J.") == 0) return output.substr(2);
     if (output.compare(0, 2, "p.") == 0) return output.substr(2);
     if (open == std::string::npos) return output;

@@ -1,6 +1,6 @@
 // The architecture as a table: a room includes only itself and rooms above it in its list. The test checks every
-// #include in derive/ and runtime/. These two share a few rooms and otherwise do not include each other; neither
-// includes the tests.
+// #include in derive/ and runtime/. These two share a few rooms and otherwise do not include each other, but for the
+// compiler of scenes, a program of its own; neither includes the tests.
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
@@ -20,6 +20,7 @@ const fs::path source_dir = CDOT_SOURCE_DIR;
 
 // clang-format off
 const std::set<std::string> shared_rooms = {"runtime/text", "runtime/command_line"};  // derive/ may include them
+const std::string bridge = "derive/compile";  // scenes by the runtime, kernels by the generator: includes both
 
 const std::vector<std::string> rooms = {
     "runtime/text",          // a line with carets, the nearest word, JSON
@@ -64,6 +65,8 @@ const std::vector<std::string> rooms = {
     "runtime/tool/search", // many runs of a scene: for an accuracy, for advice
     "runtime/tool/viewer", "runtime/tool/accuracy", "runtime/tool/commands",
     "runtime/tool",
+    // cdot-compile.
+    "derive/compile",      // a scene to a header of its own
 };
 // One room in two folders, which may include each other.
 const std::map<std::string, std::string> annexes = {{"derive/language/hand", "derive/language"}};
@@ -131,7 +134,7 @@ TEST(Layers, NoRoomIncludesARoomBelowIt) {
   ASSERT_GT(all.size(), 500u);
   for (const Include& i : all) {
     EXPECT_TRUE(fs::exists(source_dir / i.of_file)) << i.file << " includes " << i.of_file;
-    EXPECT_TRUE(shared_rooms.contains(i.of_room) || half_of(i.room) == half_of(i.of_room))
+    EXPECT_TRUE(i.room == bridge || shared_rooms.contains(i.of_room) || half_of(i.room) == half_of(i.of_room))
         << i.file << " includes " << i.of_file << ": derive/ and runtime/ do not know each other";
     EXPECT_LE(rank(i.of_room), rank(i.room))
         << i.file << " includes " << i.of_file << ", which comes later in the table";

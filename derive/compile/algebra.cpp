@@ -1,0 +1,133 @@
+#include "derive/compile/algebra.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace cdot::compile {
+namespace {
+
+constexpr int finest = 64, largest = 4096;  // exact numbers: multiples of 1/64 up to 4096
+
+}  // namespace
+
+int Algebra::value(double number, const std::string& name) {
+  const double scaled = number * finest;
+  if (scaled == std::round(scaled) && std::abs(number) <= largest)
+    return builder_.number(Rational(static_cast<std::int64_t>(scaled), finest));
+  if (name.empty() && number < 0) return sum({{value(-number)}, {Rational(-1)}});
+  if (!name.empty()) named_[name] = number;
+  const int op = input(name.empty() ? fmt::format("T({})", number) : "T(" + name + ")");
+  real_[op] = number;
+  return op;
+}
+
+int Algebra::input(const std::string& text, bool is_position) {
+  Operation op;
+  op.kind = OpKind::input;
+  op.input = text;
+  op.is_position = is_position;
+  return builder_.leaf(op);
+}
+
+std::optional<double> Algebra::constant(int op) const {
+  if (const auto found = real_.find(op); found != real_.end()) return found->second;
+  const Operation& o = builder_.at(op);
+  if (o.kind == OpKind::number) return o.value.value();
+  if (o.kind != OpKind::sum || o.args.size() != 1) return std::nullopt;
+  const std::optional<double> inner = constant(o.args[0]);
+  return inner ? std::optional(o.coefs[0].value() * *inner) : std::nullopt;
+}
+
+bool Algebra::is_zero(int op) const { return is_number(op) && builder_.at(op).value.is_zero(); }
+
+int Algebra::sum(const Summands& terms, const std::string& name) {
+  Summands rest;
+  Rational whole;
+  double real = 0;
+  int reals = 0, last = -1;
+  Rational last_coef;
+  for (std::size_t i = 0; i < terms.args.size(); ++i) {
+    const int arg = terms.args[i];
+    const Rational coef = terms.coefs[i];
+    if (is_number(arg)) {
+      whole = whole + coef * builder_.at(arg).value;
+    } else if (const std::optional<double> known = constant(arg)) {
+      real += coef.value() * *known;
+      ++reals, last = arg, last_coef = coef;
+    } else {
+      rest.add(coef, arg);
+    }
+  }
+  if (reals == 1 && whole.is_zero()) rest.add(last_coef, last);
+  else if (reals > 0) rest.add(1, value(real + whole.value()));
+  else if (!whole.is_zero()) rest.add(1, builder_.number(whole));
+  return builder_.sum(std::move(rest), name);
+}
+
+int Algebra::product(const std::vector<int>& args, const std::vector<int>& exponents, const std::string& name) {
+  std::vector<int> rest, powers;
+  Rational whole(1);
+  double real = 1;
+  int reals = 0, last = -1, last_power = 1;
+  for (std::size_t i = 0; i < args.size(); ++i) {
+    int arg = args[i];
+    const int power = exponents[i];
+    while (builder_.at(arg).kind == OpKind::sum && builder_.at(arg).args.size() == 1) {
+      whole = whole * derive::pow(builder_.at(arg).coefs[0], power);
+      arg = builder_.at(arg).args[0];
+    }
+    if (is_number(arg)) {
+      whole = whole * derive::pow(builder_.at(arg).value, power);
+    } else if (const std::optional<double> known = constant(arg)) {
+      real *= std::pow(*known, power);
+      ++reals, last = arg, last_power = power;
+    } else {
+      rest.push_back(arg), powers.push_back(power);
+    }
+  }
+  if (whole.is_zero()) return builder_.number(0);
+  if (reals == 1 && last_power == 1 && derive::abs(whole) == Rational(1)) {
+    rest.push_back(last), powers.push_back(1);
+  } else if (reals > 0) {
+    rest.push_back(value(real * whole.value())), powers.push_back(1);
+    whole = 1;
+  }
+  if (whole != Rational(1)) rest.push_back(builder_.number(whole)), powers.push_back(1);
+  return builder_.product(std::move(rest), std::move(powers), name);
+}
+
+int Algebra::function(Fn fn, const std::vector<int>& args, const std::string& name) {
+  std::vector<double> values;
+  for (const int arg : args) {
+    const std::optional<double> known = constant(arg);
+    if (!known) return builder_.function(fn, args, name);
+    values.push_back(*known);
+  }
+  return value(derive::function_of(fn).value(values.data()));
+}
+
+std::map<std::string, int> Algebra::inlined(const Program& program, const std::function<int(const std::string&)>& input,
+                                            const std::string& prefix) {
+  std::vector<int> to(program.ops.size(), -1);
+  const std::vector<int> uses = derive::use_counts(program);
+  for (std::size_t i = 0; i < program.ops.size(); ++i) {
+    if (uses[i] == 0) continue;
+    const Operation& op = program.ops[i];
+    std::vector<int> args;
+    for (const int arg : op.args) args.push_back(to[static_cast<std::size_t>(arg)]);
+    const std::string name = op.name.empty() ? "" : prefix + "_" + op.name;
+    switch (op.kind) {
+      case OpKind::number:
+      case OpKind::factor: to[i] = builder_.number(op.value); break;
+      case OpKind::input: to[i] = input(op.input); break;
+      case OpKind::sum: to[i] = sum({args, op.coefs}, name); break;
+      case OpKind::product: to[i] = product(args, op.exponents, name); break;
+      case OpKind::function: to[i] = function(op.fn, args, name); break;
+    }
+  }
+  std::map<std::string, int> outputs;
+  for (const derive::Output& o : program.outputs) outputs[o.name] = to[static_cast<std::size_t>(o.op)];
+  return outputs;
+}
+
+}  // namespace cdot::compile

@@ -1,0 +1,52 @@
+// Programs over the numbers of one scene: kernels are inlined, and what is constant in the scene is computed here.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "derive/program/builder.hpp"
+
+namespace cdot::compile {
+
+using derive::Fn;
+using derive::Operation;
+using derive::OpKind;
+using derive::Program;
+using derive::Rational;
+using derive::Summands;
+
+using Constants = std::map<std::string, double>;  // those that a header names
+
+class Algebra {
+ public:
+  explicit Algebra(Constants& named) : named_(named) {}
+
+  // A constant. Small fractions of powers of two are exact numbers, which vanish from products and sums.
+  int value(double number, const std::string& name = {});
+  int input(const std::string& text, bool is_position = false);
+  int sum(const Summands& terms, const std::string& name = {});
+  int product(const std::vector<int>& args, const std::vector<int>& exponents, const std::string& name = {});
+  int times(int a, int b, const std::string& name = {}) { return product({a, b}, {1, 1}, name); }
+  int function(Fn fn, const std::vector<int>& args, const std::string& name = {});
+
+  // The outputs of a program, by name. `input` gives the inputs; names get the prefix.
+  std::map<std::string, int> inlined(const Program& program, const std::function<int(const std::string&)>& input,
+                                     const std::string& prefix);
+
+  std::optional<double> constant(int op) const;
+  bool is_zero(int op) const;
+  void output(const std::string& name, int op) { builder_.output(name, op); }
+  Program finish() { return builder_.finish(); }
+
+ private:
+  bool is_number(int op) const { return builder_.at(op).kind == OpKind::number; }
+
+  derive::ProgramBuilder builder_;
+  std::map<int, double> real_;  // constants that are no numbers of the program
+  Constants& named_;
+};
+
+}  // namespace cdot::compile

@@ -1,0 +1,359 @@
+#include "derive/compile/header.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fmt/format.h>
+
+#include "derive/compile/arithmetic.hpp"
+#include "derive/compile/equations.hpp"
+#include "derive/compile/steps.hpp"
+#include "derive/compile/texts.hpp"
+#include "derive/program/print.hpp"
+
+namespace cdot::compile {
+namespace {
+
+// Names of the header itself, and words of C++ that a scene is likely to use.
+const std::set<std::string>& taken() {
+  static const std::set<std::string> names = {"T",
+                                              "q",
+                                              "v",
+                                              "a",
+                                              "J",
+                                              "C",
+                                              "Cdot",
+                                              "g",
+                                              "b",
+                                              "d",
+                                              "s",
+                                              "h",
+                                              "i",
+                                              "k",
+                                              "at",
+                                              "x",
+                                              "y",
+                                              "w",
+                                              "c",
+                                              "time",
+                                              "rows",
+                                              "bodies",
+                                              "pivot",
+                                              "select",
+                                              "abs",
+                                              "sign",
+                                              "turn",
+                                              "close",
+                                              "errors",
+                                              "evaluate",
+                                              "rates",
+                                              "gamma",
+                                              "solve",
+                                              "step",
+                                              "reset",
+                                              "begin",
+                                              "push",
+                                              "fall",
+                                              "moved",
+                                              "weighed",
+                                              "project",
+                                              "slope",
+                                              "State",
+                                              "Pose",
+                                              "Slope",
+                                              "Body",
+                                              "lambda",
+                                              "inverse",
+                                              "accelerate",
+                                              "Velocity",
+                                              "Jacobian",
+                                              "Evaluated",
+                                              "default_step",
+                                              "int",
+                                              "float",
+                                              "double",
+                                              "for",
+                                              "if",
+                                              "do",
+                                              "new",
+                                              "this",
+                                              "and",
+                                              "or",
+                                              "not",
+                                              "auto",
+                                              "const",
+                                              "static",
+                                              "struct",
+                                              "case",
+                                              "switch",
+                                              "default",
+                                              "return",
+                                              "template",
+                                              "left",
+                                              "largest"};
+  return names;
+}
+
+std::string identifier(const std::string& name) {
+  std::string text;
+  for (const char c : name) text += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  if (text.empty() || std::isdigit(static_cast<unsigned char>(text[0])) != 0) text = "_" + text;
+  return text;
+}
+
+std::string unused(std::string name, std::set<std::string>& used) {
+  while (!used.insert(name).second) name += "_";
+  return name;
+}
+
+class HeaderWriter {
+ public:
+  HeaderWriter(const Mechanism& mechanism, const Request& request, const derive::SpecsFolder& specs)
+      : mechanism_(mechanism), request_(request), used_(taken()) {
+    name_ = request.struct_name.empty() ? std::filesystem::path(mechanism.file).stem().string() : request.struct_name;
+    name_ = unused(identifier(name_), used_);
+    for (const Body& body : mechanism.bodies) names_.bodies.push_back(unused(identifier(body.name), used_));
+    std::set<std::string> joints = used_;
+    for (const Joint& joint : mechanism.joints) names_.joints.push_back(unused(identifier(joint.name), joints));
+    equations_ = equations_of(mechanism, names_, specs);
+  }
+
+  std::string write() {
+    write_head();
+    write_types();
+    write_start();
+    write_poses();
+    write_masses();
+    write_equations();
+    write_corrections();
+    text_ += step_of(mechanism_.method);
+    text_ += "};\n\n}  // namespace cdot::scenes\n";
+    return std::move(text_);
+  }
+
+ private:
+  bool on_accelerations() const { return mechanism_.method != Method::euler; }
+
+  void line(const std::string& line = {}) { text_ += line + "\n"; }
+
+  // f(body, its name) for those that move.
+  template <class F>
+  void each_body(F f) const {
+    for (std::size_t i = 0; i < mechanism_.bodies.size(); ++i)
+      if (mechanism_.bodies[i].moves) f(mechanism_.bodies[i], names_.bodies[i]);
+  }
+
+  void write_head() {
+    line("// " + mechanism_.title + ": a step of " + mechanism_.method_name + ", written by");
+    line("//   " + request_.command);
+    line(
+        "// Do not edit. T is float, double, or a pack of them (cdot/pack.hpp): each lane is a mechanism of its own. "
+        "It has");
+    line(
+        "// the bits that it has alone if the compiler contracts nothing: -ffp-contract=off, and "
+        "-fno-tree-slp-vectorize");
+    line("// where GCC 12 may use fused operations. No heap, no exceptions.");
+    line("#pragma once");
+    line();
+    line("#include <cmath>");
+    line();
+    text_ += arithmetic;
+    line("namespace cdot::scenes {");
+    line();
+    line("template <class T>");
+    line("struct " + name_ + " {");
+  }
+
+  void write_types() {
+    std::string bodies;
+    each_body([&](const Body&, const std::string& name) { bodies += name + ", "; });
+    for (const std::string& wrapped : derive::wrapped("  enum Body { " + bodies + "bodies };")) line(wrapped);
+    line(fmt::format("  static constexpr int rows = {};", equations_.rows.size()));
+    line(fmt::format("  static constexpr double default_step = {};  // [s]", mechanism_.step));
+    for (const auto& [name, value] : equations_.constants)
+      line(fmt::format("  static constexpr double {} = {};", name, value));
+    text_ += R"(
+  struct Pose {
+    T x, y, angle;  // centre of mass [m], [rad]
+    T c, s;         // cosine and sine of the angle
+  };
+  struct Velocity {  // also an acceleration or a displacement
+    T x, y, w;
+    friend Velocity operator+(const Velocity& a, const Velocity& b) { return {a.x + b.x, a.y + b.y, a.w + b.w}; }
+    friend Velocity operator-(const Velocity& a, const Velocity& b) { return {a.x - b.x, a.y - b.y, a.w - b.w}; }
+    friend Velocity operator-(const Velocity& a) { return {-a.x, -a.y, -a.w}; }
+    friend Velocity operator*(const T& a, const Velocity& b) { return {a * b.x, a * b.y, a * b.w}; }
+  };
+  // The numbers of J, and K = J M^-1 J^T = L D L^T with the rows numbered in the order of elimination.
+  struct Jacobian {
+)";
+    for (const std::string& member : equations_.stored) line("    T " + member + ";");
+    line("  };");
+    line("  // What a run is made of: a copy is a snapshot. After a change of poses or velocities call begin().");
+    line("  struct State {");
+    line("    T time;  // [s]");
+    line("    Pose q[bodies];");
+    line("    Velocity v[bodies];");
+    if (on_accelerations()) line("    Velocity a[bodies];");
+    line(fmt::format("    T lambda[rows];  // {} of the joints", on_accelerations() ? "forces" : "impulses"));
+    line("    T residual;      // the largest |C| [m], [rad]");
+    line("    Jacobian J;      // of the poses q");
+    line("  };");
+    line("  struct Evaluated {  // where J was evaluated");
+    line("    T time;");
+    line("    Pose q[bodies];");
+    line("  };");
+    if (on_accelerations()) text_ += slope_type;
+  }
+
+  void write_start() {
+    line();
+    line("  // The start of the scene.");
+    line("  static void reset(State& s) {");
+    line("    s.time = T(0);");
+    each_body([&](const Body& b, const std::string& name) {
+      line(fmt::format("    s.q[{}].x = T({}), s.q[{}].y = T({}), s.q[{}].angle = T({});", name, b.x, name, b.y, name,
+                       b.angle));
+      line(fmt::format("    s.v[{}] = {{T({}), T({}), T({})}};", name, b.vx, b.vy, b.w));
+    });
+    line("    begin(s);");
+    line("  }");
+    text_ += fmt::format(R"(
+  // Makes a State whole after its poses, velocities or time were set.
+  static void begin(State& s) {{
+    turn(s.q);
+    for (T& of_row : s.lambda) of_row = T(0);
+    s.residual = T(1e30);
+    evaluate(s.q, s.time, s.J);
+    Evaluated at;
+    at.time = s.time;
+    for (int i = 0; i < bodies; ++i) at.q[i] = s.q[i];
+    Velocity moves[bodies];
+    close(s, at, T(0.2), moves);
+    evaluate(s.q, s.time, s.J);
+{}  }}
+)",
+                         on_accelerations() ? "    accelerate(s.q, s.v, s.time, s.J, s.lambda, s.a);\n" : "");
+  }
+
+  void write_poses() {
+    line();
+    line(
+        "  static Pose moved(const Pose& q, const Velocity& d) { return {q.x + d.x, q.y + d.y, q.angle + d.w, q.c, "
+        "q.s}; }");
+    line();
+    line("  static void turn(Pose (&q)[bodies]) {");
+    each_body([&](const Body&, const std::string& name) {
+      if (equations_.turning.contains(name)) line(fmt::format("    sin_cos(q[{0}].angle, q[{0}].s, q[{0}].c);", name));
+      else line(fmt::format("    q[{0}].c = T(1), q[{0}].s = T(0);  // read by no joint", name));
+    });
+    line("  }");
+  }
+
+  static std::string scaled(double number, const std::string& text) {
+    return number == 1 ? text : fmt::format("T({}) * {}", number, text);
+  }
+
+  void write_masses() {
+    line();
+    if (on_accelerations()) line("  // Accelerations without joints.");
+    else line("  // Forces other than the joints' act for h. Drag is implicit: v / (1 + h d).");
+    line(on_accelerations() ? "  static void fall(const Velocity (&v)[bodies], Velocity (&a)[bodies]) {"
+                            : "  static void push(Velocity (&v)[bodies], const T& h) {");
+    each_body([&](const Body& b, const std::string& name) {
+      write_force(name, "x", b.ax, b.linear_drag);
+      write_force(name, "y", b.ay, b.linear_drag);
+      write_force(name, "w", b.aw, b.angular_drag);
+    });
+    if (on_accelerations()) line("    (void)v;");
+    else line("    (void)v, (void)h;");
+    line("  }");
+    line();
+    line("  // Twice the kinetic energy.");
+    line("  static T weighed(const Velocity (&v)[bodies]) {");
+    line("    T sum = T(0);");
+    each_body([&](const Body& b, const std::string& name) {
+      const auto square = [&](const std::string& member) {
+        return fmt::format("v[{0}].{1} * v[{0}].{1}", name, member);
+      };
+      if (b.inv_m > 0) line(fmt::format("    sum = sum + T({}) * ({} + {});", 1 / b.inv_m, square("x"), square("y")));
+      if (b.inv_I > 0) line(fmt::format("    sum = sum + T({}) * ({});", 1 / b.inv_I, square("w")));
+    });
+    line("    return sum;");
+    line("  }");
+  }
+
+  void write_force(const std::string& name, const std::string& member, double a, double drag) {
+    const std::string v = fmt::format("v[{}].{}", name, member);
+    if (on_accelerations()) {
+      const std::string slowed = drag == 0 ? "" : fmt::format(" - T({}) * {}", drag, v);
+      line(fmt::format("    a[{}].{} = T({}){};", name, member, a, slowed));
+      return;
+    }
+    if (drag != 0) line(fmt::format("    {0} = {0} * (T(1) / (T(1) + h * T({1})));", v, drag));
+    if (a != 0) line(fmt::format("    {0} = {0} + h * T({1});", v, a));
+  }
+
+  void write_function(const std::string& comment, const std::string& head, const Program& program) {
+    line();
+    line("  // " + comment + ": " + text(derive::count(program)));
+    for (const std::string& wrapped : derive::wrapped("  static void " + head + " {")) line(wrapped);
+    derive::Printing printing;
+    printing.indent = "    ";
+    printing.reserved = used_;
+    for (const auto& [constant, value] : equations_.constants) printing.reserved.insert(constant);
+    write_using(program);
+    const std::vector<std::string> lines = derive::print_statements(program, printing);
+    for (const std::string& statement : lines) line(statement);
+    for (const char* argument : {"q", "v", "time", "J", "b"}) {
+      const bool takes = head.find(fmt::format(" {}", argument)) != std::string::npos ||
+                         head.find(fmt::format("(&{})", argument)) != std::string::npos;
+      if (takes) line(fmt::format("    (void){};", argument));
+    }
+    line("  }");
+  }
+
+  void write_using(const Program& program) {
+    std::set<std::string> functions;
+    for (const Operation& op : program.ops)
+      if (op.kind == OpKind::function && !derive::function_of(op.fn).of_contract)
+        functions.insert(std::string(derive::function_of(op.fn).name));
+    for (const std::string& f : functions) line("    using std::" + f + ";");
+  }
+
+  void write_equations() {
+    text_ += guards;
+    write_function("J, and the factor of K", "evaluate(const Pose (&q)[bodies], const T& time, Jacobian& J)",
+                   equations_.evaluate);
+    write_function("C", "errors(const Pose (&q)[bodies], const T& time, T (&C)[rows])", equations_.errors);
+    write_function("J v + dC/dt", "rates(const Jacobian& J, const Velocity (&v)[bodies], T (&Cdot)[rows])",
+                   equations_.rates);
+    write_function("K lambda = b, d = M^-1 J^T lambda",
+                   "solve(const Jacobian& J, const T (&b)[rows], T (&lambda)[rows], Velocity (&d)[bodies])",
+                   equations_.solve);
+    if (!on_accelerations()) return;
+    write_function("-Jdot v - d/dt(dC/dt)",
+                   "gamma(const Pose (&q)[bodies], const Velocity (&v)[bodies], const T& time, T (&g)[rows])",
+                   equations_.gamma);
+    text_ += equations_.driven ? accelerate_driven : accelerate_by_rates;
+    text_ += slope;
+  }
+
+  void write_corrections() { text_ += fmt::format(corrections, mechanism_.tolerance); }
+
+  const Mechanism& mechanism_;
+  const Request& request_;
+  std::set<std::string> used_;
+  std::string name_;
+  Names names_;
+  Equations equations_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string header_of(const Mechanism& mechanism, const Request& request, const derive::SpecsFolder& specs) {
+  return HeaderWriter(mechanism, request, specs).write();
+}
+
+}  // namespace cdot::compile

@@ -1,0 +1,80 @@
+// `cdot-compile`: the command `compile` of `cdot`, in a program of its own. It links the runtime, which is built from
+// what `cdot` writes.
+#include <exception>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <iostream>
+
+#include "derive/compile/header.hpp"
+#include "runtime/command_line/command_line.hpp"
+#include "runtime/tool/scene/scene.hpp"
+
+namespace cdot::compile {
+namespace {
+
+using command_line::Line;
+using command_line::Run;
+
+struct Options {
+  std::string scene, output, specs = "specs", struct_name;
+  Wishes wishes;
+};
+
+// The command that writes the same header.
+std::string command_of(const Options& options) {
+  std::string command = "cdot compile " + std::filesystem::path(options.scene).filename().string();
+  if (!options.wishes.integrator.empty()) command += " --integrator " + options.wishes.integrator;
+  if (options.wishes.step > 0) command += fmt::format(" --step {}", options.wishes.step);
+  if (!options.struct_name.empty()) command += " --name " + options.struct_name;
+  return command;
+}
+
+int run(const Options& options) {
+  const Mechanism mechanism = read_mechanism(options.scene, options.wishes);
+  const std::string text =
+      header_of(mechanism, {options.struct_name, command_of(options)}, derive::SpecsFolder(options.specs));
+  if (options.output.empty()) {
+    std::cout << text;
+    return std::cout.flush() ? 0 : command_line::wrong_usage;
+  }
+  std::ofstream out(options.output, std::ios::binary);
+  out << text;
+  if (out.flush()) return 0;
+  fmt::print(stderr, "cdot compile: cannot write {}\n", options.output);
+  return command_line::wrong_usage;
+}
+
+void add_options(Line& line, Options& options) {
+  line.add("SCENE", &options.scene, "A planar scene of joints without effects: a TOML file").required();
+  line.add("-o,--output", &options.output, "File to write instead of the terminal").shown_as("FILE");
+  line.add("--integrator", &options.wishes.integrator,
+           "Method of the step; without it that of the scene, or rk4 if the scene names none")
+      .one_of({"euler", "rk4", "dop853"});
+  line.add("--step", &options.wishes.step, "Its usual length [s]; without it that of the scene, or 0.001").positive();
+  line.add("--name", &options.struct_name, "Name of the struct; without it that of the file").shown_as("NAME");
+  line.add("--specs", &options.specs, "Folder of specs").shown_as("DIR").shows_default();
+}
+
+Run compile_command(Line& line) { return command_line::with_options<Options>(line, add_options, run); }
+
+constexpr command_line::Command commands[] = {
+    {"compile", "Write a scene as its own step: a C++ header of straight lines", compile_command}};
+constexpr command_line::Program program = {
+    "cdot", "A scene as a C++ header, which includes nothing but <cmath>",
+    "Exit status: 0 all well; 2 bad usage or input, or a scene that cannot be compiled: each part is shown with its "
+    "line."};
+
+}  // namespace
+}  // namespace cdot::compile
+
+int main(int argc, char** argv) {
+  try {
+    return run(cdot::compile::program, cdot::compile::commands, argc, argv);
+  } catch (const cdot::SceneError& error) {
+    fmt::print(stderr, "{}{} mistake{}\n", error.what(), error.mistakes, error.mistakes == 1 ? "" : "s");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "cdot compile: {}\n", error.what());
+  }
+  return cdot::command_line::wrong_usage;
+}

@@ -1,0 +1,88 @@
+// `cdot compile` as a command: its bytes, its refusals, and that its header needs nothing but a compiler.
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <sstream>
+#include <string>
+#include <sys/wait.h>
+
+namespace {
+
+struct Outcome {
+  int status = 0;
+  std::string text;  // of both streams
+};
+
+Outcome run(const std::string& command) {
+  Outcome outcome;
+  FILE* const pipe = popen((command + " 2>&1").c_str(), "r");
+  char part[4096];
+  for (std::size_t n; (n = fread(part, 1, sizeof part, pipe)) > 0;) outcome.text.append(part, n);
+  outcome.status = WEXITSTATUS(pclose(pipe));
+  return outcome;
+}
+
+const std::string source = CDOT_SOURCE_DIR;
+
+Outcome compile(const std::string& arguments) {
+  return run(fmt::format("cd {} && {} compile {}", source, CDOT, arguments));
+}
+
+TEST(CompileCommand, WritesTheSameBytesOnEveryRun) {
+  const Outcome first = compile("specs/scenes/slider_crank.toml --integrator rk4");
+  EXPECT_EQ(first.status, 0);
+  EXPECT_NE(first.text.find("cdot compile slider_crank.toml --integrator rk4\n"), std::string::npos);
+  EXPECT_NE(first.text.find("const T A_ra_x_1 = q[crank].c * T(A_pa_x);"), std::string::npos);
+  EXPECT_EQ(first.text.find(source), std::string::npos) << "a path in the header";
+  EXPECT_EQ(compile("specs/scenes/slider_crank.toml --integrator rk4").text, first.text);
+}
+
+TEST(CompileCommand, RefusesPartsThatItDoesNotKnowWithTheirLines) {
+  const Outcome effects = compile("specs/scenes/machine.toml");
+  EXPECT_EQ(effects.status, 2);
+  EXPECT_NE(effects.text.find("specs/scenes/machine.toml:58:1: error: axle: cdot compile knows no effects"),
+            std::string::npos)
+      << effects.text;
+  const Outcome space = compile("specs/scenes/spatial/gyroscope.toml");
+  EXPECT_EQ(space.status, 2);
+  EXPECT_NE(space.text.find("planar scenes only"), std::string::npos) << space.text;
+  const Outcome implicit = compile("specs/scenes/catenary_100.toml");
+  EXPECT_EQ(implicit.status, 2);
+  EXPECT_NE(implicit.text.find("no integrator implicit"), std::string::npos) << implicit.text;
+}
+
+TEST(CompileCommand, ReportsWrongUsage) {
+  EXPECT_EQ(compile("").status, 2);
+  EXPECT_EQ(compile("nowhere.toml").status, 2);
+  EXPECT_EQ(compile("specs/scenes/chain_10.toml --integrator heun").status, 2);
+  const Outcome help = compile("--help");
+  EXPECT_EQ(help.status, 0);
+  EXPECT_NE(help.text.find("--integrator"), std::string::npos);
+}
+
+// Without the C++ library, exceptions and type information: <cmath> alone is allowed, so it comes from a stub.
+TEST(CompileCommand, HeaderBuildsFreestanding) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / fmt::format("cdot_{}", getpid());
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "cmath") << "namespace std { double sqrt(double); float sqrt(float); }\n";
+  std::ofstream(folder / "step.cpp") << "#include \"chain_10_rk4.hpp\"\n"
+                                        "using Chain = cdot::scenes::chain_10_rk4<float>;\n"
+                                        "Chain::State state;\n"
+                                        "void start() { Chain::reset(state); }\n"
+                                        "float step() { return Chain::step(state); }\n";
+  const std::string compiler = fmt::format(
+      "{} -std=c++20 -O1 -Wall -Wextra -Werror -ffreestanding -fno-exceptions -fno-rtti -nostdinc -nostdinc++ "
+      "-I{} -I{} -c {}/step.cpp -o {}/step.o",
+      CDOT_CXX, folder.string(), CDOT_COMPILED, folder.string(), folder.string());
+  const Outcome built = run(compiler);
+  EXPECT_EQ(built.status, 0) << built.text;
+  const Outcome needs = run(fmt::format("nm -u {}/step.o", folder.string()));
+  EXPECT_EQ(needs.text.find("Znw"), std::string::npos) << needs.text;
+  EXPECT_EQ(needs.text.find("malloc"), std::string::npos) << needs.text;
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace

@@ -1,0 +1,89 @@
+// A lane of a pack has the bits that it has alone, whatever the other lanes do.
+#include <cstring>
+#include <gtest/gtest.h>
+
+#include <cdot/pack.hpp>
+
+#include "chain_10_dop853.hpp"
+#include "chain_10_euler.hpp"
+#include "chain_10_rk4.hpp"
+#include "slider_crank_euler.hpp"
+#include "slider_crank_rk4.hpp"
+
+namespace {
+
+// Lane k starts with its first body turning k times as fast.
+template <class T>
+T spin_of(int lane) {
+  return T(0.25) * T(lane);
+}
+
+template <template <class> class Compiled, class T>
+bool are_equal(const typename Compiled<T>::State& alone, const typename Compiled<T>::State& lane) {
+  return std::memcmp(&alone.q, &lane.q, sizeof alone.q) == 0 && std::memcmp(&alone.v, &lane.v, sizeof alone.v) == 0;
+}
+
+template <template <class> class Compiled, class T, int width>
+typename Compiled<T>::State lane_of(const typename Compiled<cdot::Pack<T, width>>::State& pack, int lane) {
+  typename Compiled<T>::State s{};
+  for (int i = 0; i < Compiled<T>::bodies; ++i) {
+    const auto& q = pack.q[i];
+    const auto& v = pack.v[i];
+    s.q[i] = {q.x[lane], q.y[lane], q.angle[lane], q.c[lane], q.s[lane]};
+    s.v[i] = {v.x[lane], v.y[lane], v.w[lane]};
+  }
+  return s;
+}
+
+template <template <class> class Compiled, class T, int width>
+void lanes_are_as_alone() {
+  using Pack = cdot::Pack<T, width>;
+  typename Compiled<Pack>::State together;
+  typename Compiled<T>::State alone[width];
+  Compiled<Pack>::reset(together);
+  for (int lane = 0; lane < width; ++lane) {
+    Compiled<T>::reset(alone[lane]);
+    alone[lane].v[0].w = spin_of<T>(lane);
+    together.v[0].w.set(lane, spin_of<T>(lane));
+    Compiled<T>::begin(alone[lane]);
+  }
+  Compiled<Pack>::begin(together);
+  for (int k = 0; k < 300; ++k) {
+    Compiled<Pack>::step(together);
+    for (int lane = 0; lane < width; ++lane) {
+      Compiled<T>::step(alone[lane]);
+      ASSERT_TRUE((are_equal<Compiled, T>(alone[lane], lane_of<Compiled, T, width>(together, lane))))
+          << "lane " << lane << ", step " << k;
+    }
+  }
+  EXPECT_NE(together.q[0].angle[0], together.q[0].angle[width - 1]);
+}
+
+using namespace cdot::scenes;
+
+TEST(CompiledLanes, OfDoublesAreAsAlone) {
+  lanes_are_as_alone<chain_10_euler, double, 4>();
+  lanes_are_as_alone<chain_10_rk4, double, 4>();
+  lanes_are_as_alone<chain_10_rk4, double, 8>();
+  lanes_are_as_alone<chain_10_dop853, double, 4>();
+  lanes_are_as_alone<slider_crank_euler, double, 8>();
+  lanes_are_as_alone<slider_crank_rk4, double, 8>();
+}
+
+TEST(CompiledLanes, OfFloatsAreAsAlone) {
+  lanes_are_as_alone<slider_crank_euler, float, 8>();
+  lanes_are_as_alone<slider_crank_rk4, float, 4>();
+}
+
+// A State is a snapshot: its bytes are the whole run.
+TEST(CompiledState, IsASnapshot) {
+  using Chain = chain_10_rk4<double>;
+  Chain::State state, kept;
+  Chain::reset(state);
+  for (int k = 0; k < 50; ++k) Chain::step(state);
+  std::memcpy(&kept, &state, sizeof state);
+  for (int k = 0; k < 50; ++k) Chain::step(state), Chain::step(kept);
+  EXPECT_EQ(std::memcmp(&kept, &state, sizeof state), 0);
+}
+
+}  // namespace
