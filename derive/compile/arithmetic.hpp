@@ -23,6 +23,12 @@ inline double select(bool condition, double a, double b) { return condition ? a 
 inline float abs(float x) { return x < 0 ? -x : x; }
 inline double abs(double x) { return x < 0 ? -x : x; }
 
+// |x|; a pack's own abs() may go lane by lane.
+template <class T>
+inline T magnitude(const T& x) {
+  return select(x < T(0), -x, x);
+}
+
 // True if the condition holds in any lane.
 inline bool any(bool condition) { return condition; }
 template <class Mask>
@@ -56,7 +62,7 @@ inline void sin_cos(const T& angle, T& s, T& c) {
   const T sine = x + x * z * (T(-1.66666666666666324348e-01) + z * S);
   const T half = T(0.5) * z, rest = T(1) - half;
   const T cosine = rest + ((T(1) - rest - half) + z * z * C);
-  const auto odd = abs(abs(m) - T(1)) < T(0.5);
+  const auto odd = (m > T(0.5) && m < T(1.5)) || (m < T(-0.5) && m > T(-1.5));
   const T s_0 = select(odd, cosine, sine), c_0 = select(odd, sine, cosine);
   s = select(m < T(-0.5) || m > T(1.5), -s_0, s_0);
   c = select(m > T(0.5) || m < T(-1.5), -c_0, c_0);

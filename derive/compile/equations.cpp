@@ -221,15 +221,26 @@ class EquationWriter {
         const int entry = algebra.sum(terms, (i == j ? "D_" : "U_") + place);
         if (i == j) {
           inverse = algebra.function(Fn::pivot, {entry, K(order_[j], order_[j])}, "inv_D_" + at);
-          store(algebra, "inv_D_" + at, inverse);
+          store_factor(algebra, "inv_D_" + at, inverse);
           continue;
         }
+        if (algebra.is_zero(entry)) continue;
         U[i][j] = entry;
         L[i][j] = algebra.times(entry, inverse, "L_" + place);
         L_[i][j] = true;
-        store(algebra, "L_" + place, L[i][j]);
+        store_factor(algebra, "L_" + place, L[i][j]);
       }
     }
+  }
+
+  void store_factor(Algebra& algebra, const std::string& member, int op) {
+    if (const std::optional<double> known = algebra.constant(op)) factor_constants_[member] = *known;
+    else store(algebra, member, op);
+  }
+
+  int factored(Algebra& algebra, const std::string& member) const {
+    const auto known = factor_constants_.find(member);
+    return known == factor_constants_.end() ? algebra.input("J." + member) : algebra.value(known->second);
   }
 
   // --- the other functions ---
@@ -271,7 +282,7 @@ class EquationWriter {
   void write_solve() {
     Algebra algebra(out_.constants);
     const std::size_t n = order_.size();
-    const auto L = [&](std::size_t i, std::size_t j) { return algebra.input(fmt::format("J.L_{}_{}", i, j)); };
+    const auto L = [&](std::size_t i, std::size_t j) { return factored(algebra, fmt::format("L_{}_{}", i, j)); };
     std::vector<int> y(n), x(n), lambda(n);
     for (std::size_t i = 0; i < n; ++i) {
       Summands terms{{algebra.input(element("b", order_[i]))}, {1}};
@@ -280,7 +291,7 @@ class EquationWriter {
       y[i] = algebra.sum(terms, "y_" + std::to_string(i));
     }
     for (std::size_t i = n; i-- > 0;) {
-      Summands terms{{algebra.times(algebra.input("J.inv_D_" + std::to_string(i)), y[i])}, {1}};
+      Summands terms{{algebra.times(factored(algebra, "inv_D_" + std::to_string(i)), y[i])}, {1}};
       for (std::size_t k = i + 1; k < n; ++k)
         if (L_[k][i]) terms.add(-1, algebra.times(L(k, i), x[k]));
       lambda[order_[i]] = x[i] = algebra.sum(terms, "lambda_" + out_.rows[order_[i]].name);
@@ -334,6 +345,7 @@ class EquationWriter {
   std::map<std::size_t, Values> dense_;
   std::vector<std::vector<int>> K_;   // lower triangle; -1: zero
   std::vector<std::vector<bool>> L_;  // which entries are not zero
+  std::map<std::string, double> factor_constants_;
   Equations out_;
 };
 

@@ -155,8 +155,7 @@ class HeaderWriter {
     line("// where GCC 12 may use fused operations. No heap, no exceptions.");
     line("#pragma once");
     line();
-    line("#include <cmath>");
-    line();
+    if (calls_functions()) line("#include <cmath>"), line();
     text_ += arithmetic;
     line("namespace cdot::scenes {");
     line();
@@ -313,12 +312,23 @@ class HeaderWriter {
     line("  }");
   }
 
+  bool calls_functions() const {
+    for (const Program* program : {&equations_.evaluate, &equations_.errors, &equations_.gamma})
+      if (!functions_of(*program).empty()) return true;
+    return false;
+  }
+
   void write_using(const Program& program) {
+    for (const std::string& f : functions_of(program)) line("    using std::" + f + ";");
+  }
+
+  // Those of <cmath>.
+  static std::set<std::string> functions_of(const Program& program) {
     std::set<std::string> functions;
     for (const Operation& op : program.ops)
       if (op.kind == OpKind::function && !derive::function_of(op.fn).of_contract)
         functions.insert(std::string(derive::function_of(op.fn).name));
-    for (const std::string& f : functions) line("    using std::" + f + ";");
+    return functions;
   }
 
   void write_equations() {

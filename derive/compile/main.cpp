@@ -61,7 +61,7 @@ Run compile_command(Line& line) { return command_line::with_options<Options>(lin
 constexpr command_line::Command commands[] = {
     {"compile", "Write a scene as its own step: a C++ header of straight lines", compile_command}};
 constexpr command_line::Program program = {
-    "cdot", "A scene as a C++ header, which includes nothing but <cmath>",
+    "cdot", "A scene as a C++ header, which includes at most <cmath>",
     "Exit status: 0 all well; 2 bad usage or input, or a scene that cannot be compiled: each part is shown with its "
     "line."};
 

@@ -20,7 +20,7 @@ inline constexpr const char* guards = R"(
     return T(single ? 1.17549435e-38 : 2.2250738585072014e-308);
   }
   // 1/x, and 0 at x = 0.
-  static T inverse(const T& x) { return select(abs(x) >= smallest<T>(), T(1) / x, T(0)); }
+  static T inverse(const T& x) { return select(magnitude(x) >= smallest<T>(), T(1) / x, T(0)); }
   static T sign(const T& x) { return select(x > T(0), T(1), select(x < T(0), T(-1), T(0))); }
   // 1/d, and 0 where d is round-off beside the diagonal entry k: the row depends on others.
   static T pivot(const T& d, const T& k) { return select(d > T(64 * epsilon) * k, T(1) / d, T(0)); }
@@ -75,7 +75,7 @@ inline constexpr const char* slope = R"(
 inline constexpr const char* corrections = R"(
   static T largest(const T (&of_rows)[rows]) {{
     T most = T(0);
-    for (const T& of_row : of_rows) most = select(abs(of_row) > most, abs(of_row), most);
+    for (const T& of_row : of_rows) most = select(magnitude(of_row) > most, magnitude(of_row), most);
     return most;
   }}
 
@@ -94,7 +94,7 @@ inline constexpr const char* corrections = R"(
       goes_on = goes_on && worst > T(single ? 1e7 * {0} : {0});
       if (round == 0) {{
         error = worst;
-        goes_on = goes_on && !(abs(worst - left) <= T(single ? -1 : 1e-9) * worst);  // contradicting joints
+        goes_on = goes_on && !(magnitude(worst - left) <= T(single ? -1 : 1e-9) * worst);  // contradicting joints
       }}
       const auto is_slow = goes_on && worst > slow * before;
       goes_on = goes_on && !(is_slow && renewed && worst > T(0.5) * before);
