@@ -1,0 +1,64 @@
+// The time of one step of 1 ms: compiled, alone and in 4 and 8 lanes, beside the World. `per_lane` is the time of one
+// mechanism. Repeat it (--benchmark_repetitions) to see the noise of the machine.
+#include <benchmark/benchmark.h>
+
+#include <cdot/pack.hpp>
+#include <cdot/world.hpp>
+
+#include "chain_10_euler.hpp"
+#include "chain_10_rk4.hpp"
+#include "runtime/tool/scene/scene.hpp"
+#include "slider_crank_euler.hpp"
+#include "slider_crank_rk4.hpp"
+
+namespace {
+
+constexpr int steps_of_a_run = 1000;  // then from the start again
+constexpr double step = 0.001;        // [s]
+
+void count_lanes(benchmark::State& state, int lanes) {
+  state.counters["per_lane"] =
+      benchmark::Counter(lanes, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void run_world(benchmark::State& state, const std::string& name, cdot::Integrator integrator) {
+  cdot::Scene scene = cdot::read_scene(std::string(CDOT_SOURCE_DIR) + "/specs/scenes/" + name + ".toml");
+  scene.settings.integrator = integrator;
+  scene.accuracy = 0;
+  cdot::settle_drift(scene);
+  auto world = cdot::build_world<double>(scene);
+  const cdot::Snapshot start = world.snapshot();
+  int steps = 0;
+  for (auto _ : state) {
+    if (++steps % steps_of_a_run == 0) world.restore(start);
+    benchmark::DoNotOptimize(world.step(step));
+  }
+  count_lanes(state, 1);
+}
+
+template <class Compiled, int lanes>
+void run_compiled(benchmark::State& state) {
+  typename Compiled::State machine;
+  Compiled::reset(machine);
+  int steps = 0;
+  for (auto _ : state) {
+    if (++steps % steps_of_a_run == 0) Compiled::reset(machine);
+    benchmark::DoNotOptimize(Compiled::step(machine, step));
+  }
+  count_lanes(state, lanes);
+}
+
+#define CDOT_COMPARE(scene, method)                                                                                 \
+  BENCHMARK_CAPTURE(run_world, scene##_##method, #scene, cdot::Integrator::method);                                 \
+  BENCHMARK(run_compiled<cdot::scenes::scene##_##method<double>, 1>)->Name(#scene "_" #method "/1");                \
+  BENCHMARK(run_compiled<cdot::scenes::scene##_##method<cdot::Pack<double, 4>>, 4>)->Name(#scene "_" #method "/4"); \
+  BENCHMARK(run_compiled<cdot::scenes::scene##_##method<cdot::Pack<double, 8>>, 8>)->Name(#scene "_" #method "/8");
+
+CDOT_COMPARE(chain_10, euler)
+CDOT_COMPARE(chain_10, rk4)
+CDOT_COMPARE(slider_crank, euler)
+CDOT_COMPARE(slider_crank, rk4)
+
+}  // namespace
+
+BENCHMARK_MAIN();
