@@ -42,13 +42,17 @@ class Names final : public Scope {
       index_.emplace(vocabulary.quantities[k].name, static_cast<int>(k));
   }
 
-  // Turns every written quantity into one name.
-  void join(Ast& ast) const {
-    if (const std::string name = written_name(ast); ast.kind != Ast::Kind::name && index_.contains(name)) {
+  // Turns every written quantity into one name. "rate(pin.agnle)" and "pin.agnle" are mistakes.
+  void join(Ast& ast, Diagnostics& diagnostics) const {
+    const std::string name = written_name(ast);
+    if (ast.kind != Ast::Kind::name && index_.contains(name)) {
       ast.kind = Ast::Kind::name, ast.text = name;
       ast.args.clear();
+    } else if (is_almost_a_quantity(ast)) {
+      diagnostics.error(ast.where, "there is no " + quote(name), hint(name));
+      ast = {};
     }
-    for (Ast& part : ast.args) join(part);
+    for (Ast& part : ast.args) join(part, diagnostics);
   }
 
   const Value* find(const std::string& name) override {
@@ -88,6 +92,16 @@ class Names final : public Scope {
     const std::vector<std::string> all = known();
     if (all.size() > 12) return "`cdot-run list` shows the coordinates of joints; bodies and joints have their names";
     return "known are " + listed(all);
+  }
+
+  bool is_almost_a_quantity(const Ast& ast) const {
+    if (written_name(ast).empty()) return false;
+    const bool call = ast.kind == Ast::Kind::call;
+    const bool member = ast.kind == Ast::Kind::member && ast.args[0].kind == Ast::Kind::name;
+    if (call ? is_operator(ast.text) : !member || std::ranges::count(vocabulary_.bodies, ast.args[0].text) > 0)
+      return false;
+    const std::string start = call ? ast.text + "(" : ast.args[0].text + ".";
+    return std::ranges::any_of(vocabulary_.quantities, [&](const auto& q) { return q.name.starts_with(start); });
   }
 
   int index_of_body(int body) const {
@@ -132,7 +146,8 @@ Value value_of(const SourceFile& file, Names& names, Pool& pool, Diagnostics& di
   Ast ast = parser.expression();
   parser.end_of_statement();
   if (diagnostics.has_errors()) return {};
-  names.join(ast);
+  names.join(ast, diagnostics);
+  if (diagnostics.has_errors()) return {};
   Value value = Evaluator(pool, names, diagnostics)(ast);
   if (value.type != Type::poison && value.type != Type::scalar)
     diagnostics.error(ast.where, "this is " + std::string(in_words(value.type)) + ", and a number is needed",

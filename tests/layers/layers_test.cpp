@@ -22,6 +22,9 @@ const fs::path source_dir = CDOT_SOURCE_DIR;
 const std::set<std::string> shared_rooms = {"runtime/text", "runtime/command_line"};  // derive/ may include them
 const std::string bridge = "derive/compile";  // scenes by the runtime, kernels by the generator: includes both
 
+// The part of the generator that cdot-run may include: expressions of scenes. The runtime's library includes nothing.
+const std::string door = "derive/interpret/formula.hpp";
+
 const std::vector<std::string> rooms = {
     "runtime/text",          // a line with carets, the nearest word, JSON
     "runtime/command_line",  // arguments to the options of a command
@@ -134,7 +137,9 @@ TEST(Layers, NoRoomIncludesARoomBelowIt) {
   ASSERT_GT(all.size(), 500u);
   for (const Include& i : all) {
     EXPECT_TRUE(fs::exists(source_dir / i.of_file)) << i.file << " includes " << i.of_file;
-    EXPECT_TRUE(i.room == bridge || shared_rooms.contains(i.of_room) || half_of(i.room) == half_of(i.of_room))
+    const bool by_the_door = i.of_file == door && i.room.starts_with("runtime/tool/");
+    EXPECT_TRUE(i.room == bridge || by_the_door || shared_rooms.contains(i.of_room) ||
+                half_of(i.room) == half_of(i.of_room))
         << i.file << " includes " << i.of_file << ": derive/ and runtime/ do not know each other";
     EXPECT_LE(rank(i.of_room), rank(i.room))
         << i.file << " includes " << i.of_file << ", which comes later in the table";

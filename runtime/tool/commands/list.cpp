@@ -80,7 +80,7 @@ std::string list_json() {
 std::string keys_text() {
   std::string text;
   for (const KeyTable& table : {keys_of_the_top(), keys_of_a_body(), keys_of_a_shape(), keys_of_a_joint(),
-                                keys_of_effects(), keys_of_a_spring(), keys_of_copies()}) {
+                                keys_of_effects(), keys_of_a_spring(), keys_of_a_sensor(), keys_of_copies()}) {
     text += fmt::format("{}{}\n\n", text.empty() ? "" : "\n", table.title);
     for (const auto& [name, meaning, otherwise] : table.rows) {
       const char* lead = otherwise.empty() ? "" : otherwise == "required" ? "; " : "; default: ";

@@ -97,6 +97,8 @@ Frame between(const Frame& before, const Frame& after, double time) {
     turn(a, b, h, s, frame.bodies[k]);
   }
   frame.energy = linear(before.energy, after.energy, s);
+  for (std::size_t k = 0; k < frame.sensors.size(); ++k)
+    frame.sensors[k] = linear(before.sensors[k], after.sensors[k], s);
   return frame;
 }
 

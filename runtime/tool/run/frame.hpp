@@ -28,8 +28,9 @@ std::span<const StateColumn> state_columns(Dimension dimension);
 struct Frame {
   double time = 0;
   std::vector<BodyState> bodies;
-  double energy = 0;  // [J]
-  WorstError worst;   // the largest |C| of a joint [m], [rad]
+  double energy = 0;              // [J]
+  WorstError worst;               // the largest |C| of a joint [m], [rad]
+  std::vector<double> sensors{};  // of the scene, by number
 };
 
 template <class S>

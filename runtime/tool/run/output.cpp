@@ -92,6 +92,7 @@ std::string csv_head(const Scene& scene) {
   for (const SceneBody& body : scene.bodies)
     for (const StateColumn& column : state_columns(scene.dimension))
       head += fmt::format(",{}.{}", body.name, column.name);
+  for (const Sensor& sensor : scene.sensors) head += "," + sensor.name;
   return head + "\n";
 }
 
@@ -100,6 +101,7 @@ std::string csv_row(const Scene& scene, const Frame& frame) {
   for (const BodyState& body : frame.bodies)
     for (const StateColumn& column : state_columns(scene.dimension))
       fmt::format_to(std::back_inserter(row), ",{}", body.*column.number);
+  for (const double value : frame.sensors) fmt::format_to(std::back_inserter(row), ",{}", value);
   return row + "\n";
 }
 

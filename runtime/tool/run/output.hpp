@@ -36,7 +36,7 @@ void write_file(const std::string& path, std::string_view text);
 std::FILE* summary_beside(std::initializer_list<std::string_view> outputs);
 std::string read_file(const std::string& path);
 
-// time, then the state_columns() of every body by name: "rod.x". Numbers read back to the same bits.
+// time, then the state_columns() of every body by name: "rod.x"; then the sensors. Numbers read back to the same bits.
 std::string csv_head(const Scene& scene);
 std::string csv_row(const Scene& scene, const Frame& frame);
 

@@ -145,6 +145,12 @@ std::string summary_text(const Scene& asked, const RunResult& result) {
   }
   text += fmt::format("  energy          {:.6g} J at the start, {:.6g} J at the end, largest change {:.3g} J\n",
                       result.energy_start, result.energy_end, result.energy_drift);
+  for (std::size_t k = 0; k < result.sensors.size(); ++k) {
+    const Sensor& sensor = scene.sensors[k];
+    const SensorRange& range = result.sensors[k];
+    text += fmt::format("  sensor          {}: {:.6g} to {:.6g} {}, {:.6g} at the end\n", sensor.name, range.least,
+                        range.most, sensor.formula.unit(), range.end);
+  }
   text += balance_text(result.balance);
   if (result.error.samples > 0) text += error_text(scene, result.error);
   if (result.redundant_rows > 0) text += fmt::format("  redundant rows  {}\n", result.redundant_rows);
@@ -221,6 +227,12 @@ std::string summary_json(const Scene& asked, const RunResult& result) {
     json["own_steps"] = {{"evaluations", result.counts.evaluations}, {"taken", result.counts.taken},
                          {"rejected", result.counts.rejected},       {"events", result.counts.events},
                          {"rescued", result.counts.rescued},         {"steered", result.counts.steered}};
+  for (std::size_t k = 0; k < result.sensors.size(); ++k)
+    json["sensors"].push_back({{"name", scene.sensors[k].name},
+                               {"unit", scene.sensors[k].formula.unit()},
+                               {"least", result.sensors[k].least},
+                               {"most", result.sensors[k].most},
+                               {"end", result.sensors[k].end}});
   if (result.error.samples > 0) json["trajectory_error"] = error_json(scene, result.error);
   if (result.advice) json["advice"] = advice_json(*result.advice);
   if (result.failed_step) json["failed_step"] = failed_step_json(scene, *result.failed_step);

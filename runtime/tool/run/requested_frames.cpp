@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "runtime/tool/watch/sensors.hpp"
+
 namespace cdot {
 namespace {
 
@@ -57,7 +59,9 @@ Frame RequestedFrames<S>::part_of_step(const Frame& before, const Frame& after, 
   if (!goes_on) part_->restore(start_);
   // The step itself succeeded, so a part of it hardly ever fails.
   if (!part_->step(time - (goes_on ? last_->time : before.time))) return between(before, after, time);
-  return frame_of(*part_, time, static_cast<int>(before.bodies.size()));
+  Frame frame = frame_of(*part_, time, static_cast<int>(before.bodies.size()));
+  frame.sensors = sensor_values(scene_, *part_);
+  return frame;
 }
 
 #define CDOT_INSTANTIATE(S) template class RequestedFrames<S>;

@@ -8,6 +8,7 @@
 #include "runtime/tool/run/error_estimate.hpp"
 #include "runtime/tool/run/process.hpp"
 #include "runtime/tool/run/requested_frames.hpp"
+#include "runtime/tool/watch/sensors.hpp"
 
 namespace cdot {
 namespace {
@@ -26,6 +27,12 @@ void judge(const Scene& scene, const Frame& frame, RunResult& result) {
     result.worst_joint = scene.joints[static_cast<std::size_t>(worst.joint)].name;
   }
   result.finite = finite(frame) && std::isfinite(worst.value);
+  result.sensors.resize(frame.sensors.size());
+  for (std::size_t k = 0; k < frame.sensors.size(); ++k) {
+    SensorRange& range = result.sensors[k];
+    range.least = std::min(range.least, frame.sensors[k]), range.most = std::max(range.most, frame.sensors[k]);
+    range.end = frame.sensors[k];
+  }
   result.energy_drift = std::max(result.energy_drift, std::abs(frame.energy - result.energy_start));
   result.energy_end = frame.energy;
   result.time = frame.time;
@@ -128,7 +135,9 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   const Interrupt interrupt;
 
   const int bodies = static_cast<int>(scene.bodies.size());
-  Frame before = frame_of(world, result.start, bodies), after = before;
+  Frame before = frame_of(world, result.start, bodies);
+  before.sensors = sensor_values(scene, world);
+  Frame after = before;
   result.energy_start = before.energy;
   auto next_diagnosis = options.diagnose_times.begin();
   RankWatch rank;
@@ -167,6 +176,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     result.steps = k + 1;
     std::swap(before, after);
     after = frame_of(world, steps.time(k + 1), bodies);
+    after.sensors = sensor_values(scene, world);
     if (progress.due())
       progress.show(fmt::format("{}{:3.0f} %  {:.4g} s of {:.4g} s", options.doing, 100 * after.time / scene.duration,
                                 after.time, scene.duration));

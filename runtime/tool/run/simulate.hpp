@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,6 +49,11 @@ struct TriedFix {
   std::vector<std::string> tried;  // all options tried, in order
 };
 
+// The values of a sensor after every step, in its unit.
+struct SensorRange {
+  double least = std::numeric_limits<double>::infinity(), most = -least, end = 0;
+};
+
 struct RunResult {
   std::optional<Choice> choice;  // if the scene asks for an accuracy
   StepCounts counts;             // of integrators on accelerations
@@ -59,8 +65,9 @@ struct RunResult {
   double worst_error = 0, worst_error_time = 0;
   std::string worst_joint;
   double energy_start = 0, energy_end = 0,
-         energy_drift = 0;  // [J]; drift: the largest |E - E_start|
-  BalanceWatch balance;     // after every step
+         energy_drift = 0;           // [J]; drift: the largest |E - E_start|
+  BalanceWatch balance;              // after every step
+  std::vector<SensorRange> sensors;  // of the scene
   WorstStep worst_step;
   TrajectoryError error;  // of fixed steps
   std::optional<TriedFix> advice;

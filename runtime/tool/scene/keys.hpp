@@ -92,6 +92,7 @@ KeyTable keys_of_a_body();    // tool/scene/bodies.cpp
 KeyTable keys_of_a_shape();   // tool/scene/bodies.cpp
 KeyTable keys_of_a_joint();   // tool/scene/joints.cpp
 KeyTable keys_of_a_spring();  // tool/scene/joints.cpp
+KeyTable keys_of_a_sensor();  // tool/scene/sensors.cpp
 KeyTable keys_of_effects();   // tool/scene/effects.cpp
 
 }  // namespace cdot

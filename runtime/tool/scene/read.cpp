@@ -50,6 +50,8 @@ void read_all(const toml::table& table, Mistakes& mistakes, Scene& scene) {
   const BodyNames names(scene);
   read_joints(top, names, scene);
   read_springs(top, names, scene);
+  if (mistakes.none()) read_sensors(top, scene);
+  else top.has("sensor");  // their words need joints without mistakes
   top.close();
 }
 

@@ -50,5 +50,6 @@ void read_settings(Entry& top, Scene& scene);                         // tool/sc
 void read_bodies(Entry& top, Scene& scene);                           // tool/scene/bodies.cpp
 void read_joints(Entry& top, const BodyNames& names, Scene& scene);   // tool/scene/joints.cpp
 void read_springs(Entry& top, const BodyNames& names, Scene& scene);  // tool/scene/joints.cpp
+void read_sensors(Entry& top, Scene& scene);                          // tool/scene/sensors.cpp
 
 }  // namespace cdot

@@ -14,6 +14,7 @@
 #include <cdot/settings.hpp>
 #include <cdot/world.hpp>
 
+#include "derive/interpret/formula.hpp"
 #include "runtime/tool/scene/mistakes.hpp"
 
 namespace cdot {
@@ -68,6 +69,30 @@ struct SceneJoint {
   std::vector<CoordinateStart> starts;
 };
 
+// A quantity of a run that an expression reads.
+struct Measured {
+  enum What {
+    energy,
+    kinetic,
+    coordinate,
+    rate,
+    effects,  // force or torque of all effects on a coordinate
+    power,    // that force times the rate
+    force,    // of the joint on its last body
+    torque    // likewise, about the centre of mass
+  } what = energy;
+  int joint = -1;
+  std::string coordinate_name{};
+  int first = 0, last = 0;  // the coordinate's effects among those of the joint
+};
+
+// An expression that a run evaluates: a column of the output.
+struct Sensor {
+  std::string name;
+  Formula formula;
+  std::vector<Measured> measured;  // by input of the formula; unused for time and the numbers of bodies
+};
+
 inline constexpr double default_step = 0.001;      // [s] of a scene that names a method without a step
 inline constexpr double default_accuracy = 1e-4;   // of a mechanism's size, and [rad]: of a scene that names no method
 inline constexpr int intervals_of_own_steps = 64;  // of a run whose method chooses its steps: Scene::step is one
@@ -91,6 +116,7 @@ struct Scene {
   std::vector<SceneBody> bodies;
   std::vector<SceneJoint> joints;
   std::vector<SpringDefinition> springs;
+  std::vector<Sensor> sensors;
   std::shared_ptr<const Mistakes> source;  // to report errors of the World in its lines
 };
 

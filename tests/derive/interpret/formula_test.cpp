@@ -61,6 +61,9 @@ TEST(Formula, MistakesHaveTheirPlaces) {
   EXPECT_EQ(unknown.begin, 4);
   EXPECT_EQ(unknown.end, 11);
   EXPECT_EQ(unknown.fix, "did you mean `energy`?");
+  EXPECT_EQ(mistake("rate(pin.agle)").fix, "did you mean `rate(pin.angle)`?");
+  EXPECT_EQ(mistake("2 * pin.agle").begin, 4);
+  EXPECT_EQ(mistake("2 * pin.agle").fix, "did you mean `pin.angle`?");
   EXPECT_EQ(mistake("norm(force(pin)").fix.empty(), false);
   EXPECT_NE(mistake("pin.angle + energy").cause.find("adds joules to radians"), std::string::npos);
   EXPECT_NE(mistake("x(rod)").cause.find("a number is needed"), std::string::npos);

@@ -1,0 +1,117 @@
+// The [[sensor]] entries of a scene -> formulas over what a run measures.
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+
+#include "runtime/tool/scene/keys.hpp"
+#include "runtime/tool/scene/read.hpp"
+
+namespace cdot {
+namespace {
+
+// All that an expression may measure, and the words for it.
+struct Measurable {
+  Vocabulary words;
+  std::vector<Measured> measured;  // as words.quantities
+
+  void add(std::string name, std::string unit, Measured what, bool vector = false) {
+    words.quantities.push_back({std::move(name), std::move(unit), vector});
+    measured.push_back(std::move(what));
+  }
+};
+
+std::string unit_of_force(std::string_view unit) { return unit == "rad" ? "N*m" : unit == "m" ? "N" : ""; }
+
+// The numbers of a coordinate's effects among those of its joint: from 1, in the order of the scene.
+std::pair<int, int> effects_of(const SceneJoint& joint, std::string_view coordinate) {
+  int first = 1;
+  for (const CoordinateEffects& effects : joint.effects) {
+    int count = 0;
+    effects.each([&](const auto&) { ++count; });
+    if (effects.coordinate == coordinate) return {first, first + count};
+    first += count;
+  }
+  return {first, first};
+}
+
+void add_joint_to(Measurable& all, const SceneJoint& joint, int number, Dimension dimension) {
+  using enum Measured::What;
+  for (const CoordinateInfo& c : find_joint_type(dimension, joint.definition.type)->coordinates) {
+    const std::string name(c.name), path = joint.name + "." + name, unit(c.unit);
+    const auto [first, last] = effects_of(joint, name);
+    all.add(path, unit, {coordinate, number, name});
+    all.add("rate(" + path + ")", unit + "/s", {rate, number, name});
+    if (unit_of_force(unit).empty()) continue;
+    all.add("force(" + path + ")", unit_of_force(unit), {effects, number, name, first, last});
+    all.add("power(" + path + ")", "J/s", {power, number, name, first, last});
+  }
+  all.add("force(" + joint.name + ")", "N", {force, number, ""}, true);
+  all.add("torque(" + joint.name + ")", "N*m", {torque, number, ""}, dimension == Dimension::spatial);
+}
+
+Measurable measurable_of(const Scene& scene) {
+  Measurable all;
+  all.words.dimension = scene.dimension == Dimension::planar ? 2 : 3;
+  for (const SceneBody& body : scene.bodies) all.words.bodies.push_back(body.name);
+  for (std::size_t k = 0; k < scene.joints.size(); ++k)
+    add_joint_to(all, scene.joints[k], static_cast<int>(k), scene.dimension);
+  all.add("energy", "J", {Measured::energy});
+  all.add("kinetic", "J", {Measured::kinetic});
+  return all;
+}
+
+struct SensorReading {
+  const Measurable& all;
+  std::map<std::string, Span>& used;
+  Sensor sensor{};
+};
+
+void read_sensor_name(Entry& entry, const char*, SensorReading& to) {
+  to.sensor.name = read_name(entry, to.used, std::nullopt).value_or("");
+}
+
+// The place of bytes [begin, end) of a text: inside its quotes, if the file has the text as it is.
+Span place_in(const Entry& entry, const std::string& key, const std::string& text, const FormulaMistake& mistake) {
+  const Span whole = entry.where(key);
+  if (whole.end - whole.begin != static_cast<int>(text.size()) + 2) return whole;
+  return {whole.line, whole.begin + 1 + mistake.begin, whole.begin + 1 + std::max(mistake.end, mistake.begin + 1)};
+}
+
+void read_value(Entry& entry, const char* key, SensorReading& to) {
+  entry.required(key, "value = \"energy\"");
+  const std::optional<std::string> text = entry.text(key);
+  if (!text) return;
+  Formula::Reading read = Formula::read(*text, to.all.words);
+  for (const FormulaMistake& mistake : read.mistakes)
+    entry.error(place_in(entry, key, *text, mistake), mistake.cause, mistake.fix);
+  if (!read.formula) return;
+  to.sensor.formula = std::move(*read.formula);
+  for (const Formula::Input& input : to.sensor.formula.inputs())
+    to.sensor.measured.push_back(
+        input.of == Formula::Input::quantity ? to.all.measured[static_cast<std::size_t>(input.index)] : Measured{});
+}
+
+// clang-format off
+constexpr Key<SensorReading> sensor_keys[] = {
+    {"name", "letters, digits, _ and -; names the CSV column", "required", read_sensor_name},
+    {"value", "an expression in the language of the specs: \"power(pin.angle)\"", "required", read_value},
+};
+// clang-format on
+
+}  // namespace
+
+void read_sensors(Entry& top, Scene& scene) {
+  if (!top.has("sensor")) return;
+  const Measurable all = measurable_of(scene);
+  std::map<std::string, Span> used{{"time", {}}};
+  for (Entry& entry : top.list("sensor")) {
+    SensorReading read{all, used};
+    read_keys(entry, sensor_keys, scene.dimension, read);
+    entry.close();
+    scene.sensors.push_back(std::move(read.sensor));
+  }
+}
+
+KeyTable keys_of_a_sensor() { return table_of("[[sensor]]", sensor_keys); }
+
+}  // namespace cdot
