@@ -6,8 +6,8 @@
 
 namespace cdot::derive {
 
-Algebra::Algebra(const Joint& joint, Route route, int immovable)
-    : joint_(joint), route_(route), immovable_(immovable), evaluation_(*this) {}
+Algebra::Algebra(const Joint& joint, Route route, int immovable, std::int64_t slopes)
+    : joint_(joint), route_(route), immovable_(immovable), left_for_slopes_(slopes), evaluation_(*this) {}
 
 namespace {
 
@@ -87,8 +87,33 @@ EulerParameters<ex> rates_of(const EulerParameters<ex>& e, const ex& w_x, const 
 
 }  // namespace
 
-ex Algebra::derivative(const ex& e, const ex& symbol) {
-  return is_a<GiNaC::symbol>(symbol) ? slopes_.try_emplace(symbol, symbol).first->second.of(e) : 0;
+// Once the work is spent, no slope is GiNaC's: which parts it has finished by then depends on the run.
+ex Algebra::derivative(const ex& e, const ex& symbol) try {
+  if (!is_a<GiNaC::symbol>(symbol)) return 0;
+  if (left_for_slopes_ == 0) return derivative_at_points(e, symbol);
+  const auto of_leaf = [this, symbol](const ex& other) { return derivative_at_points(other, symbol); };
+  return slopes_.try_emplace(symbol, symbol, left_for_slopes_, of_leaf).first->second.of(e);
+} catch (const Slope::TooLong&) {
+  return derivative_at_points(e, symbol);
+}
+
+// With work of its own: the law of momentum must not depend on how much the others left.
+ex Algebra::constant_slope(const ex& e, const ex& symbol) try {
+  std::int64_t left = most_slopes / 16;
+  const ex slope = Slope(symbol, left, [](const ex&) -> ex { return 0; }).of(e);
+  return is_a<numeric>(slope) ? slope : 0;
+} catch (const Slope::TooLong&) {
+  return numeric_slope(e, symbol).value_or(0);
+}
+
+ex Algebra::derivative_at_points(const ex& e, const ex& symbol) {
+  if (is_a<GiNaC::symbol>(e) && slopes_at_points_.empty()) return e.is_equal(symbol) ? 1 : 0;
+  const std::size_t place = steps_.slope(steps_.place_of(e), symbol);
+  for (const int constant : {0, 1})
+    if (place == steps_.place_of(constant)) return constant;
+  const auto [found, fresh] = slopes_at_points_.try_emplace(place);
+  if (fresh) places_of_slopes_.insert(steps_.define(found->second = fresh_symbol(), place));
+  return found->second;
 }
 
 EulerParameters<ex> Algebra::orientation(const std::string& name, int body) {

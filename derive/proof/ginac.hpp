@@ -11,6 +11,7 @@
 #include "derive/proof/ginac_point.hpp"
 #include "derive/proof/ginac_walks.hpp"
 #include "derive/proof/polynomial.hpp"
+#include "derive/proof/prove.hpp"
 
 namespace cdot::derive {
 
@@ -23,7 +24,8 @@ namespace cdot::derive {
 class Algebra final : public Arithmetic<ex> {
  public:
   enum class Route { names, raw };
-  Algebra(const Joint& joint, Route route, int immovable = -1);
+  // `slopes` is the work of derivatives in GiNaC, in operands of sums and products.
+  Algebra(const Joint& joint, Route route, int immovable = -1, std::int64_t slopes = most_slopes);
 
   // Both throw NumberTooLarge where the numbers of GiNaC's exact form would never end.
   ex of(Expr scalar) { return evaluation_.scalar(with_short_numbers(scalar)); }
@@ -34,8 +36,11 @@ class Algebra final : public Arithmetic<ex> {
   // v_x, ..., w_z.
   std::vector<ex> coordinates(int body);
   std::vector<ex> velocities(int body);
-  // de/dsymbol. It is zero for the velocity of an immovable body, which is the number 0.
+  // de/dsymbol. It is zero for the velocity of an immovable body, which is the number 0. Where GiNaC's derivatives
+  // become too long, it is a symbol that has a value at points only: then the zero-test shows, but does not prove.
   ex derivative(const ex& e, const ex& symbol);
+  // The same if it is a number other than zero; else zero.
+  ex constant_slope(const ex& e, const ex& symbol);
   // The derivative of e as the body moves along column k of J at unit rate.
   ex slope(const ex& e, int body, std::size_t k);
   // de/dt along the motion, at constant velocities.
@@ -81,6 +86,7 @@ class Algebra final : public Arithmetic<ex> {
   };
 
   Expr with_short_numbers(Expr e);
+  ex derivative_at_points(const ex& e, const ex& symbol);
   ex leaf(const std::string& name, const ex& rate);
   Triple<ex> free_vector(const Node& symbol);
   Triple<ex> vector_of_body(const Node& symbol);
@@ -99,13 +105,13 @@ class Algebra final : public Arithmetic<ex> {
   ex symbol_for(const ex& compound);
   void relate(Atom::Kind kind, const ex& symbol, const ex& operand);
   std::string difference_at(const ex& e, std::span<const std::size_t> parts, std::uint64_t seed);
-  Nullity nullity_of(const ex& e);
+  Nullity nullity_of(const std::vector<std::size_t>& parts);
 
   // Budgets of one test and of all tests together, in factors of multiplied terms. A test that exceeds its budget
   // halves that of the next one, which is likely to be as expensive.
   static constexpr std::int64_t most_work = 500000, least_work = most_work / 64;
   static constexpr std::int64_t most_work_in_all = 6 * most_work;
-  // Steps at points of all tests together, some twenty times what our hardest specs take. Later tests give up earlier.
+  // Steps at points of all tests together, a hundred times what the catalogue takes. Later tests give up earlier.
   static constexpr std::int64_t most_work_at_points = 200000000;
   static constexpr std::uint64_t least_attempts = attempts_at_points / 256;
   struct TooLong : std::runtime_error {
@@ -133,6 +139,9 @@ class Algebra final : public Arithmetic<ex> {
   int immovable_;
   std::map<std::string, Leaf> leaves_;
   std::map<ex, Slope, GiNaC::ex_is_less> slopes_;  // by symbol
+  std::int64_t left_for_slopes_;
+  std::map<std::size_t, ex> slopes_at_points_;  // symbols, by the places of their values
+  std::set<std::size_t> places_of_slopes_;      // of these symbols
   Polynomials polynomials_;
   std::vector<Atom> atoms_;
   std::vector<std::vector<ex>> units_;                   // symbols whose squares sum to 1

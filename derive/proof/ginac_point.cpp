@@ -88,11 +88,15 @@ std::size_t Steps::place_of(const ex& e) {
                                           : Kind::function;
   std::vector<std::size_t> operands;
   for (std::size_t i = 0; i < (power ? 1 : e.nops()); ++i) operands.push_back(place_of(e.op(i)));
+  const bool whole = kind == Kind::sum || kind == Kind::product;
+  return places_[e] = add(kind, operands, whole ? ex(0) : e);
+}
+
+std::size_t Steps::add(Kind kind, std::span<const std::size_t> operands, const ex& e) {
   const std::size_t begin = operands_.size();
   operands_.insert(operands_.end(), operands.begin(), operands.end());
-  const bool whole = kind == Kind::sum || kind == Kind::product;
-  steps_.push_back({kind, whole ? ex(0) : e, function_in(e), begin, operands_.size()});
-  return places_[e] = steps_.size() - 1;
+  steps_.push_back({kind, e, function_in(e), begin, operands_.size()});
+  return steps_.size() - 1;
 }
 
 std::vector<std::size_t> Steps::parts_of(std::size_t last) {

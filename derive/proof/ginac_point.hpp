@@ -2,7 +2,10 @@
 // probability, and sort terms in the same way on every run.
 #pragma once
 
+#include <map>
+#include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "derive/numbers/modular_point.hpp"
@@ -17,6 +20,12 @@ class Steps {
   std::size_t place_of(const ex& e);  // of its last step
   // The places of all parts of the expression at `last`, operands first.
   std::vector<std::size_t> parts_of(std::size_t last);
+  // The place of d/dsymbol of the step at `last`: steps of its own, without GiNaC's normal forms.
+  std::size_t slope(std::size_t last, const ex& symbol);
+  // From now on the symbol is a step of its own, with the value of the step at `place`; returns its place.
+  std::size_t define(const ex& symbol, std::size_t place) {
+    return places_[symbol] = add(Kind::sum, std::span(&place, 1));
+  }
   // Powers and functions may have no value.
   bool is_partial(std::size_t place) const { return steps_[place].kind >= Kind::power; }
   std::size_t size() const { return steps_.size(); }
@@ -35,11 +44,18 @@ class Steps {
   };
 
   numeric in_decimals(const Step& step, const std::vector<numeric>& values, const GiNaC::exmap& symbols) const;
+  void put(const ex& symbol, std::size_t place) { places_[symbol] = place; }
+  std::size_t add(Kind kind, std::span<const std::size_t> operands, const ex& e = 0);
+  std::size_t sum(std::span<const std::size_t> terms);
+  std::size_t product(std::span<const std::size_t> factors);
+  std::size_t slope_of_step(std::size_t place, std::size_t by);
+  std::vector<std::size_t> factors_of_slopes(const Step& step, std::span<const std::size_t> operands);
 
   std::vector<Step> steps_;
   std::vector<std::size_t> operands_;
   std::unordered_map<ex, std::size_t, std::hash<ex>, SameExpression> places_;
-  std::vector<std::size_t> visits_;  // by place: the last one
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> slopes_;  // by places of a step and of a symbol
+  std::vector<std::size_t> visits_;                                    // by place: the last one
   std::size_t visit_ = 0;
 };
 

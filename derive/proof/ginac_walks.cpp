@@ -1,11 +1,25 @@
 #include "derive/proof/ginac_walks.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cdot::derive {
 
+Partials::Partials(const ex& f) {
+  for (std::size_t i = 0; i < f.nops(); ++i) symbols.push_back(GiNaC::realsymbol());
+  const ex call = is_a<GiNaC::power>(f) ? pow(symbols[0], symbols[1])
+                                        : ex(GiNaC::function(ex_to<GiNaC::function>(f).get_serial(), symbols));
+  for (const ex& symbol : symbols) slopes.push_back(call.diff(ex_to<GiNaC::symbol>(symbol)));
+}
+
+void Slope::spend(std::size_t operands) {
+  left_ -= std::min(left_, static_cast<std::int64_t>(operands));
+  if (left_ == 0) throw TooLong{};
+}
+
 ex Slope::of(const ex& e) {
   if (e.is_equal(symbol_)) return 1;
+  if (is_a<GiNaC::symbol>(e)) return of_leaf_(e);
   if (e.nops() == 0) return 0;
   if (const auto found = done_.find(e); found != done_.end()) return found->second;
   const ex slope = compound(e);
@@ -14,6 +28,7 @@ ex Slope::of(const ex& e) {
 }
 
 ex Slope::compound(const ex& e) {
+  spend(e.nops());
   if (is_a<GiNaC::add>(e)) {
     GiNaC::exvector terms;
     for (const ex& term : e) terms.push_back(of(term));
@@ -24,7 +39,7 @@ ex Slope::compound(const ex& e) {
     const ex slope = of(e.op(0));
     return slope.is_zero() ? slope : e.op(1) * pow(e.op(0), e.op(1) - 1) * slope;
   }
-  return is_a<GiNaC::function>(e) ? of_function(e) : e.diff(ex_to<GiNaC::symbol>(symbol_));
+  return of_function(e);
 }
 
 // (x y z)' = x' y z + x y' z + x y z'
@@ -34,25 +49,21 @@ ex Slope::of_product(const ex& e) {
   for (std::size_t i = 0; i < factors.size(); ++i) {
     GiNaC::exvector term = factors;
     term[i] = of(factors[i]);
-    if (!term[i].is_zero()) terms.push_back(GiNaC::mul(term));
+    if (term[i].is_zero()) continue;
+    spend(factors.size() + term[i].nops());
+    terms.push_back(GiNaC::mul(term));
   }
   return GiNaC::add(terms);
 }
 
-// GiNaC differentiates f of fresh symbols; the arguments take their places.
 ex Slope::of_function(const ex& e) {
-  GiNaC::exvector symbols, terms;
+  const Partials partials(e);
   GiNaC::exmap arguments;
-  for (const ex& argument : e) {
-    symbols.push_back(GiNaC::realsymbol());
-    arguments.emplace(symbols.back(), argument);
-  }
-  const ex f = GiNaC::function(ex_to<GiNaC::function>(e).get_serial(), symbols);
-  for (std::size_t i = 0; i < symbols.size(); ++i) {
+  for (std::size_t i = 0; i < e.nops(); ++i) arguments.emplace(partials.symbols[i], e.op(i));
+  GiNaC::exvector terms;
+  for (std::size_t i = 0; i < e.nops(); ++i) {
     const ex slope = of(e.op(i));
-    if (slope.is_zero()) continue;
-    const ex partial = f.diff(ex_to<GiNaC::symbol>(symbols[i]));
-    terms.push_back(partial.subs(arguments, GiNaC::subs_options::no_pattern) * slope);
+    if (!slope.is_zero()) terms.push_back(partials.slopes[i].subs(arguments, GiNaC::subs_options::no_pattern) * slope);
   }
   return GiNaC::add(terms);
 }
@@ -119,7 +130,40 @@ class Expansion {
   std::unordered_map<ex, Bound, std::hash<ex>, SameExpression> done_;
 };
 
+class NumericSlope {
+ public:
+  explicit NumericSlope(const ex& symbol) : symbol_(symbol) {}
+
+  std::optional<numeric> of(const ex& e) {
+    if (e.nops() == 0) return numeric(e.is_equal(symbol_) ? 1 : 0);
+    if (const auto found = done_.find(e); found != done_.end()) return found->second;
+    const std::optional<numeric> slope = compound(e);
+    done_.emplace(e, slope);
+    return slope;
+  }
+
+ private:
+  std::optional<numeric> compound(const ex& e) {
+    numeric total(0);
+    bool constant = true;
+    for (const ex& part : e) {
+      const std::optional<numeric> slope = of(part);
+      if (!slope) return std::nullopt;
+      total = total.add(*slope);
+      constant = constant && slope->is_zero();
+    }
+    if (constant || is_a<GiNaC::add>(e)) return total;
+    const bool scaled = is_a<GiNaC::mul>(e) && e.nops() == 2 && is_a<numeric>(e.op(1));
+    return scaled ? std::optional(total.mul(ex_to<numeric>(e.op(1)))) : std::nullopt;
+  }
+
+  const ex& symbol_;
+  std::unordered_map<ex, std::optional<numeric>, std::hash<ex>, SameExpression> done_;
+};
+
 }  // namespace
+
+std::optional<numeric> numeric_slope(const ex& e, const ex& symbol) { return NumericSlope(symbol).of(e); }
 
 std::optional<ex> expanded_if_short(const ex& e) {
   constexpr double most_terms = 20000;

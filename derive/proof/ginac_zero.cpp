@@ -277,8 +277,7 @@ std::string Algebra::witness(const ex& e) {
 
 // A part without a value at a point has none there in later tests: with n roots, one point in 2^n has all values. New
 // symbols change the points.
-Nullity Algebra::nullity_of(const ex& e) {
-  const std::vector<std::size_t> parts = steps_.parts_of(steps_.place_of(e));
+Nullity Algebra::nullity_of(const std::vector<std::size_t>& parts) {
   if (symbols_of_points_ != leaves_.size()) without_value_.clear();
   symbols_of_points_ = leaves_.size();
   std::vector<std::vector<bool>*> known;  // of the parts that may have no value
@@ -306,9 +305,12 @@ Nullity Algebra::nullity_of(const ex& e) {
 
 Algebra::Zero Algebra::is_zero(const ex& e) {
   if (e.is_zero()) return Zero::yes;
-  const Nullity nullity = nullity_of(e);
+  const std::vector<std::size_t> parts = steps_.parts_of(steps_.place_of(e));
+  const Nullity nullity = nullity_of(parts);
   if (nullity == Nullity::differs) return Zero::no;
-  const std::optional<Polynomial> p = numerator_of(e, false);
+  const bool at_points = !places_of_slopes_.empty() &&
+                         std::ranges::any_of(parts, [&](std::size_t p) { return places_of_slopes_.contains(p); });
+  const std::optional<Polynomial> p = at_points ? std::nullopt : numerator_of(e, false);
   if (p && p->is_zero()) return Zero::yes;
   if (nullity == Nullity::zero) return Zero::shown;
   return witness(e).empty() ? Zero::undecided : Zero::no;

@@ -34,8 +34,8 @@ GiNaC::exmap on_the_constraint(const Joint& joint, Algebra& names) {
       const auto q = names.coordinates(static_cast<int>(b));
       for (int k = 0; k < joint.dimension; ++k) {
         const ex& x = q[static_cast<std::size_t>(k)];
-        const ex slope = names.derivative(rest, x);
-        if (!is_a<numeric>(slope) || slope.is_zero()) continue;
+        const ex slope = names.constant_slope(rest, x);
+        if (slope.is_zero()) continue;
         const ex value = -substituted(rest, {{x, 0}}) / slope;
         for (auto& [symbol, earlier] : solved) earlier = substituted(earlier, {{x, value}});
         solved[x] = value;

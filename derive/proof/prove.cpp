@@ -11,11 +11,11 @@ namespace {
 
 class Prover {
  public:
-  Prover(const Joint& joint, const Block& block)
+  Prover(const Joint& joint, const Block& block, std::int64_t slopes)
       : joint_(joint),
         block_(block),
-        names_(joint, Algebra::Route::names, block.immovable),
-        raw_(joint, Algebra::Route::raw, block.immovable) {
+        names_(joint, Algebra::Route::names, block.immovable, slopes),
+        raw_(joint, Algebra::Route::raw, block.immovable, slopes) {
     for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
       names_.coordinates(static_cast<int>(b));  // in the order of the spec
       raw_.coordinates(static_cast<int>(b));
@@ -316,7 +316,7 @@ bool is_broken(const Law& law) { return law.verdict == Verdict::fails || law.ver
 
 bool Proof::holds() const { return std::none_of(laws.begin(), laws.end(), is_broken); }
 
-Proof prove(const Joint& joint, const Block& block) { return Prover(joint, block).run(); }
+Proof prove(const Joint& joint, const Block& block, std::int64_t slopes) { return Prover(joint, block, slopes).run(); }
 
 std::vector<Proved> prove_blocks(const Derivation& derivation) {
   const Joint& joint = derivation.joint;

@@ -1,6 +1,7 @@
 // The laws of every derivation, proved by GiNaC or by exact arithmetic, independently of our own derivative.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,8 +59,12 @@ std::optional<LawId> law_of(std::string_view word);
 std::string_view name_of(LawId id);   // "J v + dC/dt = Cdot"
 std::string_view name_of(Verdict v);  // "holds"
 
+// Operands of sums and products that GiNaC's derivatives of one block may have; the catalogue needs 80,000. Beyond, the
+// derivatives have values at random points only, and laws are shown, not proved.
+inline constexpr std::int64_t most_slopes = 150000;
+
 // Judges the laws of a block by itself; `block` is the result of derive_rows or derive_coordinate.
-Proof prove(const Joint& joint, const Block& block);
+Proof prove(const Joint& joint, const Block& block, std::int64_t slopes = most_slopes);
 
 struct Proved {
   std::string name;  // of a coordinate; empty for the rows of the joint
