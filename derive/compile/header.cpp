@@ -16,81 +16,16 @@ namespace {
 
 // Names of the header itself, and words of C++ that a scene is likely to use.
 const std::set<std::string>& taken() {
-  static const std::set<std::string> names = {"T",
-                                              "q",
-                                              "v",
-                                              "a",
-                                              "J",
-                                              "C",
-                                              "Cdot",
-                                              "g",
-                                              "b",
-                                              "d",
-                                              "s",
-                                              "h",
-                                              "i",
-                                              "k",
-                                              "at",
-                                              "x",
-                                              "y",
-                                              "w",
-                                              "c",
-                                              "time",
-                                              "rows",
-                                              "bodies",
-                                              "pivot",
-                                              "select",
-                                              "abs",
-                                              "sign",
-                                              "turn",
-                                              "close",
-                                              "errors",
-                                              "evaluate",
-                                              "rates",
-                                              "gamma",
-                                              "solve",
-                                              "step",
-                                              "reset",
-                                              "begin",
-                                              "push",
-                                              "fall",
-                                              "moved",
-                                              "weighed",
-                                              "project",
-                                              "slope",
-                                              "State",
-                                              "Pose",
-                                              "Slope",
-                                              "Body",
-                                              "lambda",
-                                              "inverse",
-                                              "accelerate",
-                                              "Velocity",
-                                              "Jacobian",
-                                              "Evaluated",
-                                              "default_step",
-                                              "int",
-                                              "float",
-                                              "double",
-                                              "for",
-                                              "if",
-                                              "do",
-                                              "new",
-                                              "this",
-                                              "and",
-                                              "or",
-                                              "not",
-                                              "auto",
-                                              "const",
-                                              "static",
-                                              "struct",
-                                              "case",
-                                              "switch",
-                                              "default",
-                                              "return",
-                                              "template",
-                                              "left",
-                                              "largest"};
+  static const std::set<std::string> names = {
+      "T",      "q",        "v",        "a",       "J",          "C",        "Cdot",     "g",         "b",
+      "d",      "s",        "h",        "i",       "k",          "at",       "x",        "y",         "w",
+      "c",      "time",     "rows",     "bodies",  "pivot",      "select",   "abs",      "sign",      "turn",
+      "close",  "errors",   "evaluate", "rates",   "gamma",      "solve",    "step",     "reset",     "begin",
+      "push",   "fall",     "moved",    "weighed", "project",    "slope",    "State",    "energy",    "Pose",
+      "Slope",  "Body",     "lambda",   "inverse", "accelerate", "Velocity", "Jacobian", "Evaluated", "default_step",
+      "int",    "float",    "double",   "for",     "if",         "do",       "new",      "this",      "and",
+      "or",     "not",      "auto",     "const",   "static",     "struct",   "case",     "switch",    "default",
+      "return", "template", "left",     "largest"};
   return names;
 }
 
@@ -124,6 +59,7 @@ class HeaderWriter {
     write_start();
     write_poses();
     write_masses();
+    write_energy();
     write_equations();
     write_corrections();
     text_ += step_of(mechanism_.method);
@@ -277,6 +213,24 @@ class HeaderWriter {
       };
       if (b.inv_m > 0) line(fmt::format("    sum = sum + T({}) * ({} + {});", 1 / b.inv_m, square("x"), square("y")));
       if (b.inv_I > 0) line(fmt::format("    sum = sum + T({}) * ({});", 1 / b.inv_I, square("w")));
+    });
+    line("    return sum;");
+    line("  }");
+  }
+
+  // Gravity and constant forces have a potential, 0 at the start.
+  void write_energy() {
+    line();
+    line("  // Kinetic energy and the potential of gravity and constant forces, which is 0 at the start [J].");
+    line("  static T energy(const State& s) {");
+    line("    T sum = T(0.5) * weighed(s.v);");
+    each_body([&](const Body& b, const std::string& name) {
+      const auto add = [&](double force, const std::string& member, double start) {
+        if (force == 0) return;
+        line(fmt::format("    sum = sum - T({}) * (s.q[{}].{} - T({}));", force, name, member, start));
+      };
+      if (b.inv_m > 0) add(b.ax / b.inv_m, "x", b.x), add(b.ay / b.inv_m, "y", b.y);
+      if (b.inv_I > 0) add(b.aw / b.inv_I, "angle", b.angle);
     });
     line("    return sum;");
     line("  }");

@@ -95,6 +95,7 @@ void runs_as_the_world(const std::string& name, Integrator integrator) {
   }
   EXPECT_LT(farthest, 1e-10) << name;
   EXPECT_LT(state.residual, 1e-12) << name;
+  EXPECT_NEAR(Compiled::energy(state), world.energy(), 1e-9) << name;
   EXPECT_TRUE(name == "cantilever" || moved > 1e-4) << name;
   ::testing::Test::RecordProperty(name, std::to_string(farthest * 1e15));
 }
