@@ -2,7 +2,6 @@
 #include "derive/explain/explain.hpp"
 
 #include <fmt/format.h>
-#include <fstream>
 #include <iostream>
 
 #include "derive/commands/commands.hpp"
@@ -49,11 +48,13 @@ int print(const std::string& text, const Options& options) {
     std::cout << text;
     return std::cout.flush() ? 0 : 2;
   }
-  std::ofstream out(options.output, std::ios::binary);
-  out << text;
-  if (out.flush()) return 0;
-  fmt::print(stderr, "cdot explain: cannot write {}\n", options.output);
-  return 2;
+  const std::filesystem::path folder = std::filesystem::path(options.output).parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder)) {
+    fmt::print(stderr, "cdot explain: cannot write {}: there is no folder {}\n", options.output, folder.string());
+    return 2;
+  }
+  write_file(options.output, text);
+  return 0;
 }
 
 // A spec that can be read but not derived.

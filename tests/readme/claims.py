@@ -114,7 +114,7 @@ def pictures():
 
 
 def teaching_message():
-    """What it answers to the prismatic Jacobian without the term from the turning axis."""
+    """The answer to the prismatic Jacobian without the term from the turning axis."""
     hand = place / "specs/planar/prismatic.hand"
     kept = hand.read_text()
     hand.write_text('entry OWN-1 "J without the turning axis"\n  source "me"\n  assume t on b\n'

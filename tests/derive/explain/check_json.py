@@ -177,7 +177,7 @@ class Checks:
         return J
 
     def zeros(self, Js):
-        """What is zero at every pose is written 0."""
+        """An entry that is zero at every pose is written 0."""
         for i, row in enumerate(self.text["J"]):
             for j, text in enumerate(row):
                 if all(J[i][j] == 0 for J in Js) and text != "0":

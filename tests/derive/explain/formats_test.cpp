@@ -178,6 +178,13 @@ TEST(ExplainCommand, WritesFilesAndSaysWhatIsWrong) {
   EXPECT_EQ(run(cdot + " explain line --format pdf" + specs).status, 2);
   EXPECT_EQ(run(cdot + " explain line --format html --json" + specs).status, 2);
   EXPECT_EQ(run(cdot + " explain line -o " + quoted(out / "none" / "x.txt") + specs).status, 2);
+  // A file that cannot be written to its end leaves the earlier one as it was.
+  const auto kept = out / "kept.txt";
+  std::ofstream(kept) << "before";
+  EXPECT_EQ(run("trap '' XFSZ; ulimit -f 1; " + cdot + " explain line --format html -o " + quoted(kept) + specs).status,
+            2);
+  std::ifstream after(kept);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(after), {}), "before");
   const Ran form = run(cdot + " explain line --form local" + specs);
   EXPECT_EQ(form.status, 2);
   EXPECT_NE(form.output.find("for spatial joints"), std::string::npos) << form.output;

@@ -87,7 +87,7 @@ void write(const std::string& folder, const nlohmann::json& found) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"What Cdot and today's engines make of the hard cases."};
+  CLI::App app{"Runs the hard cases with Cdot and today's engines."};
   std::string only, engine, output;
   bool pages = false;
   app.add_option("--only", only, "Only cases whose name begins with this");
