@@ -130,7 +130,8 @@ class HeaderWriter {
     line("    Pose q[bodies];");
     line("    Velocity v[bodies];");
     if (on_accelerations()) line("    Velocity a[bodies];");
-    line(fmt::format("    T lambda[rows];  // {} of the joints", on_accelerations() ? "forces" : "impulses"));
+    line(fmt::format("    T lambda[rows];  // {} of the joints",
+                     on_accelerations() ? "forces" : "impulses before the correction"));
     line("    T residual;      // the largest |C| [m], [rad]");
     line("    Jacobian J;      // of the poses q");
     line("  };");
