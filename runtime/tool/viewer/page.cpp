@@ -77,6 +77,13 @@ void add_frames(const Scene& scene, const std::vector<Frame>& film, NumbersOf nu
       for (const double number : numbers_of(frame.bodies[body])) poses.push_back(number);
   }
   run.update({{"moving", moving}, {"times", times}, {"poses", poses}, {"energy", energy}, {"error", error}});
+  run["sensors"] = Json::array();
+  for (std::size_t k = 0; k < scene.sensors.size(); ++k) {
+    std::vector<double> values;
+    for (const Frame& frame : film) values.push_back(frame.sensors[k]);
+    run["sensors"].push_back(
+        {{"name", scene.sensors[k].name}, {"unit", scene.sensors[k].formula.unit()}, {"values", values}});
+  }
 }
 
 Json film_json(const std::vector<Frame>& film) {

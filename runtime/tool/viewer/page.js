@@ -38,7 +38,22 @@ function plot(id, values, unit, fromZero) {
   };
 }
 
-const plots = [plot('energy', run.energy, 'J', false), plot('error', run.error, '', true)];
+function sensorPlot(sensor, k) {
+  const id = `sensor${k}`;
+  const figure = by('error').parentNode.cloneNode(true);
+  figure.querySelector('span').textContent = sensor.name;
+  figure.querySelector('b').id = `${id}-now`;
+  figure.querySelector('svg').id = id;
+  figure.querySelector('.range').id = `${id}-range`;
+  by('report').before(figure);
+  return plot(id, sensor.values, sensor.unit === '1' ? '' : sensor.unit, false);
+}
+
+// The figures of sensors are copies of an empty one.
+const plots = [
+  ...run.sensors.map(sensorPlot), plot('energy', run.energy, 'J', false),
+  plot('error', run.error, '', true)
+];
 
 // --- time --------------------------------------------------------------------------------------
 

@@ -65,6 +65,26 @@ TEST_F(Page, TellsWhatTheSearchChose) {
   EXPECT_NE(text.find("2 bodies, 2 joints, dop853, local error "), std::string::npos);
 }
 
+// Each sensor is a plot of its own, with its range and its present value.
+TEST_F(Page, PlotsSensors) {
+  const std::string text = read_text(scenes_dir() / "simple_pendulum.toml") +
+                           "\n[[sensor]]\nname = \"clock\"\nvalue = \"2 * time\"\n"
+                           "[[sensor]]\nname = \"joules\"\nvalue = \"kinetic\"\n";
+  Scene scene = read_scene(std::string_view(text), "test.toml");
+  scene.duration = 1;
+  const auto seen = seen_by(html_page(scene, film_of(scene)), R"(
+      document.dispatchEvent(new KeyboardEvent('keydown', {key: 'End'}));
+      seen.plots = document.querySelectorAll('.plot polyline').length;
+      seen.names = [...document.querySelectorAll('figcaption span')].map(e => e.textContent).join();
+      seen.range = document.getElementById('sensor0-range').textContent;
+      seen.now = document.getElementById('sensor0-now').textContent;)");
+  ASSERT_FALSE(seen.contains("error")) << seen;
+  EXPECT_EQ(seen["plots"], 4);
+  EXPECT_EQ(seen["names"], "energy,worst joint error |C|,clock,joules");
+  EXPECT_EQ(seen["range"], "0 … 2 s");
+  EXPECT_EQ(seen["now"], "2 s");
+}
+
 TEST_F(Page, PlaysScrubsAndAnswersKeys) {
   const Scene scene = short_scene("four_bar", 1);
   const auto seen = seen_by(html_page(scene, film_of(scene)), R"(
