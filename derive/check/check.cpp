@@ -28,6 +28,13 @@ void take_over(const Proved& proved, Findings& findings) {
   }
 }
 
+void check_constraints(const Subject& subject, Draw draw, CheckReport& report) {
+  check_rows(subject, report.findings);
+  check_undefined(subject, report.findings);
+  check_defaults(subject, report.findings);
+  check_mass(subject, report.findings, draw == Draw::yes ? &report.poses : nullptr);
+}
+
 }  // namespace
 
 Span place_of(const Block& coordinate, const Joint& joint) {
@@ -52,10 +59,8 @@ CheckReport check(const ReadResult& read, Draw draw) {
     const Subject subject = subject_of(derivation);
     report.proofs = prove_blocks(derivation);
     for (const Proved& proved : report.proofs) take_over(proved, report.findings);
-    check_rows(subject, report.findings);
-    check_undefined(subject, report.findings);
-    check_defaults(subject, report.findings);
-    check_mass(subject, report.findings, draw == Draw::yes ? &report.poses : nullptr);
+    // The rest is about constraints: C = 0, their defaults and their K.
+    if (!joint.law) check_constraints(subject, draw, report);
   } catch (const NotLinear& e) {
     report.findings.add(Level::error, "linear", joint.rows.front().where, e.what(),
                         "a velocity row is a sum of velocities times what does not contain them");

@@ -13,7 +13,7 @@ namespace cdot::derive {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Count, add, multiply, divide, root, compare, call)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LedgerRow, space, joint, block, quantity, source, count)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(GeneratedJoint, space, name, kernel, ledger)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(GeneratedJoint, space, name, kernel, ledger, is_effect)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ProofRow, space, joint, block, statement, proved, shown)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Outcome, proved, on_record, said, complaints, proofs, joint, hand_costs)
 

@@ -62,11 +62,23 @@ struct Block {
   std::vector<Block> variants;
 };
 
+// The law of an effect by the components of its inputs, in the order of the rows.
+struct DerivedLaw {
+  std::vector<Expr> value, rate;  // leaves
+  Expr energy;                    // empty: none
+  std::vector<Expr> force;        // all of it, -dE/d(value) and what the spec adds
+  std::vector<Expr> unstored;     // what the spec adds: the part that has no energy
+  // Of the force: -dF_i/d(value_j) and -dF_i/d(rate_j).
+  std::vector<std::vector<Expr>> stiffness, damping;
+};
+DerivedLaw derive_law(const Joint& joint);
+
 // A joint and all parts of its kernels, derived once: the same object is proved, planned, printed and explained.
 struct Derivation {
   Joint joint;                     // without coordinates that an include brought and rows constrain
   Block rows;                      // refers to rows of `joint`: a Derivation moves, but has no copies
   std::vector<Block> coordinates;  // in the order of those of `joint`
+  std::optional<DerivedLaw> law;   // of an effect
 
   explicit Derivation(Joint of) : joint(std::move(of)) {}
   Derivation(Derivation&&) = default;
@@ -80,7 +92,7 @@ struct NotLinear : std::runtime_error {
 // The moving part; by default everything moves.
 struct Moving {
   int immovable = -1;  // this body stands still
-  Expr only = {};      // nothing moves but this leaf: one term of the product rule
+  Expr only = {};      // nothing moves but this leaf: one term of the product rule, or a slope by a `given` scalar
   // Nothing moves, but the Euler parameters e of this body grow by themselves, de/dt = e, and so leave their unit
   // sphere: what is fixed in the body and turned by A(e) grows too. In space; a twist has no part in it.
   int stretched = -1;

@@ -14,6 +14,7 @@ class Simplifying {
 
   Expr rate(Expr e) {
     if (const auto found = done_.find(&*e); found != done_.end()) return found->second;
+    if (motion_.only == e && e->role == Role::given) return e->pool->number(1);
     const Expr result = RateRules(*this, joint_, motion_).of(e);
     // Only where everything moves is it the whole u_dot: a part of it must not take the name.
     const bool whole = !motion_.only && motion_.stretched < 0 && motion_.immovable < 0;

@@ -155,6 +155,7 @@ Explanation explain(const Derivation& derivation, Form form) {
     explain_coordinate(lecture, coordinates[i], joint.coordinates[i], form);
     all.push_back(&coordinates[i]);
   }
+  explain_law(lecture);
   state_limits(lecture, all);
   introduce_shared(lecture);
   return std::move(lecture.out);

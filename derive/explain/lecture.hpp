@@ -56,6 +56,9 @@ Formula row_of_J(const Statement& s);
 void summarise_mass(const Lecture& lecture, const Part& part, std::vector<Chain>& chains);
 void multiply_mass(Lecture& lecture, const Part& part, Step& step);
 void differentiate_again(Lecture& lecture, const Part& part, Step& step);
+// The energy and the forces of an effect; nothing of a joint.
+std::vector<Chain> law_chains(const Lecture& lecture);
+void explain_law(Lecture& lecture);
 void state_limits(Lecture& lecture, const std::vector<const Part*>& parts);
 // Names for what recurs, before the first step that contains them.
 void introduce_shared(Lecture& lecture);

@@ -72,6 +72,7 @@ std::vector<std::vector<Chain>> summarise(const Derivation& derivation) {
   }
   for (Chain& chain : shared_chains(lecture)) names.push_back(std::move(chain));
   all[0].insert(all[0].begin(), names.begin(), names.end());
+  for (Chain& chain : law_chains(lecture)) all[0].push_back(std::move(chain));
   for (const Block& block : derivation.coordinates) all.push_back(summarise(lecture, coordinate_part(lecture, block)));
   return all;
 }

@@ -12,8 +12,9 @@ namespace cdot::derive {
 // generated/planar/<joint>.hpp or generated/spatial/<joint>.hpp
 std::string emit_kernel(const Kernel& kernel);
 
-// generated/planar/registry.hpp and generated/spatial/registry.hpp: the list of all joints, by name.
-std::string emit_registry(const std::string& space, const std::vector<std::string>& joints);
+// generated/planar/registry.hpp and generated/spatial/registry.hpp: the lists of all joints and effects, by name.
+std::string emit_registry(const std::string& space, const std::vector<std::string>& joints,
+                          const std::vector<std::string>& effects);
 
 // C, J and K as people write them, a line each, for the comment above a kernel.
 std::vector<std::string> describe(const Kernel& kernel);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "derive/kernel/factor.hpp"
+
 namespace cdot::derive {
 namespace {
 
@@ -27,7 +29,12 @@ const std::map<std::string, Signature>& signatures() {
       {"time_derivative", {{"q", "p", "time"}, "T (&C_t)[ROWS]"}},
       {"local_jacobian", {{"q", "J"}, "T (&D)[ROWS][COLUMNS]"}},
       {"euler_jacobian", {{"q", "J"}, "T (&D)[ROWS][EULER]"}},
-      {"stiffness", {{"q", "p", "time", "lambda"}, "T (&H)[COLUMNS][COLUMNS]"}}};
+      {"stiffness", {{"q", "p", "time", "lambda"}, "T (&H)[COLUMNS][COLUMNS]"}},
+      // of an effect
+      {"energy", {{"C", "p"}, "T& E"}},
+      {"force", {{"C", "rate", "p", "time"}, "T (&F)[ROWS]"}},
+      {"unstored", {{"C", "rate", "p", "time"}, "T (&F)[ROWS]"}},
+      {"slopes", {{"C", "rate", "p", "time"}, "T (&k)[ROWS][ROWS], T (&d)[ROWS][ROWS]"}}};
   return table;
 }
 
@@ -43,6 +50,8 @@ const std::map<std::string, std::string>& declarations() {
                                                            {"F", "const T (&{})[TRIANGLE]"},
                                                            {"rhs", "const T (&{})[ROWS]"},
                                                            {"lambda", "const T (&{})[ROWS]"},
+                                                           {"C", "const T (&{})[ROWS]"},
+                                                           {"rate", "const T (&{})[ROWS]"},
                                                            {"index", "int {}"}};
   return table;
 }
@@ -95,6 +104,7 @@ FunctionWriter::FunctionWriter(const Joint& joint)
   for (const Parameter& p : joint.parameters) {
     if (p.kind == ParameterKind::scalar) in[p.name] = "p." + p.name;
   }
+  if (joint.law) name_inputs_of_law(joint);
   for (const BodyPart& part : parts_) printing_.reserved.insert(part.name);
   for (const auto& [name, declaration] : declarations()) printing_.reserved.insert(name);
   for (const char* name : {"C",   "D",     "H",    "Jv",     "g",     "C_t",    "T",      "smallest", "rows",  "bodies",
@@ -103,6 +113,23 @@ FunctionWriter::FunctionWriter(const Joint& joint)
     printing_.reserved.insert(name);
   }
   for (const Function& f : functions) printing_.reserved.emplace(f.name);
+}
+
+// The leaves of a law are elements of C and of its rate.
+void FunctionWriter::name_inputs_of_law(const Joint& joint) {
+  std::size_t row = 0;
+  const auto name = [&](const std::string& value, const std::string& rate) {
+    printing_.inputs[value] = element("C", row);
+    printing_.inputs[rate] = element("rate", row++);
+  };
+  for (const LawInput& input : joint.law->inputs) {
+    if (!input.rate->vector) name(input.name, input.rate->symbol);
+    for (int k = 0; k < joint.dimension && input.rate->vector; ++k) {
+      const std::string axis = std::string("_") + "xyz"[k];
+      name(input.name + axis, input.rate->symbol + axis);
+    }
+  }
+  for (const char* name : {"E", "k", "d"}) printing_.reserved.insert(name);
 }
 
 void FunctionWriter::name_inputs_of_body(const Joint& joint, std::size_t b) {

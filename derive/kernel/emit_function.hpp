@@ -36,6 +36,7 @@ class FunctionWriter {
     bool zeroed = false;     // the matrix was cleared before
     bool isotropic = false;  // inertias are numbers
   };
+  void name_inputs_of_law(const Joint& joint);
   void name_inputs_of_body(const Joint& joint, std::size_t b);
   std::vector<std::string> body(const Program& program, const BodyOptions& options, int depth) const;
   std::string arguments(const std::vector<std::string>& names, const std::set<std::string>& read,

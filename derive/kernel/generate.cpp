@@ -8,22 +8,27 @@ namespace cdot::derive {
 
 GeneratedJoint print(const Kernel& kernel) {
   const Joint& joint = kernel.derivation->joint;
-  return {name_of_space(joint.dimension), joint.name, emit_kernel(kernel), ledger_of(kernel)};
+  return {name_of_space(joint.dimension), joint.name, emit_kernel(kernel), ledger_of(kernel), joint.law.has_value()};
 }
 
 Files collect(const std::vector<GeneratedJoint>& joints, const std::vector<LedgerRow>& hand_counts) {
   Files files;
-  std::map<std::string, std::vector<std::string>> names = {{"planar", {}}, {"spatial", {}}};
+  struct Names {
+    std::vector<std::string> joints, effects;
+  };
+  std::map<std::string, Names> names = {{"planar", {}}, {"spatial", {}}};
   std::vector<LedgerRow> ledger;
   for (const GeneratedJoint& joint : joints) {
     files[joint.space + "/" + joint.name + ".hpp"] = joint.kernel;
-    names[joint.space].push_back(joint.name);
+    Names& of_space = names[joint.space];
+    (joint.is_effect ? of_space.effects : of_space.joints).push_back(joint.name);
     ledger.insert(ledger.end(), joint.ledger.begin(), joint.ledger.end());
   }
   ledger.insert(ledger.end(), hand_counts.begin(), hand_counts.end());
   for (auto& [space, list] : names) {
-    std::sort(list.begin(), list.end());
-    files[space + "/registry.hpp"] = emit_registry(space, list);
+    std::sort(list.joints.begin(), list.joints.end());
+    std::sort(list.effects.begin(), list.effects.end());
+    files[space + "/registry.hpp"] = emit_registry(space, list.joints, list.effects);
   }
   files["ledger.csv"] = emit_ledger(std::move(ledger));
   return files;

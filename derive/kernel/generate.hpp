@@ -16,6 +16,7 @@ using Files = std::map<std::string, std::string>;  // path below generated/ -> c
 struct GeneratedJoint {
   std::string space, name, kernel;
   std::vector<LedgerRow> ledger;
+  bool is_effect = false;
 };
 GeneratedJoint print(const Kernel& kernel);
 

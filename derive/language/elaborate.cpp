@@ -10,7 +10,7 @@ namespace {
 
 bool valid_name_of_file(const SourceFile& file, const std::string& name) {
   const std::filesystem::path path(file.path);
-  return path.extension() != ".joint" || path.stem() == name;
+  return !is_spec(path) || path.stem() == name;
 }
 
 }  // namespace
@@ -55,6 +55,7 @@ void Elaborator::run(Source& spec) {
   joint_.source = spec.ast.source;
   joint_.comment = spec.ast.comment;
   joint_.file = spec.file;
+  if (spec.ast.effect) joint_.law.emplace();
   spec.including = {spec.ast.name.text};
   statements(spec);
   if (is_word_of_cpp(joint_.name))
@@ -63,10 +64,11 @@ void Elaborator::run(Source& spec) {
                            "choose another name");
   if (!spec.ast.name.text.empty() && !valid_name_of_file(*spec.file, spec.ast.name.text))
     spec.diagnostics.warning(spec.ast.name.where, "the file is not named after its joint " + quote(spec.ast.name.text),
-                             "name it " + spec.ast.name.text + ".joint");
+                             "name it " + spec.ast.name.text + (spec.ast.effect ? ".effect" : ".joint"));
   check_bodies(spec);
   // Coordinates alone are enough: a scene may add a row by an effect.
-  if (joint_.rows.empty() && joint_.coordinates.empty() && !spec.diagnostics.has_errors())
+  if (joint_.law) check_law(spec);
+  else if (joint_.rows.empty() && joint_.coordinates.empty() && !spec.diagnostics.has_errors())
     spec.diagnostics.error(spec.ast.name.where, "the joint has neither a row nor a coordinate: it constrains nothing",
                            "add a row, such as pa = pb, or a coordinate");
   warn_unused(spec);
@@ -81,6 +83,8 @@ void Elaborator::statements(Source& source) {
       case StatementAst::Kind::let: let(source, s.declared); break;
       case StatementAst::Kind::row: row(source, s); break;
       case StatementAst::Kind::coordinate: coordinate(source, s); break;
+      case StatementAst::Kind::energy: energy(source, s); break;
+      case StatementAst::Kind::force: force(source, s); break;
     }
   }
 }
@@ -139,9 +143,21 @@ void Elaborator::finish(ReadResult& result, Source& spec) {
 const Value* SourceNames::find(const std::string& name) {
   const auto found = e_.names_.find(source_.prefix + name);
   if (found == e_.names_.end()) return nullptr;
+  if (!e_.in_law_ && found->second.kind == "coordinate") return nullptr;
   found->second.used = true;
+  const Value& value = found->second.value;
+  if (e_.in_law_ && value.type == Type::point && value.body >= 0) {
+    e_.point_input(name, value, found->second.where);
+    return &e_.law_values_.at(name);
+  }
   e_.of_world_ |= found->second.of_world;
-  return &found->second.value;
+  return &value;
+}
+
+const Value* SourceNames::rate_of(const std::string& name) {
+  if (!e_.in_law_ || !find(name)) return nullptr;
+  const auto rate = e_.law_rates_.find(name);
+  return rate == e_.law_rates_.end() ? nullptr : &rate->second;
 }
 
 int SourceNames::body(const std::string& letter) const {
@@ -154,12 +170,15 @@ void SourceNames::use_body(int body, Span where) { e_.bodies_.emplace(body, e_.i
 
 std::vector<std::string> SourceNames::known() const {
   std::vector<std::string> names, others = {"time", "world"};
-  for (const auto& [name, entry] : e_.names_) (entry.used ? others : names).push_back(name);
+  for (const auto& [name, entry] : e_.names_)
+    if (e_.in_law_ || entry.kind != "coordinate") (entry.used ? others : names).push_back(name);
   names.insert(names.end(), others.begin(), others.end());
   return names;
 }
 
 std::string SourceNames::hint(const std::string& name) const {
+  if (const auto known = e_.names_.find(name); known != e_.names_.end() && known->second.kind == "coordinate")
+    return "only the law of an effect reads coordinates: write the expression of " + quote(name) + " here";
   if (const std::string vector = e_.vector_of_component(name); !vector.empty())
     return "did you mean " + quote(vector + "." + name.back()) + "?";
   const auto below = source_.declared_anywhere.find(name);

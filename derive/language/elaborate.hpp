@@ -89,9 +89,20 @@ class Elaborator {
   void add_row(Source& source, const StatementAst& s, Row row);
   void keep(Source& source, const StatementAst& s, const Row& whole);
   bool row_makes_sense(Source& source, const StatementAst& s, const Value& C);
+  Value coordinate_value(Source& source, const DeclaredAst& d);
   void coordinate(Source& source, const StatementAst& s);
   bool free_of_velocity(Source& source, const Ast& ast, const Value& value, std::string_view place);
   std::string written(const Source& source, const StatementAst& s) const;
+  // elaborate_law.cpp
+  void energy(Source& source, const StatementAst& s);
+  void force(Source& source, const StatementAst& s);
+  Value law_value(Source& source, const StatementAst& s);
+  Expr read_by_inputs(Source& source, const StatementAst& s, Expr e);
+  void coordinate_of_effect(Source& source, const StatementAst& s, const Value& value, Unit unit);
+  LawInput& point_input(const std::string& name, const Value& point, Span where);
+  LawInput& body_input(int body, bool turns, Span where);
+  LawInput& add_input(const std::string& name, Row row, bool has_value);
+  void check_law(Source& spec);
   // Checks at the end.
   void check_bodies(Source& spec);
   void warn_unused(Source& spec);
@@ -116,6 +127,8 @@ class Elaborator {
   int include_count_ = 0;
   int row_count_ = 0;
   bool of_world_ = false;  // the statement has named a quantity of the world so far
+  bool in_law_ = false;    // the statement is the law of an effect
+  std::map<std::string, Value, std::less<>> law_values_, law_rates_;  // by names of inputs
 };
 
 // Scope as one source sees them.
@@ -123,6 +136,7 @@ class SourceNames final : public Scope {
  public:
   SourceNames(Elaborator& elaborator, Source& source) : e_(elaborator), source_(source) {}
   const Value* find(const std::string& name) override;
+  const Value* rate_of(const std::string& name) override;
   int body(const std::string& letter) const override;
   void use_body(int body, Span where) override;
   void use_world() override { e_.use_world(); }

@@ -18,9 +18,10 @@ ParameterKind kind_of(const std::string& word) {
 }
 
 bool is_reserved(const std::string& name) {
-  static const std::array<std::string_view, 22> words = {
-      "joint", "planar", "spatial",  "source",     "include", "as", "on",   "world", "point", "vector", "unit",
-      "frame", "scalar", "velocity", "coordinate", "let",     "C",  "Cdot", "J",     "K",     "lambda", "keep"};
+  static const std::array<std::string_view, 23> words = {
+      "joint", "effect", "planar", "spatial", "source", "include", "as",       "on",
+      "world", "point",  "vector", "unit",    "frame",  "scalar",  "velocity", "coordinate",
+      "let",   "C",      "Cdot",   "J",       "K",      "lambda",  "keep"};
   return std::find(words.begin(), words.end(), name) != words.end();
 }
 

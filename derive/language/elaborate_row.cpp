@@ -28,6 +28,9 @@ bool Elaborator::free_of_velocity(Source& source, const Ast& ast, const Value& v
 
 // [ NAME ":" ] [ "velocity" ] left ( "=" | "<=" | ">=" ) right [ "keep" NUMBER ]
 void Elaborator::row(Source& source, const StatementAst& s) {
+  if (joint_.law)
+    return source.diagnostics.error(s.where, "an effect has no rows",
+                                    "write energy ..., force on NAME = ..., or torque on BODY = ...");
   const auto C = constraint(source, s);
   if (!C || !row_makes_sense(source, s, *C)) return;
   Row row;
@@ -152,6 +155,26 @@ bool Elaborator::row_makes_sense(Source& source, const StatementAst& s, const Va
   return true;
 }
 
+// The right side of a coordinate; poison if it is none.
+Value Elaborator::coordinate_value(Source& source, const DeclaredAst& d) {
+  const Value v = evaluate(source, *d.value);
+  if (v.type == Type::poison) return v;
+  const auto refuse = [&](const std::string& message, const std::string& fix, std::vector<Span> also = {}) {
+    source.diagnostics.error(d.value->where, message, fix, also);
+    return Value{};
+  };
+  if (v.type != Type::scalar)
+    return refuse("a coordinate is a number, not " + std::string(in_words(v.type)),
+                  "take a component, such as dot(u, t), or a length, norm(u)");
+  if (!free_of_velocity(source, *d.value, v, "a coordinate")) return {};
+  if (!depends_on_bodies(v.e))
+    return refuse("the coordinate contains no body",
+                  "write a scalar that contains the position or orientation of a body");
+  if (d.unit && !same_unit(scalar(Expr(), d.unit->unit), v))
+    return refuse("the coordinate is in " + spoken(*v.unit) + ", not in " + spoken(d.unit->unit), "", {d.unit->where});
+  return v;
+}
+
 // coordinate NAME [unit] = expression
 void Elaborator::coordinate(Source& source, const StatementAst& s) {
   const DeclaredAst& d = s.declared;
@@ -160,19 +183,9 @@ void Elaborator::coordinate(Source& source, const StatementAst& s) {
   if (is_word_of_cpp(full) || is_member_of_kernels(full) || full == joint_.name)
     return error(source, d.name.where, quote(full) + " is already a name of the generated kernel",
                  "choose another name");
-  const Value v = evaluate(source, *d.value);
+  const Value v = coordinate_value(source, d);
+  if (joint_.law) return coordinate_of_effect(source, s, v, d.unit ? d.unit->unit : v.unit.value_or(Unit{}));
   if (v.type == Type::poison) return;
-  if (v.type != Type::scalar)
-    return source.diagnostics.error(d.value->where, "a coordinate is a number, not " + std::string(in_words(v.type)),
-                                    "take a component, such as dot(u, t), or a length, norm(u)");
-  if (!free_of_velocity(source, *d.value, v, "a coordinate")) return;
-  if (!depends_on_bodies(v.e))
-    return source.diagnostics.error(d.value->where, "the coordinate contains no body",
-                                    "write a scalar that contains the position or orientation of a body");
-  if (d.unit && !same_unit(scalar(Expr(), d.unit->unit), v))
-    return source.diagnostics.error(d.value->where,
-                                    "the coordinate is in " + spoken(*v.unit) + ", not in " + spoken(d.unit->unit), "",
-                                    {d.unit->where});
   const auto same = std::find_if(joint_.coordinates.begin(), joint_.coordinates.end(),
                                  [&](const Coordinate& c) { return c.name == full; });
   if (same != joint_.coordinates.end()) {

@@ -14,8 +14,9 @@ namespace cdot::derive {
 class Scope {
  public:
   virtual ~Scope() = default;
-  virtual const Value* find(const std::string& name) = 0;  // null if unknown; counts as a use
-  virtual int body(const std::string& letter) const = 0;   // -1 if it is no body
+  virtual const Value* find(const std::string& name) = 0;               // null if unknown; counts as a use
+  virtual const Value* rate_of(const std::string&) { return nullptr; }  // of a coordinate or point, in a law
+  virtual int body(const std::string& letter) const = 0;                // -1 if it is no body
   virtual void use_body(int body, Span where) = 0;
   virtual void use_world() = 0;
   virtual std::vector<std::string> known() const = 0;           // for "did you mean"

@@ -105,6 +105,9 @@ Value Evaluator::elsewhere(const Ast& ast) {
 }
 
 Value Evaluator::call(const Ast& ast) {
+  const bool of_name = ast.args.size() == 1 && ast.args[0].kind == Ast::Kind::name;
+  if (of_name && (ast.text == "rate" || ast.text == "v"))
+    if (const Value* rate = names_.rate_of(ast.args[0].text)) return *rate;
   const auto candidates = operators_here(ast.text);
   std::vector<Value> arguments;
   bool poisoned = false;

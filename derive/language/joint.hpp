@@ -76,6 +76,20 @@ struct Coordinate {
   bool of_world = false;                    // as of a row
 };
 
+// A scalar or vector that the law of an effect reads, and its rate. Its row has the same place in Joint::rows.
+struct LawInput {
+  std::string name;  // of the row
+  Expr value, rate;  // leaves; no value: of a torque in space, where a turn is no vector
+  Unit unit;
+  Expr force;  // along it, without that of the energy; empty: none
+};
+
+// The law of an effect: generalised forces along the rows of its joint, F = force - dE/d(value).
+struct EffectLaw {
+  std::vector<LawInput> inputs;
+  Expr energy;  // empty: none
+};
+
 // Folders, namespaces and headers of specs are named so.
 inline std::string name_of_space(int dimension) { return dimension == 2 ? "planar" : "spatial"; }
 
@@ -90,6 +104,7 @@ struct Joint {
   std::vector<Let> lets;
   std::vector<Row> rows;
   std::vector<Coordinate> coordinates;
+  std::optional<EffectLaw> law;            // of an effect; its rows are coordinates, not constraints
   std::vector<Coordinate> dropped;         // from an include, but constrained by rows
   std::shared_ptr<const SourceFile> file;  // for messages of later stages
   bool uses_world = false;                 // some quantity is fixed in the world

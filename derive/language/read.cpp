@@ -37,6 +37,10 @@ std::shared_ptr<const SourceFile> load_source(const std::filesystem::path& path)
   return std::make_shared<const SourceFile>(path.string(), std::move(text));
 }
 
+bool is_spec(const std::filesystem::path& file) {
+  return file.extension() == ".joint" || file.extension() == ".effect";
+}
+
 Library load_library(const std::filesystem::path& folder) {
   Library library;
   for (const auto& file : std::filesystem::directory_iterator(folder.empty() ? "." : folder))

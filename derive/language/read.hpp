@@ -16,6 +16,7 @@ namespace cdot::derive {
 
 // The specs that an `include` may name.
 using Library = std::map<std::string, std::shared_ptr<const SourceFile>>;
+bool is_spec(const std::filesystem::path& file);            // *.joint or *.effect
 Library load_library(const std::filesystem::path& folder);  // every *.joint in it
 
 // The whole file; throws std::runtime_error with the cause if it cannot be read.

@@ -15,7 +15,7 @@ std::vector<fs::path> SpecsFolder::all() const {
   for (const char* space : {"planar", "spatial"}) {
     std::error_code failure;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / space, failure)) {
-      if (entry.path().extension() == ".joint") specs.push_back(entry.path());
+      if (is_spec(entry.path())) specs.push_back(entry.path());
     }
     found = found || !failure;
   }

@@ -33,7 +33,10 @@ class Prover {
   Proof run();
 
   void momentum(Law& law) { conserves_momentum(law, joint_, block_, names_); }
-  void rank(Law& law) { rows_are_independent(law, block_); }
+  void rank(Law& law) {
+    if (joint_.law) law.verdict = Verdict::does_not_apply;  // the coordinates of an effect may depend on each other
+    else rows_are_independent(law, block_);
+  }
 
   bool movable(std::size_t body) const { return static_cast<int>(body) != block_.immovable; }
 

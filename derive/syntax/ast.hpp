@@ -76,22 +76,25 @@ struct IncludeAst {
 
 // One statement of a spec. `include` and declarations have one item each: the parser splits lists.
 struct StatementAst {
-  enum class Kind { include, declare, let, row, coordinate };
+  enum class Kind { include, declare, let, coordinate, row, energy, force };
   Kind kind = Kind::row;
   Span where;
   IncludeAst include;
   DeclaredAst declared;   // declare, coordinate, let (name, unit and value)
-  Word label;             // of a row
+  Word label;             // of a row; of a force or torque: the coordinate, point or body that it acts on
   bool velocity = false;  // row
   std::string relation;   // "=", "<=", ">="
   Span relation_where;
-  Ast left, right;  // row
-  Word keep;        // row: how many of its components, as written
+  Ast left, right;      // row; energy, force: the expression is `left`
+  bool torque = false;  // force: `torque on BODY`
+  Word keep;            // row: how many of its components, as written
   int first_token = 0, end_token = 0;
 };
 
+// A joint or an effect.
 struct JointAst {
   Word name;
+  bool effect = false;
   std::string dimension;  // "planar" or "spatial"; empty if the header is missing
   std::string title, source, comment;
   std::vector<StatementAst> statements;

@@ -14,8 +14,9 @@ class JointParser {
 
   JointAst run() {
     p_.skip_blank_lines();
-    if (!p_.at_word("joint"))
-      diagnostics_.error(p_.peek().where, "the header is missing: " + p_.found(), "start with `joint NAME planar`");
+    if (!p_.at_word("joint") && !p_.at_word("effect"))
+      diagnostics_.error(p_.peek().where, "the header is missing: " + p_.found(),
+                         "start with `joint NAME planar`, or `effect NAME planar`");
     for (; !p_.at_end(); p_.skip_blank_lines()) {
       const std::size_t before = joint_.statements.size();
       statement();
@@ -30,14 +31,14 @@ class JointParser {
   void spoil(std::size_t first) {
     auto& all = joint_.statements;
     for (std::size_t i = first; i < all.size(); ++i) all[i].declared.broken = true;
-    const auto is_row = [](const StatementAst& s) { return s.kind == StatementAst::Kind::row; };
+    const auto is_row = [](const StatementAst& s) { return s.kind >= StatementAst::Kind::row; };
     all.erase(std::remove_if(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(), is_row), all.end());
   }
 
   void statement() {
     const bool declares = p_.at_name(1);
     if (p_.peek().kind == TokenKind::string) return once(joint_.title, "the title of the joint", "");
-    if (p_.at_word("joint") && declares) return header();
+    if ((p_.at_word("joint") || p_.at_word("effect")) && declares) return header();
     if (p_.at_word("source") && !p_.at_symbol("=", 1)) {
       p_.take();
       return once(joint_.source, "the source", "source");
@@ -47,6 +48,8 @@ class JointParser {
       if (p_.at_word(kind) && declares) return declarations(kind);
     if (p_.at_word("let") && declares) return let();
     if (p_.at_word("coordinate") && declares) return coordinate();
+    if (joint_.effect && (p_.at_word("energy") || p_.at_word("force") || p_.at_word("torque")) && !p_.at_symbol(":", 1))
+      return law();
     if (p_.at_word("keep"))
       return p_.fail(p_.peek().where, "`keep` stands at the end of the row that it is about",
                      "write cross(f.x, u) = 0 keep 2, in one line");
@@ -60,17 +63,18 @@ class JointParser {
     row();
   }
 
-  // joint NAME ( planar | spatial )
+  // ( joint | effect ) NAME ( planar | spatial )
   void header() {
     const Token word = p_.take();
+    const std::string kind(word.text);
     if (!joint_.name.text.empty())
-      p_.fail(word.where, "the file has a second header; a file contains one joint", "", {joint_.name.where});
-    const Word name = p_.name("the name of the joint");
-    if (joint_.name.text.empty()) joint_.name = name;
+      p_.fail(word.where, "the file has a second header; a file contains one " + kind, "", {joint_.name.where});
+    const Word name = p_.name("the name of the " + kind);
+    if (joint_.name.text.empty()) joint_.name = name, joint_.effect = kind == "effect";
     if (p_.failed()) return;
     if (!p_.at_word("planar") && !p_.at_word("spatial"))
       return p_.fail(p_.peek().where, "`planar` or `spatial` is missing: " + p_.found(),
-                     "write joint " + name.text + " planar");
+                     "write " + kind + " " + name.text + " planar");
     const Token dimension = p_.take();
     joint_.dimension = dimension.text;
     header_end_ = dimension.where.end;
@@ -204,6 +208,24 @@ class JointParser {
     finish(s);
   }
 
+  // "energy" expression, or ( "force" | "torque" ) "on" NAME "=" expression
+  void law() {
+    const std::string word(p_.take().text);
+    StatementAst s = begin(word == "energy" ? StatementAst::Kind::energy : StatementAst::Kind::force);
+    s.torque = word == "torque";
+    if (word != "energy") {
+      if (!p_.at_word("on"))
+        p_.fail(p_.peek().where, "`on` is missing after " + quote(word) + ": " + p_.found(),
+                s.torque ? "write torque on a = ..." : "write force on NAME = ..., with a coordinate or a point");
+      else p_.take();
+      s.label = p_.name(s.torque ? "the body" : "the coordinate or the point");
+    }
+    if (!p_.failed() && !p_.accept("=") && word != "energy")
+      p_.fail(p_.peek().where, "`=` is missing after " + quote(word + " on " + s.label.text) + ": " + p_.found());
+    s.left = p_.expression();
+    finish(s);
+  }
+
   // [ NAME ":" ] [ "velocity" ] expression ( "=" | "<=" | ">=" ) expression [ "keep" NUMBER ]
   void row() {
     StatementAst s = begin(StatementAst::Kind::row);
@@ -262,6 +284,10 @@ class JointParser {
 
   void unknown_statement() {
     const Token t = p_.take();
+    if (!joint_.effect && (t.text == "energy" || t.text == "force" || t.text == "torque"))
+      return p_.fail(
+          t.where, "a joint has no " + std::string(t.text) + ": effects have",
+          "write `effect` in place of `joint` in the header, and name the file " + joint_.name.text + ".effect");
     std::vector<std::string> words = statement_words(false);
     const std::string near = nearest(t.text, words);
     if (near.empty())
@@ -295,7 +321,8 @@ class JointParser {
     s.end_token = p_.position();
     if (s.end_token > s.first_token) s.where.end = p_.peek(-1).where.end;
     s.declared.where = s.include.where = s.where;
-    const bool row = s.kind == StatementAst::Kind::row;
+    const bool law = s.kind == StatementAst::Kind::energy || s.kind == StatementAst::Kind::force;
+    const bool row = s.kind == StatementAst::Kind::row || law;
     const bool named = !s.declared.name.text.empty();
     const bool include = s.kind == StatementAst::Kind::include;
     if (p_.failed() && (row || include)) return;

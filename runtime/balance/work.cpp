@@ -59,12 +59,17 @@ void work_of_springs(const WorldData<S>& world, Batch<S>& batch, int slot, const
   T drift[most_rows] = {}, rate[most_rows], force[most_rows];
   if (batch.ops->explicit_time) find_drift(world, batch, slot, time, drift);
   for (int r = 0; r < rows; ++r) rate[r] = acted[r] + drift[r];
-  find_damping(batch, slot, rate, force);
+  if (batch.law->unstored) batch.law->unstored(batch, slot, rate, force);
+  else find_damping(batch, slot, rate, force);
+  double done = 0;
   for (int r = 0; r < rows; ++r) {
     const int i = slot * rows + r;
-    work.take(h * double(force[r]) * double(batch.rate[i] + drift[r]));
+    const double of_row = h * double(force[r]) * double(batch.rate[i] + drift[r]);
+    if (batch.law->unstored) done += of_row;
+    else work.take(of_row);
     work.put_in -= double(lambda(i)) * double(drift[r]);
   }
+  (done > 0 ? work.put_in : work.taken) += std::abs(done);
 }
 
 // Whether a step exerts the impulses of rows in one kick or in two. Work that is only taken is that of both.

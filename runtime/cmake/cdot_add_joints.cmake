@@ -16,9 +16,9 @@ function(cdot_add_joints)
   foreach(spec ${arg_SPECS})
     cmake_path(ABSOLUTE_PATH spec BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
     list(APPEND specs ${spec})
-    file(STRINGS ${spec} header REGEX "^joint +[^ ]+ +(planar|spatial)" LIMIT_COUNT 1)
-    if(header MATCHES "^joint +([^ ]+) +(planar|spatial)")
-      list(APPEND kernels ${out}/cdot/${CMAKE_MATCH_2}/${CMAKE_MATCH_1}.hpp)
+    file(STRINGS ${spec} header REGEX "^(joint|effect) +[^ ]+ +(planar|spatial)" LIMIT_COUNT 1)
+    if(header MATCHES "^(joint|effect) +([^ ]+) +(planar|spatial)")
+      list(APPEND kernels ${out}/cdot/${CMAKE_MATCH_3}/${CMAKE_MATCH_2}.hpp)
     endif()
   endforeach()
   # `cdot derive` leaves alone what is right already, so the ledger's time alone says when it last ran.
@@ -35,7 +35,9 @@ function(cdot_add_joints)
 namespace {
 [[maybe_unused]] const bool added = [] {
   cdot::add_joints<cdot::Planar>(std::type_identity<cdot::planar::Joints>{});
+  cdot::add_joints<cdot::Planar>(std::type_identity<cdot::planar::Effects>{});
   cdot::add_joints<cdot::Spatial>(std::type_identity<cdot::spatial::Joints>{});
+  cdot::add_joints<cdot::Spatial>(std::type_identity<cdot::spatial::Effects>{});
   return true;
 }();
 }  // namespace

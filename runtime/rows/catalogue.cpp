@@ -6,8 +6,9 @@
 namespace cdot {
 
 std::vector<JointType> joints_of_program(Dimension dimension) {
-  return dimension == Dimension::planar ? describe_joints(std::type_identity<planar::Joints>{})
-                                        : describe_joints(std::type_identity<spatial::Joints>{});
+  return dimension == Dimension::planar
+             ? describe_joints(std::type_identity<planar::Joints>{}, std::type_identity<planar::Effects>{})
+             : describe_joints(std::type_identity<spatial::Joints>{}, std::type_identity<spatial::Effects>{});
 }
 
 }  // namespace cdot

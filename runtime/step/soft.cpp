@@ -81,6 +81,8 @@ void fill_laws(WorldData<S>& world, Island<S>& island, typename S::Scalar h, Sof
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     if (!batch.law) continue;
+    if (batch.law->unstored)
+      batch.ops->velocity(batch, segment.begin, segment.end, world.bodies.velocity.data(), batch.rate.data());
     batch.law->fill(batch, segment.begin, segment.end, h, world.settings);
     if (!batch.law->error) continue;
     const int rows = batch.ops->rows;

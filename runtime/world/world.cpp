@@ -195,6 +195,8 @@ int BasicWorld<S>::add_joint(const JointDefinition& definition) {
   move_world_points(
       *type, record.bodies, [&](int body) { return body == data_->ground; }, data_->origin, -1, numbers);
   record.parameters = numbers;
+  if (type->is_effect && definition.soft)
+    throw Error(fmt::format("`{}` is an effect: it has a law of its own and cannot be a spring", type->name));
   double spring[spring_constants_count] = {};
   if (definition.soft) spring_constants(*definition.soft, spring);
 
@@ -211,7 +213,8 @@ int BasicWorld<S>::add_joint(const JointDefinition& definition) {
   }
   const auto& kinds = type->row_kinds;
   const bool unilateral = std::count(kinds.begin(), kinds.end(), RowKind::inequality) > 0;
-  const Law<S>* law = definition.soft ? &soft_law<S>() : unilateral ? &unilateral_law<S>() : nullptr;
+  const Law<S>* const own = joint_entries<S>()[record.type].law;
+  const Law<S>* law = own ? own : definition.soft ? &soft_law<S>() : unilateral ? &unilateral_law<S>() : nullptr;
   const auto* ops = joint_entries<S>()[record.type].rows.choose(data_->bodies, record.bodies);
   add_rows(*data_, joint, ops, law, kinds, {spring, definition.soft ? static_cast<size_t>(spring_constants_count) : 0});
   return joint;

@@ -1,5 +1,5 @@
-// A row block of any joint behind one interface of plain numbers. A law is then one ordinary function, and its failures
-// name joint and block.
+// A row block of any joint or effect behind one interface of plain numbers. A law is then one ordinary function, and
+// its failures name joint and block.
 #pragma once
 
 #include <array>
@@ -26,6 +26,11 @@ enum Function {
   gamma,
   time_derivative,
   stiffness,
+  // Of effects; the energy only of those that have one, the unstored part only beside an energy.
+  law_energy,
+  law_force,
+  law_unstored,
+  law_slopes,  // k, then d
   // In space only.
   effective_mass_isotropic,
   apply_isotropic,
@@ -38,13 +43,13 @@ enum Function {
 // clang-format off
 inline constexpr std::array<std::string_view, number_of_functions> function_names = {
     "position", "jacobian", "effective_mass", "factor", "solve", "velocity", "apply", "dense", "inverse_mass_jacobian",
-    "gamma", "time_derivative", "stiffness", "effective_mass_isotropic", "apply_isotropic",
-    "inverse_mass_jacobian_isotropic", "local_jacobian", "euler_jacobian"};
+    "gamma", "time_derivative", "stiffness", "energy", "force", "unstored", "slopes", "effective_mass_isotropic",
+    "apply_isotropic", "inverse_mass_jacobian_isotropic", "local_jacobian", "euler_jacobian"};
 // clang-format on
 
 // True for functions that a variant inherits from its block.
 constexpr bool inherited_by_variants(Function f) {
-  return f == gamma || f == time_derivative || f == stiffness || f == local_jacobian || f == euler_jacobian;
+  return (f >= gamma && f <= law_slopes) || f == local_jacobian || f == euler_jacobian;
 }
 
 // The inputs of a block's functions, laid out as in the contract: x y c s angle of each body, ... or, in space, x y z
@@ -74,12 +79,12 @@ struct AnyBlock {
   int bodies, rows;
   int immovable;        // index of a body, or -1
   std::size_t general;  // index of the same block with every body movable
-  bool is_coordinate, explicit_time;
+  bool is_coordinate, is_effect, explicit_time;
   std::span<const std::string_view> row_names;
   std::span<const RowKind> row_kinds;
   std::span<const ParameterInfo> parameters;
 
-  // Evaluates every function for one input per lane of the scalar type.
+  // Evaluates every function for one input per lane of the scalar type. A law reads its rates from `rhs`.
   std::vector<Outputs> (*evaluate)(std::span<const Inputs> lanes);
   // factor and solve for any K (lower triangle), also one that belongs to no pose.
   std::vector<double> (*factor_and_solve)(const std::vector<double>& K, const std::vector<double>& rhs);
@@ -95,7 +100,7 @@ struct AnyBlock {
   std::size_t columns() const { return width() * static_cast<std::size_t>(bodies); }
 };
 
-// Every block of the registry, computed in T.
+// Every block of the registry's joints and effects, computed in T.
 template <class T>
 const std::vector<AnyBlock>& blocks();
 

@@ -79,6 +79,7 @@ struct Plane {
   using Velocity = planar::Velocity<Scalar>;
   using InverseMass = planar::InverseMass<Scalar>;
   using Joints = planar::Joints;
+  using Effects = planar::Effects;
 };
 template <class Scalar>
 struct Space {
@@ -87,6 +88,7 @@ struct Space {
   using Velocity = spatial::Velocity<Scalar>;
   using InverseMass = spatial::InverseMass<Scalar>;
   using Joints = spatial::Joints;
+  using Effects = spatial::Effects;
 };
 
 // The functions for isotropic bodies, only in space.
@@ -113,6 +115,26 @@ void evaluate_forms(const Pose& q, const Parameters& p, T time, std::vector<Outp
   Block::local_jacobian(q, J, local), keep<T>(out, local_jacobian, local);
   Block::euler_jacobian(q, J, by_parameters), keep<T>(out, euler_jacobian, by_parameters);
 }
+
+// The law of an effect as a function of C, rates, parameters and time.
+template <class Block, class T, class Parameters>
+void evaluate_law(const T (&C)[Block::rows], const T (&rate)[Block::rows], const Parameters& p, T time,
+                  std::vector<Outputs>& out) {
+  T E[1], F[Block::rows];
+  struct {
+    T k[Block::rows][Block::rows], d[Block::rows][Block::rows];
+  } slopes;
+  if constexpr (requires { Block::energy(C, p, E[0]); }) Block::energy(C, p, E[0]), keep<T>(out, law_energy, E);
+  Block::force(C, rate, p, time, F), keep<T>(out, law_force, F);
+  if constexpr (requires { Block::unstored(C, rate, p, time, F); })
+    Block::unstored(C, rate, p, time, F), keep<T>(out, law_unstored, F);
+  Block::slopes(C, rate, p, time, slopes.k, slopes.d), keep<T>(out, law_slopes, slopes);
+}
+
+template <class Joint>
+constexpr bool is_effect = requires {
+  Joint::is_effect;
+};
 
 template <template <class> class In, class Joint, class General, class Block, class T>
 std::vector<Outputs> evaluate(std::span<const Inputs> lanes) {
@@ -146,6 +168,7 @@ std::vector<Outputs> evaluate(std::span<const Inputs> lanes) {
   Block::gamma(q, v, p, time[0], g), keep<T>(out, gamma, g);
   Block::time_derivative(q, p, time[0], g), keep<T>(out, time_derivative, g);
   Block::stiffness(q, p, time[0], lambda, H), keep<T>(out, stiffness, H);
+  if constexpr (is_effect<Joint>) evaluate_law<Block>(C, rhs, p, time[0], out);
   if constexpr (In<T>::dimension == 3) {
     typename In<T>::Velocity pushed[n];
     std::copy(v, v + n, pushed);
@@ -193,6 +216,7 @@ AnyBlock erased(std::string name, std::size_t general, bool is_coordinate) {
           immovable,
           general,
           is_coordinate,
+          is_effect<Joint>,
           Block::explicit_time,
           Block::row_names,
           Block::row_kinds,
@@ -230,9 +254,11 @@ void add_joint(std::vector<AnyBlock>& all) {
 
 template <template <class> class In, class T>
 void add_joints(std::vector<AnyBlock>& all) {
-  [&]<class... Joints>(std::type_identity<std::tuple<Joints...>>) {
+  const auto add = [&]<class... Joints>(std::type_identity<std::tuple<Joints...>>) {
     (add_joint<In, Joints, T>(all), ...);
-  }(std::type_identity<typename In<T>::Joints>{});
+  };
+  add(std::type_identity<typename In<T>::Joints>{});
+  add(std::type_identity<typename In<T>::Effects>{});
 }
 
 template <class T>

@@ -1,5 +1,8 @@
-// Compares J, gamma, dC/dt and the stiffness with differences of the function that they differentiate.
+// Compares J, gamma, dC/dt, the stiffness and the laws of effects with differences of the function that they
+// differentiate.
 #include <algorithm>
+#include <set>
+#include <string>
 
 #include "tests/kernels/law.hpp"
 
@@ -127,4 +130,40 @@ TEST(Laws, stiffness_is_the_difference_of_the_force) {
       expect_near(block, "H - H^T", H - H.transpose(), turning_part(block, in), 1e-11);
     }
   });
+}
+
+// Along a motion with Cdot the energy grows by -(F - U) . Cdot, with U the unstored part of the force.
+TEST(Laws, force_is_the_slope_of_the_energy) {
+  std::set<std::string> with_energy;
+  for_all([&](const AnyBlock& block, const Inputs& in) {
+    const Outputs out = evaluate_one(block, in);
+    if (out.of[law_energy].empty()) return;
+    with_energy.insert(block.joint);
+    Eigen::VectorXd stored = vector(out.of[law_force]);
+    if (!out.of[law_unstored].empty()) stored -= vector(out.of[law_unstored]);
+    const Eigen::MatrixXd slope = derivative_at_zero(
+        [&](double s) -> Eigen::MatrixXd { return vector(evaluate_one(block, after(block, in, s)).of[law_energy]); });
+    expect_near(block, "dE/dt = -F . Cdot", slope, -stored.transpose() * rate_at(block, in), 1e-8);
+  });
+  EXPECT_GE(with_energy.size(), 3u) << "springs and gravity have energies";
+}
+
+// Along a motion with Cdot, and rates that change by lambda, the force changes by -k Cdot - d lambda.
+TEST(Laws, slopes_are_the_differences_of_the_force) {
+  std::set<std::string> effects;
+  for_all([&](const AnyBlock& block, const Inputs& in) {
+    if (!block.is_effect) return;
+    effects.insert(block.joint);
+    const Eigen::MatrixXd slopes = matrix(evaluate_one(block, in), law_slopes, block.rows);
+    const Eigen::MatrixXd k = slopes.topRows(block.rows), d = slopes.bottomRows(block.rows);
+    const Eigen::MatrixXd change = derivative_at_zero([&](double s) -> Eigen::MatrixXd {
+      Inputs later = after(block, in, s);
+      later.time = in.time;
+      for (std::size_t i = 0; i < later.rhs.size(); ++i) later.rhs[i] += s * in.lambda[i];
+      return vector(evaluate_one(block, later).of[law_force]);
+    });
+    const Eigen::MatrixXd moves = dense_jacobian(block, in) * vector(in.v);
+    expect_near(block, "dF = -k dC - d dCdot", change, -k * moves - d * vector(in.lambda), 1e-7);
+  });
+  EXPECT_GE(effects.size(), 6u) << "the effects of the catalogue";
 }

@@ -15,6 +15,7 @@ namespace {
 // The text of the spec and of its includes without comments, read without the generator.
 std::string spec_text(const std::string& space, const std::string& joint) {
   std::ifstream file(CDOT_SPECS "/" + space + "/" + joint + ".joint");
+  if (!file) file.open(CDOT_SPECS "/" + space + "/" + joint + ".effect");
   EXPECT_TRUE(file) << "no spec of " << joint;
   std::string all, line;
   while (std::getline(file, line)) {
@@ -64,7 +65,7 @@ Eigen::VectorXd momentum(const AnyBlock& block, const Inputs& in, const std::vec
 TEST(Physics, a_joint_without_world_keeps_momentum) {
   std::set<std::string> free;
   for_all([&](const AnyBlock& block, const Inputs& random) {
-    if (!joins_bodies_only(block)) return;
+    if (!joins_bodies_only(block) || block.is_effect) return;
     free.insert(block.joint);
     Inputs in = random;
     in.time[0] = 0;
@@ -74,6 +75,21 @@ TEST(Physics, a_joint_without_world_keeps_momentum) {
                 momentum(block, in, in.v), 1e-12);
   });
   EXPECT_GE(free.size(), 10u) << "most of the catalogue joins bodies to each other only";
+}
+
+// Anywhere, not at rest alone: the rows of an effect are coordinates between its bodies.
+TEST(Physics, an_effect_without_world_keeps_momentum) {
+  std::set<std::string> free;
+  for_all([&](const AnyBlock& block, const Inputs& random) {
+    if (!joins_bodies_only(block) || !block.is_effect) return;
+    free.insert(block.joint);
+    Inputs in = random;
+    in.lambda = evaluate_one(block, random).of[law_force];
+    const std::vector<double> v = evaluate_one(block, in).of[apply];
+    expect_near(block, "momentum, linear and angular, after a push", momentum(block, in, v), momentum(block, in, in.v),
+                1e-11);
+  });
+  EXPECT_GE(free.size(), 3u) << "springs and servos act between two bodies";
 }
 
 TEST(Physics, moving_all_bodies_together_changes_nothing) {
@@ -98,7 +114,7 @@ TEST(Physics, moving_all_bodies_together_changes_nothing) {
 TEST(Physics, defaults_start_the_joint_at_rest_position) {
   const std::set<std::string> without_promise = {"sine_track", "surface", "n1", "cone", "lesson_example"};
   for_all([&](const AnyBlock& block, const Inputs& random) {
-    if (block.immovable >= 0 || block.is_coordinate || without_promise.contains(block.joint)) return;
+    if (block.immovable >= 0 || block.is_coordinate || block.is_effect || without_promise.contains(block.joint)) return;
     Inputs in = random;
     in.time[0] = 0;  // the default of a driven angle is that at time 0
     block.set_defaults(in);

@@ -161,7 +161,7 @@ TEST(Counted, agrees_with_the_ledger) {
   for (const AnyBlock& block : blocks<counting::Counted>()) {
     const Outputs out = evaluate_one(block, random_inputs(block, 1));
     for (std::size_t f = 0; f < number_of_functions; ++f) {
-      if (block.planar() && f > stiffness) continue;
+      if (out.of[f].empty()) continue;  // it has no such function
       if (block.immovable >= 0 && inherited_by_variants(static_cast<Function>(f))) continue;
       const auto row =
           ledger.find({std::string(block.space()), block.joint, block.block, std::string(function_names[f])});

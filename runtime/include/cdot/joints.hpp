@@ -25,6 +25,7 @@ struct JointType {
   std::vector<CoordinateInfo> coordinates;
   int parameter_size;  // numbers in Parameters<T>
   bool explicit_time;
+  bool is_effect = false;  // its rows are coordinates that its law pushes, not constraints
 };
 
 enum class Dimension { planar, spatial };

@@ -196,6 +196,8 @@ std::optional<Entry> Entry::table(const std::string& key, const std::string& exa
   return {};
 }
 
+bool Entry::is_table(const std::string& key) { return toml::node_view(find(key)).is_table(); }
+
 bool Entry::is_array(const std::string& key) { return toml::node_view(find(key)).is_array(); }
 
 bool Entry::is_array_of_arrays(const std::string& key) { return toml::node_view(find(key))[0].is_array(); }

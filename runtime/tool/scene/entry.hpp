@@ -55,6 +55,7 @@ class Entry {
   // Nothing if the value is not a table; with an `example` that is a mistake.
   std::optional<Entry> table(const std::string& key, const std::string& example = "");
   bool is_array(const std::string& key);
+  bool is_table(const std::string& key);
   bool is_array_of_arrays(const std::string& key);
   std::optional<std::string> choice(const std::string& key, const std::vector<std::string>& allowed);
   void required(const std::string& key, const std::string& fix);  // a mistake if it is absent

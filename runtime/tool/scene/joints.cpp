@@ -82,6 +82,14 @@ std::optional<std::vector<double>> read_two_axes(Entry& joint, const std::string
   return numbers;
 }
 
+// A type may have a number of its own that is called `start`, as rolling has: a table then gives the coordinates, a
+// number the parameter.
+bool means_coordinates(Entry& joint, const JointType& type, const std::string& key) {
+  const auto own = std::ranges::find(type.parameters, key, &ParameterInfo::name);
+  if (own == type.parameters.end()) return key == start_key || key == start_rate_key;
+  return own->kind == ParameterKind::scalar && joint.is_table(key);
+}
+
 // The numbers of one parameter in the frame of its body. Nothing if it is wrong or takes its default.
 std::optional<std::vector<double>> read_parameter(Entry& joint, const ParameterInfo& parameter, int body,
                                                   std::optional<Vec3> at, const BodyNames& names) {
@@ -122,9 +130,11 @@ void read_parameters(Entry& joint, const char* key, JointReading& to) {
     const int body = on_body ? definition.bodies[static_cast<std::size_t>(parameter.body)] : world_body;
     const bool point = parameter.kind == ParameterKind::point;
     const bool scalar = parameter.kind == ParameterKind::scalar;
-    const bool given = joint.has(std::string(parameter.name)) || (point && joint.has("at"));
+    const bool own = !means_coordinates(joint, type, std::string(parameter.name));
+    const bool given = (own && joint.has(std::string(parameter.name))) || (point && joint.has("at"));
     has_point = has_point || point;
-    if (const auto numbers = read_parameter(joint, parameter, body, at, names)) {
+    const auto numbers = own ? read_parameter(joint, parameter, body, at, names) : std::nullopt;
+    if (numbers) {
       definition.parameters.push_back({std::string(parameter.name), *numbers});
     } else if (!given && !parameter.has_default) {
       joint.error(joint.header(), fmt::format("{} has no `{}`: {}", joint.what(), parameter.name, described(parameter)),
@@ -171,7 +181,9 @@ void read_soft(Entry& joint, const char* key, JointReading& to) {
   to.joint.definition.soft = read_softness(joint, key);
 }
 
-void read_start(Entry& joint, const char* key, JointReading& to) { read_starts(joint, key, *to.type, to.joint); }
+void read_start(Entry& joint, const char* key, JointReading& to) {
+  if (means_coordinates(joint, *to.type, key)) read_starts(joint, key, *to.type, to.joint);
+}
 
 struct SpringReading {
   const BodyNames& names;

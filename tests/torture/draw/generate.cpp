@@ -62,7 +62,8 @@ const std::string& Growth::any_type() {
                        [](const ParameterInfo& info) { return info.body < 0 && info.kind != ParameterKind::scalar; });
   };
   const bool free = !anchored_ && random_.chance(0.9);
-  do type_ = types[static_cast<std::size_t>(random_.below(static_cast<int>(types.size())))].name;
+  const auto joints = std::count_if(types.begin(), types.end(), [](const JointType& type) { return !type.is_effect; });
+  do type_ = types[static_cast<std::size_t>(random_.below(static_cast<int>(joints)))].name;  // effects come last
   while (free && holds_the_world(*find_joint_type(made_.scene.dimension, type_)));
   return type_;
 }

@@ -123,6 +123,9 @@ struct Law {
   void (*guard)(const Batch<S>&, int slot, Guard<T>* guards);
   // Stiffness and damping of one slot, by row, from C and K; both 0 where no spring acts. Null: no row is a spring.
   void (*spring)(const Batch<S>&, int slot, SpringNumbers<T>*) = nullptr;
+  // Of an effect: the part of `force` that no energy stores. Its `fill` and `spring` read Batch::rate. Null: the laws
+  // of springs and constant forces, whose dampers are all that is not stored.
+  void (*unstored)(const Batch<S>&, int slot, const T* rate, T* force) = nullptr;
 };
 
 template <class S>
@@ -160,6 +163,7 @@ struct BatchWorkspace {
   std::vector<T> rate;       // J v of the last velocities
   std::vector<T> error;      // the part of C that a projection removes
   std::vector<T> impulse;    // of one round of a projection, or a known force
+  T time = 0;                // of C
 };
 
 // All blocks of one kind under one law, by slot. The slots of an island are contiguous.

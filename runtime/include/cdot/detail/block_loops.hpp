@@ -72,6 +72,7 @@ struct BlockLoops {
   }
 
   static void evaluate(Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time) {
+    batch.time = time;
     for (int slot = begin; slot < end; ++slot) {
       Pose q[bodies];
       gather(all.pose, bodies_of(batch, slot), q);
@@ -88,6 +89,7 @@ struct BlockLoops {
   }
 
   static void position(Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time) {
+    batch.time = time;
     for (int slot = begin; slot < end; ++slot) {
       Pose q[bodies];
       gather(all.pose, bodies_of(batch, slot), q);

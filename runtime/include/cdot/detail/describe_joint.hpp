@@ -27,12 +27,14 @@ JointType describe_joint() {
   for (const ParameterInfo& info : type.parameters)
     type.parameter_size = std::max(type.parameter_size, info.offset + info.size);
   type.explicit_time = Joint::explicit_time;
+  type.is_effect = requires { Joint::is_effect; };
   return type;
 }
 
-template <class... Joints>
-std::vector<JointType> describe_joints(std::type_identity<std::tuple<Joints...>>) {
-  return {describe_joint<Joints>()...};
+template <class... Joints, class... Effects>
+std::vector<JointType> describe_joints(std::type_identity<std::tuple<Joints...>>,
+                                       std::type_identity<std::tuple<Effects...>> = {}) {
+  return {describe_joint<Joints>()..., describe_joint<Effects>()...};
 }
 
 // The joints of a program: the whole catalogue, or its own choice (cdot_use_joints).

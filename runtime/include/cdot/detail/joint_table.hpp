@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <cdot/detail/block_ops.hpp>
+#include <cdot/detail/effect_law.hpp>
 #include <cdot/joints.hpp>
 
 namespace cdot {
@@ -44,6 +45,7 @@ struct JointEntry {
   std::vector<BlockVariants<S>> coordinates;  // in the order of JointType::coordinates
   // Writes the default of parameter `index`, computed from the poses, the earlier parameters and the time.
   void (*default_value)(int index, const typename S::Pose* q, typename S::Scalar* parameters, typename S::Scalar time);
+  const Law<S>* law = nullptr;  // of an effect
 };
 
 template <class S, class Joint, class Block>
@@ -63,7 +65,8 @@ BlockVariants<S> block_variants() {
 template <class S, class Joint>
 JointEntry<S> joint_entry() {
   using T = typename S::Scalar;
-  JointEntry<S> entry{block_variants<S, Joint, Joint>(), {}, nullptr};
+  JointEntry<S> entry{block_variants<S, Joint, Joint>(), {}, nullptr, nullptr};
+  if constexpr (requires { Joint::is_effect; }) entry.law = &effect_law<S, Joint>;
   [&]<class... Coordinates>(std::type_identity<std::tuple<Coordinates...>>) {
     (entry.coordinates.push_back({&block_ops<S, Joint, Coordinates>, {}}), ...);
   }(std::type_identity<typename Joint::Coordinates>{});
@@ -80,9 +83,10 @@ JointEntry<S> joint_entry() {
 template <class S>
 std::vector<JointEntry<S>>& joint_entries();
 
-template <class S, class... Joints>
-std::vector<JointEntry<S>> make_joint_entries(std::type_identity<std::tuple<Joints...>>) {
-  return {joint_entry<S, Joints>()...};
+template <class S, class... Joints, class... Effects>
+std::vector<JointEntry<S>> make_joint_entries(std::type_identity<std::tuple<Joints...>>,
+                                              std::type_identity<std::tuple<Effects...>> = {}) {
+  return {joint_entry<S, Joints>()..., joint_entry<S, Effects>()...};
 }
 
 }  // namespace cdot

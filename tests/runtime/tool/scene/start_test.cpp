@@ -138,17 +138,31 @@ TEST(Start, OtherMechanismsStayAsWritten) {
   EXPECT_FALSE(scene.bodies[3].started);
 }
 
+// rolling has a parameter `start`: s + radius q = start. A number is that parameter, a table the coordinate s.
+TEST(Start, ANumberIsTheParameterOfThatName) {
+  const std::string wheel =
+      "[[body]]\nname = \"wheel\"\nmass = 1\nposition = [0, 0.5]\nangle = -2\nshape = { disc = 0.5 }\n"
+      "[[joint]]\ntype = \"rolling\"\nbodies = [\"wheel\", \"world\"]\nradius = 0.5\nn = [0, 1]\npb = [-1, 0]\n";
+  const auto read = [&](const std::string& keys) { return read_scene(std::string_view(wheel + keys), "test.toml"); };
+  const BasicWorld<Planar<double>> kept = world_of<Planar<double>>(read("start = 0\n"));
+  EXPECT_NEAR(kept.coordinate(0, "slide"), 1, 1e-15);
+  // From s = 1 and q = -2, start = 0 by default, to s = 1.2: q = -2.4.
+  const BasicWorld<Planar<double>> moved = world_of<Planar<double>>(read("start = { slide = 1.2 }\n"));
+  EXPECT_NEAR(moved.coordinate(0, "slide"), 1.2, 1e-13);
+  EXPECT_NEAR(moved.place(0).angle, -2.4, 1e-13);
+}
+
 TEST(Start, AnUnknownCoordinateIsNamed) {
   const std::string report = refused("four_bar", "A0", "start = { agle = 1 }");
   EXPECT_NE(report.find("did you mean `angle`?"), std::string::npos) << report;
 }
 
-// A crank of 0.153 m before a rod of 0.306 m: the rod's angle stays within 30 degrees.
 TEST(Start, AJointWithoutCoordinatesIsNamed) {
   const std::string report = refused("spatial/double_pendulum", "j1", "start = { angle = 1 }");
   EXPECT_NE(report.find("`revolute` has no coordinate"), std::string::npos) << report;
 }
 
+// A crank of 0.153 m before a rod of 0.306 m: the rod's angle stays within 30 degrees.
 TEST(Start, ALoopThatClosesElsewhereTellsTheDistance) {
   const std::string report = refused("slider_crank", "B", "start = { angle = \"50 deg\" }");
   EXPECT_NE(report.find("`angle` of joint \"B\" cannot start at 50 deg: from the written"), std::string::npos)

@@ -1,0 +1,27 @@
+// The law of an effect, after its rows.
+#include "derive/explain/lecture.hpp"
+
+namespace cdot::derive {
+
+std::vector<Chain> law_chains(const Lecture& lecture) {
+  std::vector<Chain> chains;
+  if (!lecture.joint.law) return chains;
+  const auto show = [&](const std::string& left, Expr e) {
+    chains.push_back({leaf({}, left), {{lecture.notation.definition(e), ""}}});
+  };
+  if (lecture.joint.law->energy) show("E", lecture.joint.law->energy);
+  for (const LawInput& input : lecture.joint.law->inputs)
+    if (input.force) show("F_" + input.name, input.force);
+  return chains;
+}
+
+void explain_law(Lecture& lecture) {
+  if (!lecture.joint.law) return;
+  Step& step = lecture.section("The law");
+  step.say("The rows are no constraints: the effect pushes along them by a force F, J' F on the bodies.");
+  for (Chain& chain : law_chains(lecture)) step.show(std::move(chain));
+  if (lecture.joint.law->energy)
+    step.say("The energy E adds its slope, -dE/dC, to the force along each row, and conserves what it stores.");
+}
+
+}  // namespace cdot::derive

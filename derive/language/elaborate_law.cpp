@@ -1,0 +1,193 @@
+// The law of an effect: an energy, forces and torques as functions of coordinates, their rates, parameters and time.
+//
+// All that a law reads of the bodies are its inputs: declared coordinates, points, and the angles, centres and
+// velocities of bodies. Each input is a row of the joint behind the effect, so J, gamma and the geometric stiffness of
+// an effect are derived and proved as those of constraints are. In the law itself the inputs are leaves.
+#include <algorithm>
+
+#include "derive/expression/symbols.hpp"
+#include "derive/language/elaborate.hpp"
+
+namespace cdot::derive {
+namespace {
+
+const Unit joule{.m = 2, .s = -2, .kg = 1};
+
+Unit without_radians(Unit u) {
+  u.rad = 0;
+  return u;
+}
+
+// Radians count as numbers: a torque is in N m, or in N m/rad.
+bool fits(const Value& v, const Unit& unit) {
+  return !v.unit || v.zero || without_radians(*v.unit) == without_radians(unit);
+}
+
+}  // namespace
+
+LawInput& Elaborator::add_input(const std::string& name, Row row, bool has_value) {
+  const bool vector_input = row.C->vector;
+  const auto leaf = [&](const std::string& called) {
+    return vector_input ? pool_->vector_symbol(called, Role::given) : pool_->symbol(called, Role::given);
+  };
+  LawInput input{name, has_value ? leaf(name) : Expr(), leaf(name + "_rate"), row.unit, {}};
+  Value value = scalar(input.value, row.unit), rate = scalar(input.rate, row.unit / Unit{.s = 1});
+  if (vector_input) value.type = rate.type = Type::vector;
+  if (has_value) law_values_.emplace(name, value);
+  law_rates_.emplace(name, rate);
+  row.name = name;
+  joint_.rows.push_back(std::move(row));
+  joint_.law->inputs.push_back(input);
+  return joint_.law->inputs.back();
+}
+
+// coordinate NAME [unit] = expression
+void Elaborator::coordinate_of_effect(Source& source, const StatementAst& s, const Value& value, Unit unit) {
+  const DeclaredAst& d = s.declared;
+  if (!name_is_free(source, d.name, d.name.text)) return;
+  if (value.type == Type::poison) return enter(source, d.name.text, "coordinate", value, d.name.where);
+  Row row;
+  row.C = value.e;
+  row.unit = unit;
+  row.where = in_spec(source, d.name.where);
+  row.text = d.name.text + " = " + written(source, s);
+  row.of_world = of_world_;
+  joint_.uses_time |= depends_on_role(value.e, Role::time);
+  add_input(d.name.text, std::move(row), true);
+  enter(source, d.name.text, "coordinate", law_values_.at(d.name.text), d.name.where);
+}
+
+// A point that a law names: its place, with a row for each of its components.
+LawInput& Elaborator::point_input(const std::string& name, const Value& point, Span where) {
+  auto& inputs = joint_.law->inputs;
+  const auto known = std::find_if(inputs.begin(), inputs.end(), [&](const LawInput& i) { return i.name == name; });
+  if (known != inputs.end()) return *known;
+  Row row;
+  row.C = point.e;
+  row.unit = Unit{.m = 1};
+  row.where = where;
+  row.text = name;
+  row.of_world = true;  // the world's axes see it
+  LawInput& input = add_input(name, std::move(row), true);
+  law_values_.at(name).type = Type::point;
+  return input;
+}
+
+// The angle of a body, or the place of its centre. A turn in space has a rate but no value.
+LawInput& Elaborator::body_input(int body, bool turns, Span where) {
+  const std::string name = (turns ? "angle_" : "centre_") + body_name(body);
+  auto& inputs = joint_.law->inputs;
+  const auto known = std::find_if(inputs.begin(), inputs.end(), [&](const LawInput& i) { return i.name == name; });
+  if (known != inputs.end()) return *known;
+  const bool of_rate = turns && joint_.dimension == 3;
+  Row row;
+  row.kind = of_rate ? RowKind::velocity : RowKind::equality;
+  row.C = of_rate ? body_spin(*pool_, body) : turns ? body_angle(*pool_, body) : body_position(*pool_, body);
+  row.unit = turns ? Unit{.rad = 1} : Unit{.m = 1};
+  row.where = where;
+  row.text = (turns ? of_rate ? "w(" : "angle(" : "x(") + body_name(body) + ")";
+  row.of_world = true;
+  bodies_.emplace(body, where);
+  return add_input(name, std::move(row), !of_rate);
+}
+
+// e with the leaves of bodies replaced by those of inputs; empty if a part of it belongs to no input.
+Expr Elaborator::read_by_inputs(Source& source, const StatementAst& s, Expr e) {
+  std::map<const Node*, Expr> replaced;
+  for (const Expr leaf : leaves_of(std::span<const Expr>(&e, 1))) {
+    const bool rate = leaf->role == Role::velocity || leaf->role == Role::spin;
+    if (rate || leaf->role == Role::angle || leaf->role == Role::position) {
+      const LawInput& input = body_input(leaf->body, leaf->role == Role::spin || leaf->role == Role::angle, s.where);
+      replaced.emplace(&*leaf, rate ? input.rate : input.value);
+    } else if (leaf->role == Role::body_vector) {
+      source.diagnostics.error(
+          s.left.where, "the law names " + quote(leaf->symbol) + ", which turns with " + quote(body_name(leaf->body)),
+          "declare a coordinate that contains it, such as coordinate s [m] = dot(u, t)");
+      return {};
+    }
+  }
+  return substitute(e, replaced);
+}
+
+Value Elaborator::law_value(Source& source, const StatementAst& s) {
+  in_law_ = true;
+  Value v = evaluate(source, s.left);
+  in_law_ = false;
+  if (v.type == Type::poison) return {};
+  if (v.type != Type::scalar && v.type != Type::vector) {
+    source.diagnostics.error(s.left.where, "a force is a number or a vector, not " + std::string(in_words(v.type)));
+    return {};
+  }
+  if (v.e) v.e = read_by_inputs(source, s, v.e);
+  if (!v.e) return {};
+  joint_.uses_time |= depends_on_role(v.e, Role::time);
+  return v;
+}
+
+void Elaborator::energy(Source& source, const StatementAst& s) {
+  const Value v = law_value(source, s);
+  if (v.type == Type::poison) return;
+  Diagnostics& d = source.diagnostics;
+  if (v.type != Type::scalar) return d.error(s.left.where, "an energy is a number, not a vector");
+  if (!fits(v, joule)) return d.error(s.left.where, "an energy is in J, not in " + spoken(*v.unit));
+  for (const LawInput& input : joint_.law->inputs) {
+    const std::vector<Expr> leaves = leaves_of(std::span<const Expr>(&v.e, 1));
+    if (std::find(leaves.begin(), leaves.end(), input.rate) != leaves.end())
+      return d.error(s.left.where, "an energy depends on positions, not on the rate of " + quote(input.name),
+                     "write a force: force on " + input.name + " = ...");
+  }
+  if (depends_on_role(v.e, Role::time))
+    return d.error(s.left.where, "an energy that depends on time does work by itself", "write a force in its place");
+  joint_.law->energy = joint_.law->energy ? joint_.law->energy + v.e : v.e;
+}
+
+// ( "force" on NAME | "torque" on BODY ) "=" expression
+void Elaborator::force(Source& source, const StatementAst& s) {
+  Diagnostics& d = source.diagnostics;
+  const std::string& on = s.label.text;
+  SourceNames names(*this, source);
+  const int body = names.body(on);
+  std::string name = on;
+  if (s.torque) {
+    if (body < 0)
+      return d.error(s.label.where, "a torque acts on a body, not on " + quote(on),
+                     "write torque on a = ..., or force on " + on + " = ...");
+    name = body_input(body, true, in_spec(source, s.where)).name;
+  } else if (body >= 0) {
+    name = body_input(body, false, in_spec(source, s.where)).name;
+  } else {
+    in_law_ = true;
+    names.find(on);
+    in_law_ = false;
+  }
+  const auto index_of = [&] {
+    const auto& inputs = joint_.law->inputs;
+    return static_cast<std::size_t>(
+        std::find_if(inputs.begin(), inputs.end(), [&](const LawInput& i) { return i.name == name; }) - inputs.begin());
+  };
+  const std::size_t at = index_of();
+  if (at == joint_.law->inputs.size())
+    return d.error(s.label.where, quote(on) + " is neither a coordinate of this effect nor a point of a body",
+                   "declare it before: coordinate " + on + " [m] = ..., or point " + on + " on a");
+  const Value v = law_value(source, s);
+  if (v.type == Type::poison) return;
+  LawInput& input = joint_.law->inputs[at];
+  const bool zero_vector_given = v.zero && input.rate->vector;
+  if (!zero_vector_given && v.e->vector != input.rate->vector)
+    return d.error(s.left.where, "the force on " + quote(on) + " is " + (input.rate->vector ? "a vector" : "a number") +
+                                     ", not " + std::string(in_words(v.type)));
+  if (!fits(v, joule / input.unit))
+    return d.error(s.left.where, "this force is in " + spoken(*v.unit) + ", not in " + spoken(joule / input.unit));
+  const Expr value = zero_vector_given ? zero_vector(*pool_) : v.e;
+  input.force = input.force ? input.force + value : value;
+}
+
+void Elaborator::check_law(Source& spec) {
+  if (spec.diagnostics.has_errors()) return;
+  const auto acts = [](const LawInput& input) { return static_cast<bool>(input.force); };
+  if (!joint_.law->energy && std::none_of(joint_.law->inputs.begin(), joint_.law->inputs.end(), acts))
+    spec.diagnostics.error(spec.ast.name.where, "the effect has neither an energy nor a force: it does nothing",
+                           "write energy ..., force on NAME = ..., or torque on BODY = ...");
+}
+
+}  // namespace cdot::derive

@@ -1,0 +1,116 @@
+// The law of a generated effect, as a World calls it. The effect's own functions are, over C, its rate, the parameters
+// and the time:
+//
+//   E::energy   (C, p, E)            the stored energy; may be missing
+//   E::force    (C, rate, p, t, F)   the force along each row                                   [rows]
+//   E::unstored (C, rate, p, t, F)   its part without an energy; missing: all of it, or nothing beside an energy
+//   E::slopes   (C, rate, p, t, k, d)   k = -dF/dC, d = -dF/d(rate)                            [rows][rows]
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <cdot/detail/block.hpp>
+
+namespace cdot {
+
+template <class S, class Effect>
+struct EffectLaw {
+  using T = typename S::Scalar;
+  using Parameters = typename Effect::template Parameters<T>;
+  static constexpr int rows = Effect::rows;
+  using Row = const T (&)[rows];
+
+  static const Parameters& parameters(const Batch<S>& batch, int slot) {
+    return reinterpret_cast<const Parameters*>(batch.parameters.data())[slot];
+  }
+  static Row C(const Batch<S>& batch, int slot) { return reinterpret_cast<Row>(batch.C[slot * rows]); }
+
+  static void force(const Batch<S>& batch, int slot, const T* rate, T* force) {
+    Effect::force(C(batch, slot), reinterpret_cast<Row>(*rate), parameters(batch, slot), batch.time,
+                  reinterpret_cast<T(&)[rows]>(*force));
+  }
+
+  static void unstored(const Batch<S>& batch, int slot, const T* rate, T* force) {
+    if constexpr (requires { &Effect::template unstored<T>; })
+      Effect::unstored(C(batch, slot), reinterpret_cast<Row>(*rate), parameters(batch, slot), batch.time,
+                       reinterpret_cast<T(&)[rows]>(*force));
+    else if constexpr (has_energy) std::fill_n(force, rows, T(0));
+    else EffectLaw::force(batch, slot, rate, force);
+  }
+
+  static constexpr bool has_energy = requires { &Effect::template energy<T>; };
+  static double energy(const Batch<S>& batch, int slot) {
+    T E = 0;
+    if constexpr (has_energy) Effect::energy(C(batch, slot), parameters(batch, slot), E);
+    return double(E);
+  }
+
+  // J v + dC/dt, from Batch::rate and the bias before a law adds to it.
+  static void rate_of(const Batch<S>& batch, int slot, T (&rate)[rows]) {
+    for (int r = 0; r < rows; ++r) rate[r] = batch.rate[slot * rows + r] + batch.bias[slot * rows + r];
+  }
+
+  // Bounds of k and d by row: k_rr + sum |k_rc| over the other columns, so that the diagonal matrix of these is at
+  // least as stiff as the whole one. Never negative: a force that drives a body away is taken as it is.
+  static void bounds(const Batch<S>& batch, int slot, const T (&rate)[rows], SpringNumbers<T> (&bound)[rows]) {
+    T k[rows][rows], d[rows][rows];
+    Effect::slopes(C(batch, slot), rate, parameters(batch, slot), batch.time, k, d);
+    for (int r = 0; r < rows; ++r) {
+      bound[r] = {k[r][r], d[r][r]};
+      for (int c = 0; c < rows; ++c)
+        if (c != r) bound[r].k += std::abs(k[r][c]), bound[r].d += std::abs(d[r][c]);
+      bound[r] = {std::max(bound[r].k, T(0)), std::max(bound[r].d, T(0))};
+    }
+  }
+
+  // A step of h that is implicit as far as k and d say: with F at the start and D = d + h k,
+  //   lambda = h (F + d (rate - rate') - h k rate')   gives   rate' = (F + d rate) / D - lambda / (h D).
+  static void fill(Batch<S>& batch, int begin, int end, T h, const Settings&) {
+    for (int slot = begin; slot < end; ++slot) {
+      T rate[rows], F[rows];
+      SpringNumbers<T> bound[rows];
+      rate_of(batch, slot, rate);
+      force(batch, slot, rate, F);
+      bounds(batch, slot, rate, bound);
+      for (int r = 0; r < rows; ++r) {
+        const int i = slot * rows + r;
+        const T D = bound[r].d + h * bound[r].k, K = batch.factor[slot * batch.triangle() + r * (r + 1) / 2 + r];
+        const bool soft = h * D * K > std::numeric_limits<T>::epsilon();
+        batch.softness[i] = soft ? T(1) / (h * D) : T(0);
+        batch.lower[i] = soft ? -std::numeric_limits<T>::infinity() : h * F[r];
+        batch.upper[i] = soft ? std::numeric_limits<T>::infinity() : h * F[r];
+        if (soft) batch.bias[i] -= (F[r] + bound[r].d * rate[r]) / D;
+      }
+    }
+  }
+
+  // Stiffness as bounded; damping such that force(rate) = force(0) - d rate.
+  static void spring(const Batch<S>& batch, int slot, SpringNumbers<T>* numbers) {
+    constexpr T at_rest[rows] = {};
+    T rate[rows], moving[rows], resting[rows];
+    rate_of(batch, slot, rate);
+    force(batch, slot, rate, moving);
+    force(batch, slot, at_rest, resting);
+    SpringNumbers<T> bound[rows];
+    bounds(batch, slot, rate, bound);
+    for (int r = 0; r < rows; ++r) {
+      const T secant = rate[r] == T(0) ? bound[r].d : (resting[r] - moving[r]) / rate[r];
+      numbers[r] = {bound[r].k, std::max(secant, T(0))};
+    }
+  }
+};
+
+template <class S, class Effect>
+inline constexpr Law<S> effect_law{0,
+                                   false,
+                                   EffectLaw<S, Effect>::fill,
+                                   nullptr,
+                                   EffectLaw<S, Effect>::has_energy ? EffectLaw<S, Effect>::energy : nullptr,
+                                   EffectLaw<S, Effect>::force,
+                                   nullptr,
+                                   EffectLaw<S, Effect>::spring,
+                                   EffectLaw<S, Effect>::unstored};
+
+}  // namespace cdot
