@@ -65,7 +65,7 @@ void look_at_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h
 }
 
 // The error of limits, motors and friction in the step, as a rate into Batch::impulse, and the bounds of their impulse.
-// The middle has the speed of a motor; the end has the C of a limit, which must not pass its end.
+// The mean velocity has the speed of a motor; the end has the C of a limit, which must not pass its end.
 template <class S>
 void find_misses_of_bounded(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
@@ -73,7 +73,6 @@ void find_misses_of_bounded(WorldData<S>& world, Island<S>& island, typename S::
     Batch<S>& batch = *segment;
     if (!is_bounded(batch)) continue;
     const bool of_rate = !batch.law->error;
-    if (of_rate) batch.ops->velocity(batch, begin, end, world.bodies.velocity.data(), batch.rate.data());
     each_row(batch, begin, end, [&](int i) {
       batch.impulse[i] = batch.bias[i];
       if (!of_rate) batch.bias[i] = 0;
@@ -87,13 +86,13 @@ void find_misses_of_bounded(WorldData<S>& world, Island<S>& island, typename S::
   }
 }
 
-// Velocity rows have no C. Their error is what they miss in the middle, as a displacement.
+// Velocity rows have no C. Their error is what the mean velocity misses, as a displacement. The velocities themselves
+// belong to the inertia tensors of the start: in them the impulses would do work of order h^2 in every step.
 template <class S>
-void find_errors_of_rates(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+void find_errors_of_rates(Island<S>& island, typename S::Scalar h) {
   for (const auto& [batch, begin, end, whole] : island.segments) {
     const auto& kinds = batch->kinds;
     if (batch->law || std::find(kinds.begin(), kinds.end(), RowKind::velocity) == kinds.end()) continue;
-    batch->ops->velocity(*batch, begin, end, world.bodies.velocity.data(), batch->rate.data());
     each_row(*batch, begin, end, [&, of = batch](int i) {
       if (kinds[static_cast<size_t>(i % of->ops->rows)] != RowKind::velocity) return;
       of->error[i] = h * (of->rate[i] + of->bias[i]);
@@ -211,16 +210,16 @@ bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   for (int round = 0; round < most_newton_rounds; ++round) {
     look_at_middle(world, island, h);
     if (renew) stiffen_masses(world, island, h / 4);
-    drift(world, island, h);
+    drift_with_rates(world, island, h);
     island.residual = find_errors(world, island, time);
-    find_errors_of_rates(world, island, h);
+    find_errors_of_rates(island, h);
     if (!std::isfinite(island.residual)) return false;
     find_misses_of_bounded(world, island, h);
     const T change = improve(world, island, h, renew), miss = std::max(change / settled<T>, island.residual / goal);
     if (!(change < furthest<T>)) return false;
     const bool shared = change <= settled<T> && island.residual <= shared_error(island, at_start);
     if (miss <= T(1) || shared || (miss <= nearly<T> && miss > T(0.5) * before)) {
-      drift(world, island, h);
+      drift_with_rates(world, island, h);
       return true;
     }
     renew = !(miss < T(slow) * before);

@@ -17,7 +17,8 @@ void each_row(const Island<S>& island, F f) {
 }
 
 // Newton for v_m and lambda of a step of h from the start in Flow. Leaves v_m in the velocities, lambda in
-// Batch::correction and the end in the poses. False if the step is too long for it.
+// Batch::correction, the end in the poses, and J v of the mean velocity in Batch::rate. False if the step is too long
+// for it.
 template <class S>
 bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 

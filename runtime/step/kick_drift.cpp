@@ -63,6 +63,21 @@ void bound_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   }
 }
 
+// f() sees the mean velocities.
+template <class S, class F>
+void drift_and(WorldData<S>& world, Island<S>& island, typename S::Scalar h, F f) {
+  Bodies<S>& all = world.bodies;
+  const std::vector<typename S::Pose>& start = island.flow.pose;
+  for (size_t k = 0; k < start.size(); ++k) all.pose[island.bodies[k]] = start[k];
+  if constexpr (S::has_gyroscopes)
+    for_each_gyroscope(world, island,
+                       [&](auto& gyroscope, int i) { S::lend_mean_spin(gyroscope, all.pose[i], all.velocity[i], h); });
+  for (int i : island.bodies) all.pose[i] = S::moved(all.pose[i], S::sum({}, all.velocity[i], h));
+  f();
+  if constexpr (S::has_gyroscopes)
+    for_each_gyroscope(world, island, [&](auto& gyroscope, int i) { S::restore_spin(gyroscope, all.velocity[i]); });
+}
+
 }  // namespace
 
 template <class S>
@@ -91,15 +106,15 @@ void note_start(const WorldData<S>& world, Island<S>& island) {
 
 template <class S>
 void drift(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
-  Bodies<S>& all = world.bodies;
-  const std::vector<typename S::Pose>& start = island.flow.pose;
-  for (size_t k = 0; k < start.size(); ++k) all.pose[island.bodies[k]] = start[k];
-  if constexpr (S::has_gyroscopes)
-    for_each_gyroscope(world, island,
-                       [&](auto& gyroscope, int i) { S::lend_mean_spin(gyroscope, all.pose[i], all.velocity[i], h); });
-  for (int i : island.bodies) all.pose[i] = S::moved(all.pose[i], S::sum({}, all.velocity[i], h));
-  if constexpr (S::has_gyroscopes)
-    for_each_gyroscope(world, island, [&](auto& gyroscope, int i) { S::restore_spin(gyroscope, all.velocity[i]); });
+  drift_and(world, island, h, [] {});
+}
+
+template <class S>
+void drift_with_rates(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  drift_and(world, island, h, [&] {
+    for (const auto& [batch, begin, end, whole] : island.segments)
+      batch->ops->velocity(*batch, begin, end, world.bodies.velocity.data(), batch->rate.data());
+  });
 }
 
 template <class S>
@@ -114,6 +129,7 @@ void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   template S::Scalar begin_kick_drift(WorldData<S>&, Island<S>&, S::Scalar); \
   template void note_start(const WorldData<S>&, Island<S>&);                 \
   template void drift(WorldData<S>&, Island<S>&, S::Scalar);                 \
+  template void drift_with_rates(WorldData<S>&, Island<S>&, S::Scalar);      \
   template void solve_end(WorldData<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -18,6 +18,10 @@ void note_start(const WorldData<S>& world, Island<S>& island);
 template <class S>
 void drift(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 
+// The same. Leaves J v of all rows in Batch::rate, with the present J and the mean velocity v of the drift.
+template <class S>
+void drift_with_rates(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
+
 // The velocities at the end of a step of h, after an evaluation of C and J: J v = -dC/dt. Motors, limits and friction
 // act with half of their impulse; the other half acts at the start of the next step. Springs have acted as forces.
 template <class S>

@@ -61,11 +61,10 @@ void drag(WorldData<S>& world, const Island<S>& island, typename S::Scalar h) {
 
 // The work of the joints, which is 0 along the exact motion: lambda (J v_m + dC/dt), in [J].
 template <class S>
-double work_of_joints(WorldData<S>& world, Island<S>& island) {
+double work_of_joints(const Island<S>& island) {
   double work = 0;
   for (const auto& [batch, begin, end, whole] : island.segments) {
     if (batch->law) continue;
-    batch->ops->velocity(*batch, begin, end, world.bodies.velocity.data(), batch->rate.data());
     each_row(*batch, begin, end, [&, of = batch](int i) {
       work += double(of->correction[i]) * (double(of->rate[i]) + double(of->bias[i]));
     });
@@ -215,7 +214,7 @@ bool take_part(WorldData<S>& world, Island<S>& island, typename S::Scalar h, boo
   bool found = find_middle(world, island, h);
   leave_middle(world, island);
   if (found && !hardly_moves(world, island, h)) {
-    const double work = work_of_joints(world, island);
+    const double work = work_of_joints(island);
     found = (last ? work : std::abs(work)) <= slight_work<T> * moved_energy(world, island);
   }
   if (!found) return give_up();
