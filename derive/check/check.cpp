@@ -60,7 +60,8 @@ CheckReport check(const ReadResult& read, Draw draw) {
     report.proofs = prove_blocks(derivation);
     for (const Proved& proved : report.proofs) take_over(proved, report.findings);
     // The rest is about constraints: C = 0, their defaults and their K.
-    if (!joint.law) check_constraints(subject, draw, report);
+    if (joint.law) check_law(derivation, report.proofs.front().proof, report.findings);
+    else check_constraints(subject, draw, report);
   } catch (const NotLinear& e) {
     report.findings.add(Level::error, "linear", joint.rows.front().where, e.what(),
                         "a velocity row is a sum of velocities times what does not contain them");

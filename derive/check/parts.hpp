@@ -31,6 +31,8 @@ void check_rows(const Subject& subject,
                 Findings& findings);                               // vanishing, dependent, without bodies
 void check_undefined(const Subject& subject, Findings& findings);  // 1/0, roots, directions, angles
 void check_defaults(const Subject& subject, Findings& findings);   // defaults with C != 0
+// The law of an effect: forces that are not opposite, and the power of what has no energy.
+void check_law(const Derivation& derivation, const Proof& proof, Findings& findings);
 // Where K is singular, with poses to draw if a place for them is given. Silent if the joint has errors: they are the
 // cause, and come first.
 void check_mass(const Subject& subject, Findings& findings, std::vector<PoseToDraw>* poses = nullptr);

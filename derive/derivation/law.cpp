@@ -58,19 +58,17 @@ DerivedLaw derive_law(const Joint& joint) {
       forces.push_back(part - stored);
     }
   }
-  Components components;
   for (const Expr force : forces) {
     std::vector<Expr> by_value, by_rate;
     for (std::size_t j = 0; j < forces.size(); ++j) {
-      by_value.push_back(components.of(-slope(force, law.value[j], joint)));
-      by_rate.push_back(components.of(-slope(force, law.rate[j], joint)));
+      by_value.push_back(-slope(force, law.value[j], joint));
+      by_rate.push_back(-slope(force, law.rate[j], joint));
     }
     law.stiffness.push_back(std::move(by_value));
     law.damping.push_back(std::move(by_rate));
-    law.force.push_back(components.of(force));
   }
-  for (Expr& part : law.unstored) part = components.of(part);
-  if (joint.law->energy) law.energy = components.of(energy);
+  law.force = std::move(forces);
+  if (joint.law->energy) law.energy = energy;
   return law;
 }
 

@@ -100,13 +100,25 @@ class KernelWriter {
     std::string names;
     for (const std::string& body : joint_.bodies) names += (names.empty() ? "" : ", ") + literal(body);
     line("static_assert(kernel_contract == 2);", 1);
-    if (joint_.law) line("static constexpr bool is_effect = true;", 1);
+    if (joint_.law) law_metadata();
     line("static constexpr std::string_view name = " + literal(joint_.name) + ";", 1);
     line("static constexpr std::string_view title =", 1);
     string_literal(joint_.title, 3);
     line(fmt::format("static constexpr std::array<std::string_view, {}> body_names = {{{}}};", joint_.bodies.size(),
                      names),
          1);
+  }
+
+  // Rows without a force only tell the law where a direction points.
+  void law_metadata() {
+    const DerivedLaw& law = *kernel_.derivation->law;
+    std::string acts;
+    for (const Expr force : law.force)
+      acts += std::string(acts.empty() ? "" : ", ") + (is_zero(force) ? "false" : "true");
+    const bool in_time = std::ranges::any_of(leaves_of(law.force), [](Expr leaf) { return leaf->role == Role::time; });
+    line("static constexpr bool is_effect = true;", 1);
+    line(fmt::format("static constexpr bool law_in_time = {};", in_time), 1);
+    line(fmt::format("static constexpr std::array<bool, {}> acts = {{{}}};", law.force.size(), acts), 1);
   }
 
   // ", 0, infinity"; empty for a parameter without bounds.

@@ -97,7 +97,9 @@ FunctionWriter::FunctionWriter(const Joint& joint)
     : bodies_(joint.bodies.size()), width_(columns_per_body(joint.dimension)) {
   for (std::size_t b = 0; b < bodies_; ++b) name_inputs_of_body(joint, b);
   auto& in = printing_.inputs;
-  for (std::size_t i = 0; i < width_ * bodies_; ++i) {
+  std::size_t rows = width_ * bodies_;  // at most, but an effect may have rows that depend on each other
+  for (const Row& row : joint.rows) rows += row.C->vector ? width_ : 1;
+  for (std::size_t i = 0; i < rows; ++i) {
     in[fmt::format("lambda_{}", i + 1)] = fmt::format("lambda[{}]", i);
   }
   in["pi"] = "T(3.14159265358979323846)";

@@ -97,10 +97,11 @@ class Elaborator {
   void energy(Source& source, const StatementAst& s);
   void force(Source& source, const StatementAst& s);
   Value law_value(Source& source, const StatementAst& s);
-  Expr read_by_inputs(Source& source, const StatementAst& s, Expr e);
+  Expr read_by_inputs(const StatementAst& s, Expr e);
   void coordinate_of_effect(Source& source, const StatementAst& s, const Value& value, Unit unit);
   LawInput& point_input(const std::string& name, const Value& point, Span where);
   LawInput& body_input(int body, bool turns, Span where);
+  LawInput& turning_input(Expr leaf, Span where);
   LawInput& add_input(const std::string& name, Row row, bool has_value);
   void check_law(Source& spec);
   // Checks at the end.

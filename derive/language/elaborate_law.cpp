@@ -91,8 +91,26 @@ LawInput& Elaborator::body_input(int body, bool turns, Span where) {
   return add_input(name, std::move(row), !of_rate);
 }
 
-// e with the leaves of bodies replaced by those of inputs; empty if a part of it belongs to no input.
-Expr Elaborator::read_by_inputs(Source& source, const StatementAst& s, Expr e) {
+// A direction or arm that turns with its body: its components along the world's axes are rows that only read.
+LawInput& Elaborator::turning_input(Expr leaf, Span where) {
+  const std::string name = leaf->symbol + "_world";
+  auto& inputs = joint_.law->inputs;
+  const auto known = std::find_if(inputs.begin(), inputs.end(), [&](const LawInput& i) { return i.name == name; });
+  if (known != inputs.end()) return *known;
+  const auto parameter = std::find_if(joint_.parameters.begin(), joint_.parameters.end(),
+                                      [&](const Parameter& p) { return p.symbol == leaf; });
+  Row row;
+  row.C = leaf;
+  row.unit = parameter == joint_.parameters.end() ? Unit{} : parameter->unit;
+  row.where = where;
+  row.text = leaf->symbol;
+  row.of_world = true;
+  bodies_.emplace(leaf->body, where);
+  return add_input(name, std::move(row), true);
+}
+
+// e with the leaves of bodies replaced by those of inputs.
+Expr Elaborator::read_by_inputs(const StatementAst& s, Expr e) {
   std::map<const Node*, Expr> replaced;
   for (const Expr leaf : leaves_of(std::span<const Expr>(&e, 1))) {
     const bool rate = leaf->role == Role::velocity || leaf->role == Role::spin;
@@ -100,10 +118,7 @@ Expr Elaborator::read_by_inputs(Source& source, const StatementAst& s, Expr e) {
       const LawInput& input = body_input(leaf->body, leaf->role == Role::spin || leaf->role == Role::angle, s.where);
       replaced.emplace(&*leaf, rate ? input.rate : input.value);
     } else if (leaf->role == Role::body_vector) {
-      source.diagnostics.error(
-          s.left.where, "the law names " + quote(leaf->symbol) + ", which turns with " + quote(body_name(leaf->body)),
-          "declare a coordinate that contains it, such as coordinate s [m] = dot(u, t)");
-      return {};
+      replaced.emplace(&*leaf, turning_input(leaf, s.where).value);
     }
   }
   return substitute(e, replaced);
@@ -118,8 +133,8 @@ Value Elaborator::law_value(Source& source, const StatementAst& s) {
     source.diagnostics.error(s.left.where, "a force is a number or a vector, not " + std::string(in_words(v.type)));
     return {};
   }
-  if (v.e) v.e = read_by_inputs(source, s, v.e);
   if (!v.e) return {};
+  v.e = read_by_inputs(s, v.e);
   joint_.uses_time |= depends_on_role(v.e, Role::time);
   return v;
 }

@@ -39,6 +39,17 @@ void add(const Block& block, std::string& text, std::vector<Expr>& all) {
   for (const Block& variant : block.variants) add(variant, text, all);
 }
 
+// The same of the law of an effect.
+void add(const DerivedLaw& law, std::string& text, std::vector<Expr>& all) {
+  text += fmt::format("law {} {} {}", word_of(LawId::force), word_of(LawId::slopes), word_of(LawId::opposite));
+  const auto take = [&](const std::vector<Expr>& some) {
+    std::ranges::copy_if(some, std::back_inserter(all), &Expr::operator bool);
+  };
+  for (const auto* some : {&law.value, &law.rate, &law.force, &law.unstored}) take(*some);
+  if (law.energy) all.push_back(law.energy);
+  for (const auto* matrix : {&law.stiffness, &law.damping}) std::ranges::for_each(*matrix, take);
+}
+
 // The graph of the expressions as text: each node by its own contents and the numbers of its operands.
 std::string text_of_graph(const Pool& pool, const std::vector<Expr>& roots) {
   std::string text;
@@ -94,6 +105,7 @@ std::string statement_of(const Derivation& derivation) {
   }
   add(derivation.rows, text, expressions);
   for (const Block& coordinate : derivation.coordinates) add(coordinate, text, expressions);
+  if (derivation.law) add(*derivation.law, text, expressions);
   return hash_of(text + text_of_graph(*joint.pool, expressions));
 }
 

@@ -14,9 +14,19 @@ Law judged(LawId id, const std::function<void(Law&)>& check);
 // Requires difference = 0; else the law fails at `where`. The first failure is reported.
 void require_zero(Law& law, Algebra& algebra, const ex& difference, const ScalarRow& row, const std::string& where);
 
+// A row of J times a common motion of all bodies: a unit velocity, and a unit spin about the origin.
+struct Felt {
+  Expr translation;  // sum of J_v, a vector
+  Expr rotation;     // sum of J_w + x cross J_v, since v = w cross x; in space a vector
+};
+Felt felt_by(const std::vector<JacobianEntry>& J, const Joint& joint);
+
 // J v = 0 for a common translation and a common rotation, at C = 0. Authors break this law most often. `names` has the
 // route of that name.
 void conserves_momentum(Law& law, const Joint& joint, const Block& block, Algebra& names);
+
+// The last three laws of LawId.
+std::vector<Law> laws_of_effect(const Derivation& derivation);
 
 // No row is redundant: exact, without GiNaC.
 void rows_are_independent(Law& law, const Block& block);

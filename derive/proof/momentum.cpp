@@ -7,13 +7,6 @@
 #include "derive/proof/words.hpp"
 
 namespace cdot::derive {
-namespace {
-
-// A row of J times a common motion of all bodies: a unit velocity, and a unit spin about the origin.
-struct Felt {
-  Expr translation;  // sum of J_v, a vector
-  Expr rotation;     // sum of J_w + x cross J_v, since v = w cross x; in space a vector
-};
 
 Felt felt_by(const std::vector<JacobianEntry>& J, const Joint& joint) {
   Felt felt{zero_vector(*joint.pool), zero_spin(*joint.pool)};
@@ -23,6 +16,8 @@ Felt felt_by(const std::vector<JacobianEntry>& J, const Joint& joint) {
   }
   return felt;
 }
+
+namespace {
 
 // Where C = 0, a centre of mass with a numeric factor in C is a function of the other variables. Substituting it
 // applies `pa = pb`.

@@ -2,6 +2,7 @@
 #include "derive/proof/prove.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 #include "derive/proof/laws.hpp"
@@ -257,6 +258,9 @@ const struct {
     {"rank",      "the rows are independent",                                          &Prover::rank},
     {"immovable", "a body made immovable only loses its own terms"},
     {"isotropic", "K of isotropic bodies is K"},
+    {"force",     "F is -dE/dC and what the spec adds"},
+    {"slopes",    "k = -dF/dC, d = -dF/d(rate)"},
+    {"opposite",  "the forces together conserve momentum"},
 };
 // clang-format on
 
@@ -324,6 +328,7 @@ Proof prove(const Joint& joint, const Block& block, std::int64_t slopes) { retur
 std::vector<Proved> prove_blocks(const Derivation& derivation) {
   const Joint& joint = derivation.joint;
   std::vector<Proved> all = {{"", {}, prove(joint, derivation.rows)}};
+  if (derivation.law) std::ranges::copy(laws_of_effect(derivation), std::back_inserter(all[0].proof.laws));
   for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
     const Coordinate& coordinate = joint.coordinates[i];
     all.push_back({coordinate.name, coordinate.where, prove(joint, derivation.coordinates[i])});

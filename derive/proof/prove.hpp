@@ -1,6 +1,7 @@
 // The laws of every derivation, proved by GiNaC or by exact arithmetic, independently of our own derivative.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -32,7 +33,11 @@ enum class LawId {
   rank,       // no row is redundant
   // Of blocks specialised from one that obeys these:
   immovable,  // each variant is the block with that body's velocity and inverse mass zero
-  isotropic   // in space: K for numbers as inertias is K for tensors that are such a number times E
+  isotropic,  // in space: K for numbers as inertias is K for tensors that are such a number times E
+  // Of the law of an effect:
+  force,    // F is -dE/dC and what the spec adds
+  slopes,   // k = -dF/dC, d = -dF/d(rate)
+  opposite  // the forces of all rows together leave momentum and angular momentum as they are
 };
 inline constexpr int number_of_laws = 10;  // of a block by itself
 
@@ -47,11 +52,11 @@ struct Law {
 
 bool is_broken(const Law& law);  // it fails, or is undecided
 
-// One entry per law, in the order of LawId.
+// One entry per law that was judged.
 struct Proof {
   std::vector<Law> laws;
   bool holds() const;  // no law is broken
-  const Law& of(LawId id) const { return laws[static_cast<std::size_t>(id)]; }
+  const Law& of(LawId id) const { return *std::ranges::find(laws, id, &Law::id); }
 };
 
 std::string_view word_of(LawId id);  // "jacobian"
@@ -71,7 +76,7 @@ struct Proved {
   Span where;        // the coordinate stands
   Proof proof;
 };
-// The rows and the coordinates, each by itself.
+// The rows and the coordinates, each by itself; with the rows of an effect its law.
 std::vector<Proved> prove_blocks(const Derivation& derivation);
 // Everything that kernels contain: these blocks and, by the last laws, their variants and K of isotropic bodies.
 std::vector<Proved> prove(const Derivation& derivation);

@@ -17,6 +17,8 @@ namespace cdot::planar {
 struct drag {
   static_assert(kernel_contract == 2);
   static constexpr bool is_effect = true;
+  static constexpr bool law_in_time = false;
+  static constexpr std::array<bool, 2> acts = {true, true};
   static constexpr std::string_view name = "drag";
   static constexpr std::string_view title =
       "Air drags a point of a body: the force grows with the square of its speed.";

@@ -16,6 +16,8 @@ namespace cdot::planar {
 struct gravity_well {
   static_assert(kernel_contract == 2);
   static constexpr bool is_effect = true;
+  static constexpr bool law_in_time = false;
+  static constexpr std::array<bool, 1> acts = {true};
   static constexpr std::string_view name = "gravity_well";
   static constexpr std::string_view title =
       "A mass at a place of the world attracts a point of a body by Newton's law.";

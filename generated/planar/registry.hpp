@@ -26,6 +26,7 @@
 #include <cdot/planar/slot.hpp>
 #include <cdot/planar/spring.hpp>
 #include <cdot/planar/target.hpp>
+#include <cdot/planar/thruster.hpp>
 #include <cdot/planar/torsion_spring.hpp>
 #include <cdot/planar/weld.hpp>
 #include <cdot/planar/wheel.hpp>
@@ -63,6 +64,7 @@ using Effects = std::tuple<
     gravity_well,
     servo,
     spring,
+    thruster,
     torsion_spring,
     wind>;
 

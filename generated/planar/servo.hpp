@@ -15,6 +15,8 @@ namespace cdot::planar {
 struct servo {
   static_assert(kernel_contract == 2);
   static constexpr bool is_effect = true;
+  static constexpr bool law_in_time = false;
+  static constexpr std::array<bool, 1> acts = {true};
   static constexpr std::string_view name = "servo";
   static constexpr std::string_view title =
       "A servo turns a against b to a target; its torque saturates smoothly at the "

@@ -17,6 +17,8 @@ namespace cdot::planar {
 struct spring {
   static_assert(kernel_contract == 2);
   static constexpr bool is_effect = true;
+  static constexpr bool law_in_time = false;
+  static constexpr std::array<bool, 1> acts = {true};
   static constexpr std::string_view name = "spring";
   static constexpr std::string_view title =
       "A spring with a damper between the points pa of a and pb of b.";

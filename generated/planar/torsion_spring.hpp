@@ -16,6 +16,8 @@ namespace cdot::planar {
 struct torsion_spring {
   static_assert(kernel_contract == 2);
   static constexpr bool is_effect = true;
+  static constexpr bool law_in_time = false;
+  static constexpr std::array<bool, 1> acts = {true};
   static constexpr std::string_view name = "torsion_spring";
   static constexpr std::string_view title =
       "A spring with a damper between the angles of a and b.";

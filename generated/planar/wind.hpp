@@ -16,6 +16,8 @@ namespace cdot::planar {
 struct wind {
   static_assert(kernel_contract == 2);
   static constexpr bool is_effect = true;
+  static constexpr bool law_in_time = false;
+  static constexpr std::array<bool, 2> acts = {true, true};
   static constexpr std::string_view name = "wind";
   static constexpr std::string_view title =
       "A steady wind drags a point of a body along.";

@@ -17,6 +17,8 @@ namespace cdot::spatial {
 struct drag {
   static_assert(kernel_contract == 2);
   static constexpr bool is_effect = true;
+  static constexpr bool law_in_time = false;
+  static constexpr std::array<bool, 3> acts = {true, true, true};
   static constexpr std::string_view name = "drag";
   static constexpr std::string_view title =
       "Air drags a point of a body: the force grows with the square of its speed.";

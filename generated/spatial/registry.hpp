@@ -35,6 +35,7 @@
 #include <cdot/spatial/spring.hpp>
 #include <cdot/spatial/surface.hpp>
 #include <cdot/spatial/swing_twist.hpp>
+#include <cdot/spatial/thruster.hpp>
 #include <cdot/spatial/universal.hpp>
 
 namespace cdot::spatial {
@@ -76,6 +77,7 @@ using Joints = std::tuple<
 
 using Effects = std::tuple<
     drag,
-    spring>;
+    spring,
+    thruster>;
 
 }  // namespace cdot::spatial

@@ -18,6 +18,8 @@ namespace cdot::spatial {
 struct spring {
   static_assert(kernel_contract == 2);
   static constexpr bool is_effect = true;
+  static constexpr bool law_in_time = false;
+  static constexpr std::array<bool, 1> acts = {true};
   static constexpr std::string_view name = "spring";
   static constexpr std::string_view title =
       "A spring with a damper between the points pa of a and pb of b.";

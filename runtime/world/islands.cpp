@@ -141,7 +141,7 @@ void list_segments(WorldData<S>& world, const std::vector<int>& places) {
     if (!segments.empty() && segments.back().batch == &batch && segments.back().end == run.slot)
       segments.back().whole_end = ++segments.back().end;
     else segments.push_back({&batch, run.slot, run.slot + 1, run.slot + 1});
-    island.restless |= batch.ops->explicit_time;
+    island.restless |= batch.ops->explicit_time || (batch.law && batch.law->in_time);
   }
 }
 

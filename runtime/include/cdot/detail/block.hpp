@@ -126,6 +126,7 @@ struct Law {
   // Of an effect: the part of `force` that no energy stores. Its `fill` and `spring` read Batch::rate. Null: the laws
   // of springs and constant forces, whose dampers are all that is not stored.
   void (*unstored)(const Batch<S>&, int slot, const T* rate, T* force) = nullptr;
+  bool in_time = false;  // the force depends on the time: its island never sleeps
 };
 
 template <class S>

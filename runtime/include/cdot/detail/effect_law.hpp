@@ -5,6 +5,8 @@
 //   E::force    (C, rate, p, t, F)   the force along each row                                   [rows]
 //   E::unstored (C, rate, p, t, F)   its part without an energy; missing: all of it, or nothing beside an energy
 //   E::slopes   (C, rate, p, t, k, d)   k = -dF/dC, d = -dF/d(rate)                            [rows][rows]
+//   E::acts     false for rows that only tell where a direction points                         [rows]
+//   E::law_in_time   the force depends on the time
 #pragma once
 
 #include <algorithm>
@@ -52,15 +54,15 @@ struct EffectLaw {
     for (int r = 0; r < rows; ++r) rate[r] = batch.rate[slot * rows + r] + batch.bias[slot * rows + r];
   }
 
-  // Bounds of k and d by row: k_rr + sum |k_rc| over the other columns, so that the diagonal matrix of these is at
-  // least as stiff as the whole one. Never negative: a force that drives a body away is taken as it is.
+  // Bounds of k and d by row: k_rr + sum |k_rc| over the other columns that act, so that the diagonal matrix of these
+  // is at least as stiff as the whole one. Never negative: a force that drives a body away is taken as it is.
   static void bounds(const Batch<S>& batch, int slot, const T (&rate)[rows], SpringNumbers<T> (&bound)[rows]) {
     T k[rows][rows], d[rows][rows];
     Effect::slopes(C(batch, slot), rate, parameters(batch, slot), batch.time, k, d);
     for (int r = 0; r < rows; ++r) {
       bound[r] = {k[r][r], d[r][r]};
       for (int c = 0; c < rows; ++c)
-        if (c != r) bound[r].k += std::abs(k[r][c]), bound[r].d += std::abs(d[r][c]);
+        if (c != r && Effect::acts[c]) bound[r].k += std::abs(k[r][c]), bound[r].d += std::abs(d[r][c]);
       bound[r] = {std::max(bound[r].k, T(0)), std::max(bound[r].d, T(0))};
     }
   }
@@ -111,6 +113,7 @@ inline constexpr Law<S> effect_law{0,
                                    EffectLaw<S, Effect>::force,
                                    nullptr,
                                    EffectLaw<S, Effect>::spring,
-                                   EffectLaw<S, Effect>::unstored};
+                                   EffectLaw<S, Effect>::unstored,
+                                   Effect::law_in_time};
 
 }  // namespace cdot

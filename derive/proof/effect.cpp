@@ -1,0 +1,90 @@
+// The laws of an effect's force: the slope of its energy, its own slopes, and whether forces are opposite.
+#include "derive/expression/symbols.hpp"
+#include "derive/proof/laws.hpp"
+
+namespace cdot::derive {
+namespace {
+
+class EffectProver {
+ public:
+  EffectProver(const Derivation& derivation)
+      : joint_(derivation.joint),
+        block_(derivation.rows),
+        law_(*derivation.law),
+        names_(joint_, Algebra::Route::names),
+        of_law_(joint_, Algebra::Route::names) {
+    for (std::size_t b = 0; b < joint_.bodies.size(); ++b) names_.coordinates(static_cast<int>(b));
+  }
+
+  // F = U - dE/dC, with U the part that has no energy.
+  void force(Law& law) {
+    for (std::size_t i = 0; i < law_.force.size(); ++i) {
+      const ex unstored = of_law_.of(law_.unstored[i]);
+      require_zero(law, of_law_, of_law_.of(law_.force[i]) - unstored + slope(law_.energy, law_.value[i]),
+                   block_.rows[i], ": F is not -dE/dC and what the spec adds");
+    }
+  }
+
+  // k = -dF/dC, d = -dF/d(rate)
+  void slopes(Law& law) {
+    const auto require = [&](Expr stated, std::size_t i, Expr by, std::size_t j, const char* letter) {
+      require_zero(law, of_law_, of_law_.of(stated) + slope(law_.force[i], by), block_.rows[i],
+                   ", column " + block_.rows[j].name + ": " + letter + " is not the slope of F");
+    };
+    for (std::size_t i = 0; i < law_.force.size(); ++i) {
+      for (std::size_t j = 0; j < law_.force.size(); ++j) {
+        require(law_.stiffness[i][j], i, law_.value[j], j, "k");
+        require(law_.damping[i][j], i, law_.rate[j], j, "d");
+      }
+    }
+  }
+
+  // The sum over rows of F times what the row feels of a common motion. F is written in C and its rate, so these take
+  // the place of its leaves.
+  void opposite(Law& law) {
+    law.verdict = Verdict::does_not_apply;
+    if (joint_.bodies.size() < 2 || joint_.uses_world) return;
+    std::map<const Node*, Expr> leaves;
+    for (std::size_t i = 0; i < block_.rows.size(); ++i) {
+      if (law_.value[i]) leaves.emplace(&*law_.value[i], block_.rows[i].C);
+      leaves.emplace(&*law_.rate[i], block_.rows[i].Cdot);
+    }
+    Felt total{zero_vector(*joint_.pool), zero_spin(*joint_.pool)};
+    for (std::size_t i = 0; i < block_.rows.size(); ++i) {
+      const Felt felt = felt_by(block_.rows[i].J, joint_);
+      const Expr F = substitute(law_.force[i], leaves);
+      total = {total.translation + F * felt.translation, total.rotation + F * felt.rotation};
+    }
+    bool shown = false;
+    const auto vanishes = [&](Expr sum) {
+      for (const Expr component : components_of(sum)) {
+        const Algebra::Zero zero = names_.is_zero(names_.of(component));
+        shown |= zero == Algebra::Zero::shown;
+        if (zero > Algebra::Zero::shown) return false;
+      }
+      return true;
+    };
+    if (!vanishes(total.translation)) law.text = "the forces add up to more than 0";
+    else if (!vanishes(total.rotation)) law.text = "the forces are opposite, but not on one line: they have a moment";
+    else law.verdict = shown ? Verdict::shown : Verdict::holds;
+  }
+
+ private:
+  ex slope(Expr e, Expr by) { return e && by ? of_law_.derivative(of_law_.of(e), of_law_.of(by)) : ex(0); }
+
+  const Joint& joint_;
+  const Block& block_;
+  const DerivedLaw& law_;
+  Algebra names_, of_law_;
+};
+
+}  // namespace
+
+std::vector<Law> laws_of_effect(const Derivation& derivation) {
+  EffectProver prover(derivation);
+  return {judged(LawId::force, [&](Law& law) { prover.force(law); }),
+          judged(LawId::slopes, [&](Law& law) { prover.slopes(law); }),
+          judged(LawId::opposite, [&](Law& law) { prover.opposite(law); })};
+}
+
+}  // namespace cdot::derive

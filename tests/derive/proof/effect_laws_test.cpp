@@ -1,0 +1,111 @@
+// The laws of effects' forces accept the catalogue and reject wrong slopes, and the check tells what a force does to
+// momentum and energy.
+#include <functional>
+#include <gtest/gtest.h>
+#include <set>
+
+#include "derive/check/check.hpp"
+#include "derive/language/read.hpp"
+#include "derive/language/specs_folder.hpp"
+#include "derive/proof/prove.hpp"
+
+namespace cdot::derive {
+namespace {
+
+ReadResult effect_in(const std::string& statements) {
+  return read_joint(std::make_shared<SourceFile>("own.effect", "effect own planar\n  \"own\"\n" + statements), {});
+}
+
+Derivation derivation_of(const std::string& statements) {
+  const ReadResult read = effect_in(statements);
+  EXPECT_TRUE(read.joint) << render(*read.file, read.diagnostics);
+  return derive(*read.joint);
+}
+
+TEST(EffectLaws, HoldForTheCatalogue) {
+  const SpecsFolder folder(CDOT_SOURCE_DIR "/specs");
+  std::set<std::string> opposite;
+  int effects = 0;
+  for (const auto& path : folder.all()) {
+    const ReadResult read = folder.read(path);
+    if (!read.joint->law) continue;
+    ++effects;
+    const Proof proof = prove_blocks(derive(*read.joint)).front().proof;
+    for (const LawId id : {LawId::force, LawId::slopes})
+      EXPECT_EQ(proof.of(id).verdict, Verdict::holds) << path << ": " << name_of(id) << ": " << proof.of(id).text;
+    if (proof.of(LawId::opposite).verdict == Verdict::holds)
+      opposite.insert(name_of_space(read.joint->dimension) + " " + read.joint->name);
+  }
+  std::printf("%d effects\n", effects);
+  for (const char* pair : {"planar spring", "planar torsion_spring", "planar servo", "spatial spring"})
+    EXPECT_TRUE(opposite.contains(pair)) << pair;
+  for (const char* alone : {"planar drag", "planar wind", "planar thruster", "spatial drag"})
+    EXPECT_FALSE(opposite.contains(alone)) << alone;
+}
+
+constexpr const char* damped_spring =
+    "  point pa on a\n  point pb on b\n  scalar k [N/m] above 0\n  scalar d [N*s/m]\n"
+    "  coordinate s [m] = norm(pa - pb)\n  energy k/2*s^2\n  force on s = -d*rate(s)*s/(1 [m])\n";
+
+// Mistakes in a derived law, one at a time.
+TEST(EffectLaws, RejectWrongForcesAndSlopes) {
+  struct Wrong {
+    LawId broken;
+    const char* words;
+    std::function<void(DerivedLaw&)> spoil;
+  };
+  const Wrong all[] = {
+      {LawId::force, "s: F is not -dE/dC", [](DerivedLaw& law) { law.force[0] = law.force[0] + law.rate[0]; }},
+      {LawId::force, "s: F is not -dE/dC", [](DerivedLaw& law) { law.energy = 2 * law.energy; }},
+      {LawId::slopes, "s, column s: k is not the slope",
+       [](DerivedLaw& law) { law.stiffness[0][0] = -law.stiffness[0][0]; }},
+      {LawId::slopes, "s, column s: d is not the slope",
+       [](DerivedLaw& law) { law.damping[0][0] = law.damping[0][0] + law.value[0]; }},
+  };
+  const Derivation right = derivation_of(damped_spring);
+  for (const Law& law : prove_blocks(right).front().proof.laws) EXPECT_FALSE(is_broken(law)) << law.text;
+  for (const Wrong& wrong : all) {
+    Derivation derivation = derivation_of(damped_spring);
+    wrong.spoil(*derivation.law);
+    const Proof proof = prove_blocks(derivation).front().proof;
+    EXPECT_EQ(proof.of(wrong.broken).verdict, Verdict::fails) << wrong.words;
+    EXPECT_NE(proof.of(wrong.broken).text.find(wrong.words), std::string::npos) << proof.of(wrong.broken).text;
+  }
+}
+
+constexpr const char* two_points = "  point pa on a\n  point pb on b\n  unit n on a\n  scalar F [N]\n";
+
+TEST(EffectLaws, ForcesThatAreNotOppositeAreTold) {
+  const auto text_of = [](const std::string& statements) {
+    return prove_blocks(derivation_of(two_points + statements)).front().proof.of(LawId::opposite).text;
+  };
+  EXPECT_EQ(text_of("  force on pa = F*unit(pa - pb)\n  force on pb = F*unit(pb - pa)\n"), "");
+  EXPECT_EQ(text_of("  force on pa = F*unit(pa - pb)\n  force on pb = F*unit(pa - pb)\n"),
+            "the forces add up to more than 0");
+  EXPECT_EQ(text_of("  force on pa = F*n\n  force on pb = -F*n\n"),
+            "the forces are opposite, but not on one line: they have a moment");
+  // The same with the torque that the lever leaves.
+  EXPECT_EQ(text_of("  force on pa = F*n\n  force on pb = -F*n\n  torque on b = cross(pb - pa, F*n)\n"), "");
+}
+
+// The notes of a check about power.
+std::string power_of(const std::string& force) {
+  const ReadResult read =
+      effect_in("  scalar d [N*m*s/rad]\n  coordinate q [rad] = angle(a) - angle(b)\n  force on q = " + force + "\n");
+  const CheckReport report = check(read);
+  EXPECT_TRUE(report.clean());
+  for (const Finding& finding : report.findings)
+    if (finding.kind == "power") return finding.message;
+  return "";
+}
+
+TEST(EffectLaws, DampersTakeEnergyAndMotorsPutItIn) {
+  EXPECT_NE(power_of("-d*rate(q)").find("only takes energy"), std::string::npos) << power_of("-d*rate(q)");
+  EXPECT_NE(power_of("-d*rate(q)*abs(rate(q))/(1 [rad/s])").find("only takes energy"), std::string::npos);
+  EXPECT_NE(power_of("d*rate(q)").find("can put energy in"), std::string::npos) << power_of("d*rate(q)");
+  EXPECT_NE(power_of("d*(3 [rad/s] - rate(q))").find("rate"), std::string::npos);
+  EXPECT_EQ(check(effect_in(damped_spring)).findings.size(), 1u);
+}
+
+}  // namespace
+}  // namespace cdot::derive
