@@ -75,4 +75,6 @@ void for_all(const std::function<void(const AnyBlock&, const Inputs&)>& law) {
   }
 }
 
+bool has_effects() { return std::ranges::any_of(blocks<double>(), &AnyBlock::is_effect); }
+
 }  // namespace cdot

@@ -35,4 +35,7 @@ void expect_near(const AnyBlock& block, std::string_view law, const Eigen::Matri
 // Checks the law for every block at several random inputs.
 void for_all(const std::function<void(const AnyBlock&, const Inputs&)>& law);
 
+// False where these laws run over specs without effects.
+bool has_effects();
+
 }  // namespace cdot

@@ -145,7 +145,9 @@ TEST(Laws, force_is_the_slope_of_the_energy) {
         [&](double s) -> Eigen::MatrixXd { return vector(evaluate_one(block, after(block, in, s)).of[law_energy]); });
     expect_near(block, "dE/dt = -F . Cdot", slope, -stored.transpose() * rate_at(block, in), 1e-8);
   });
-  EXPECT_GE(with_energy.size(), 3u) << "springs and gravity have energies";
+  if (has_effects()) {
+    EXPECT_GE(with_energy.size(), 3u) << "springs and gravity have energies";
+  }
 }
 
 // Along a motion with Cdot, and rates that change by lambda, the force changes by -k Cdot - d lambda.
@@ -165,5 +167,7 @@ TEST(Laws, slopes_are_the_differences_of_the_force) {
     const Eigen::MatrixXd moves = dense_jacobian(block, in) * vector(in.v);
     expect_near(block, "dF = -k dC - d dCdot", change, -k * moves - d * vector(in.lambda), 1e-7);
   });
-  EXPECT_GE(effects.size(), 6u) << "the effects of the catalogue";
+  if (has_effects()) {
+    EXPECT_GE(effects.size(), 6u) << "the effects of the catalogue";
+  }
 }

@@ -89,7 +89,9 @@ TEST(Physics, an_effect_without_world_keeps_momentum) {
     expect_near(block, "momentum, linear and angular, after a push", momentum(block, in, v), momentum(block, in, in.v),
                 1e-11);
   });
-  EXPECT_GE(free.size(), 3u) << "springs and servos act between two bodies";
+  if (has_effects()) {
+    EXPECT_GE(free.size(), 3u) << "springs and servos act between two bodies";
+  }
 }
 
 TEST(Physics, moving_all_bodies_together_changes_nothing) {
