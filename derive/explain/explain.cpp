@@ -85,9 +85,12 @@ void explain_rows(Lecture& lecture, const Part& part, Form form) {
   explain_form(lecture, part, form);
 
   Step& mass = lecture.section("The effective mass");
-  mass.say(
-      "K = J M^-1 J', with each body's inv_m and inv_I on the diagonal of M^-1. K lambda = -Cdot gives the impulse "
-      "lambda that makes Cdot vanish, J' lambda the impulse on the bodies.");
+  const std::string product = "K = J M^-1 J', with each body's inv_m and inv_I on the diagonal of M^-1. ";
+  mass.say(product + (lecture.joint.law
+                          ? "An impulse lambda along the rows is J' lambda on the bodies and changes Cdot "
+                            "by K lambda."
+                          : "K lambda = -Cdot gives the impulse lambda that makes Cdot vanish, J' lambda "
+                            "the impulse on the bodies."));
   multiply_mass(lecture, part, mass);
 
   Step& gamma = lecture.section("The acceleration level");

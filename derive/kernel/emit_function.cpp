@@ -120,16 +120,13 @@ FunctionWriter::FunctionWriter(const Joint& joint)
 // The leaves of a law are elements of C and of its rate.
 void FunctionWriter::name_inputs_of_law(const Joint& joint) {
   std::size_t row = 0;
-  const auto name = [&](const std::string& value, const std::string& rate) {
-    printing_.inputs[value] = element("C", row);
-    printing_.inputs[rate] = element("rate", row++);
+  const auto name = [&](const LawInput& input, const std::string& axis) {
+    if (input.value) printing_.inputs[input.value->symbol + axis] = element("C", row);
+    printing_.inputs[input.rate->symbol + axis] = element("rate", row++);
   };
   for (const LawInput& input : joint.law->inputs) {
-    if (!input.rate->vector) name(input.name, input.rate->symbol);
-    for (int k = 0; k < joint.dimension && input.rate->vector; ++k) {
-      const std::string axis = std::string("_") + "xyz"[k];
-      name(input.name + axis, input.rate->symbol + axis);
-    }
+    if (!input.rate->vector) name(input, "");
+    for (int k = 0; k < joint.dimension && input.rate->vector; ++k) name(input, std::string("_") + "xyz"[k]);
   }
   for (const char* name : {"E", "k", "d"}) printing_.reserved.insert(name);
 }

@@ -82,6 +82,9 @@ class PoseInputs {
   std::optional<LocalAxes> axes_;
 };
 
+// Adds energy, force, unstored and slopes.
+void plan_law(const Joint& joint, const DerivedLaw& law, std::vector<KernelFunction>& functions);
+
 // The default of a parameter that has one, in its own frame.
 DefaultValue plan_default(const Joint& joint, int index);
 

@@ -102,7 +102,9 @@ class Elaborator {
   LawInput& point_input(const std::string& name, const Value& point, Span where);
   LawInput& body_input(int body, bool turns, Span where);
   LawInput& turning_input(Expr leaf, Span where);
-  LawInput& add_input(const std::string& name, Row row, bool has_value);
+  LawInput& add_input(std::string name, Row row, bool has_value);
+  LawInput* input_of(const std::string& text);
+  Expr leaf_of_input(std::string name, bool vector_input);
   void check_law(Source& spec);
   // Checks at the end.
   void check_bodies(Source& spec);

@@ -25,12 +25,31 @@ bool fits(const Value& v, const Unit& unit) {
 
 }  // namespace
 
-LawInput& Elaborator::add_input(const std::string& name, Row row, bool has_value) {
-  const bool vector_input = row.C->vector;
-  const auto leaf = [&](const std::string& called) {
-    return vector_input ? pool_->vector_symbol(called, Role::given) : pool_->symbol(called, Role::given);
+// The input of a row with this text, if the law has one.
+LawInput* Elaborator::input_of(const std::string& text) {
+  const auto row = std::ranges::find(joint_.rows, text, &Row::text);
+  return row == joint_.rows.end() ? nullptr : &joint_.law->inputs[static_cast<std::size_t>(row - joint_.rows.begin())];
+}
+
+// A leaf that nobody else has: a parameter may be called length_rate.
+Expr Elaborator::leaf_of_input(std::string name, bool vector_input) {
+  const auto taken = [&](const std::string& symbol) {
+    const auto known = [&](const std::string& ending) { return static_cast<bool>(pool_->find(symbol + ending)); };
+    return known("") || known("_x") || known("_y") || known("_z");
   };
-  LawInput input{name, has_value ? leaf(name) : Expr(), leaf(name + "_rate"), row.unit, {}};
+  while (taken(name)) name += '_';
+  return vector_input ? pool_->vector_symbol(name, Role::given) : pool_->symbol(name, Role::given);
+}
+
+LawInput& Elaborator::add_input(std::string name, Row row, bool has_value) {
+  const auto is_taken = [&](const LawInput& other) { return other.name == name; };
+  while (std::ranges::any_of(joint_.law->inputs, is_taken)) name += '_';
+  const bool vector_input = row.C->vector;
+  LawInput input{name,
+                 has_value ? leaf_of_input(name, vector_input) : Expr(),
+                 leaf_of_input(name + "_rate", vector_input),
+                 row.unit,
+                 {}};
   Value value = scalar(input.value, row.unit), rate = scalar(input.rate, row.unit / Unit{.s = 1});
   if (vector_input) value.type = rate.type = Type::vector;
   if (has_value) law_values_.emplace(name, value);
@@ -59,9 +78,7 @@ void Elaborator::coordinate_of_effect(Source& source, const StatementAst& s, con
 
 // A point that a law names: its place, with a row for each of its components.
 LawInput& Elaborator::point_input(const std::string& name, const Value& point, Span where) {
-  auto& inputs = joint_.law->inputs;
-  const auto known = std::find_if(inputs.begin(), inputs.end(), [&](const LawInput& i) { return i.name == name; });
-  if (known != inputs.end()) return *known;
+  if (LawInput* const known = input_of(name)) return *known;
   Row row;
   row.C = point.e;
   row.unit = Unit{.m = 1};
@@ -76,16 +93,15 @@ LawInput& Elaborator::point_input(const std::string& name, const Value& point, S
 // The angle of a body, or the place of its centre. A turn in space has a rate but no value.
 LawInput& Elaborator::body_input(int body, bool turns, Span where) {
   const std::string name = (turns ? "angle_" : "centre_") + body_name(body);
-  auto& inputs = joint_.law->inputs;
-  const auto known = std::find_if(inputs.begin(), inputs.end(), [&](const LawInput& i) { return i.name == name; });
-  if (known != inputs.end()) return *known;
   const bool of_rate = turns && joint_.dimension == 3;
+  const std::string text = (turns ? of_rate ? "w(" : "angle(" : "x(") + body_name(body) + ")";
+  if (LawInput* const known = input_of(text)) return *known;
   Row row;
   row.kind = of_rate ? RowKind::velocity : RowKind::equality;
   row.C = of_rate ? body_spin(*pool_, body) : turns ? body_angle(*pool_, body) : body_position(*pool_, body);
   row.unit = turns ? Unit{.rad = 1} : Unit{.m = 1};
   row.where = where;
-  row.text = (turns ? of_rate ? "w(" : "angle(" : "x(") + body_name(body) + ")";
+  row.text = text;
   row.of_world = true;
   bodies_.emplace(body, where);
   return add_input(name, std::move(row), !of_rate);
@@ -93,10 +109,7 @@ LawInput& Elaborator::body_input(int body, bool turns, Span where) {
 
 // A direction or arm that turns with its body: its components along the world's axes are rows that only read.
 LawInput& Elaborator::turning_input(Expr leaf, Span where) {
-  const std::string name = leaf->symbol + "_world";
-  auto& inputs = joint_.law->inputs;
-  const auto known = std::find_if(inputs.begin(), inputs.end(), [&](const LawInput& i) { return i.name == name; });
-  if (known != inputs.end()) return *known;
+  if (LawInput* const known = input_of(leaf->symbol)) return *known;
   const auto parameter = std::find_if(joint_.parameters.begin(), joint_.parameters.end(),
                                       [&](const Parameter& p) { return p.symbol == leaf; });
   Row row;
@@ -106,7 +119,7 @@ LawInput& Elaborator::turning_input(Expr leaf, Span where) {
   row.text = leaf->symbol;
   row.of_world = true;
   bodies_.emplace(leaf->body, where);
-  return add_input(name, std::move(row), true);
+  return add_input(leaf->symbol + "_world", std::move(row), true);
 }
 
 // e with the leaves of bodies replaced by those of inputs.
@@ -175,13 +188,9 @@ void Elaborator::force(Source& source, const StatementAst& s) {
     names.find(on);
     in_law_ = false;
   }
-  const auto index_of = [&] {
-    const auto& inputs = joint_.law->inputs;
-    return static_cast<std::size_t>(
-        std::find_if(inputs.begin(), inputs.end(), [&](const LawInput& i) { return i.name == name; }) - inputs.begin());
-  };
-  const std::size_t at = index_of();
-  if (at == joint_.law->inputs.size())
+  const auto found = std::ranges::find(joint_.law->inputs, name, &LawInput::name);
+  const auto at = static_cast<std::size_t>(found - joint_.law->inputs.begin());  // law_value() may add inputs
+  if (found == joint_.law->inputs.end())
     return d.error(s.label.where, quote(on) + " is neither a coordinate of this effect nor a point of a body",
                    "declare it before: coordinate " + on + " [m] = ..., or point " + on + " on a");
   const Value v = law_value(source, s);
@@ -200,7 +209,7 @@ void Elaborator::force(Source& source, const StatementAst& s) {
 void Elaborator::check_law(Source& spec) {
   if (spec.diagnostics.has_errors()) return;
   const auto acts = [](const LawInput& input) { return static_cast<bool>(input.force); };
-  if (!joint_.law->energy && std::none_of(joint_.law->inputs.begin(), joint_.law->inputs.end(), acts))
+  if (!joint_.law->energy && std::ranges::none_of(joint_.law->inputs, acts))
     spec.diagnostics.error(spec.ast.name.where, "the effect has neither an energy nor a force: it does nothing",
                            "write energy ..., force on NAME = ..., or torque on BODY = ...");
 }

@@ -64,8 +64,9 @@ class EffectProver {
       }
       return true;
     };
-    if (!vanishes(total.translation)) law.text = "the forces add up to more than 0";
-    else if (!vanishes(total.rotation)) law.text = "the forces are opposite, but not on one line: they have a moment";
+    if (!vanishes(total.translation)) law.text = "momentum is not conserved: the forces do not add up to 0";
+    else if (!vanishes(total.rotation))
+      law.text = "angular momentum is not conserved: the forces are opposite, but not on one line";
     else law.verdict = shown ? Verdict::shown : Verdict::holds;
   }
 

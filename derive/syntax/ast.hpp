@@ -89,6 +89,9 @@ struct StatementAst {
   bool torque = false;  // force: `torque on BODY`
   Word keep;            // row: how many of its components, as written
   int first_token = 0, end_token = 0;
+
+  // A row of a joint, or a part of the law of an effect: it declares no name.
+  bool acts() const { return kind == Kind::row || kind == Kind::energy || kind == Kind::force; }
 };
 
 // A joint or an effect.

@@ -31,8 +31,8 @@ class JointParser {
   void spoil(std::size_t first) {
     auto& all = joint_.statements;
     for (std::size_t i = first; i < all.size(); ++i) all[i].declared.broken = true;
-    const auto is_row = [](const StatementAst& s) { return s.kind >= StatementAst::Kind::row; };
-    all.erase(std::remove_if(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(), is_row), all.end());
+    const auto acts = [](const StatementAst& s) { return s.acts(); };
+    all.erase(std::remove_if(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(), acts), all.end());
   }
 
   void statement() {
@@ -321,12 +321,11 @@ class JointParser {
     s.end_token = p_.position();
     if (s.end_token > s.first_token) s.where.end = p_.peek(-1).where.end;
     s.declared.where = s.include.where = s.where;
-    const bool law = s.kind == StatementAst::Kind::energy || s.kind == StatementAst::Kind::force;
-    const bool row = s.kind == StatementAst::Kind::row || law;
+    const bool acts = s.acts();
     const bool named = !s.declared.name.text.empty();
     const bool include = s.kind == StatementAst::Kind::include;
-    if (p_.failed() && (row || include)) return;
-    if (row || include || named) joint_.statements.push_back(std::move(s));
+    if (p_.failed() && (acts || include)) return;
+    if (acts || include || named) joint_.statements.push_back(std::move(s));
   }
 
   // The comment lines above the header; if there are none, those right under it.

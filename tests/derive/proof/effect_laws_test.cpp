@@ -73,6 +73,30 @@ TEST(EffectLaws, RejectWrongForcesAndSlopes) {
   }
 }
 
+// The quantities that a law reads have leaves of their own, whatever parameters and coordinates are called.
+TEST(EffectLaws, ReadNoParameterInPlaceOfARate) {
+  const auto symbols = [](const std::string& statements) {
+    const Derivation derivation = derivation_of(statements);
+    std::set<std::pair<std::string, Role>> found;
+    for (const Expr leaf : leaves_of(derivation.law->force)) found.emplace(leaf->symbol, leaf->role);
+    return found;
+  };
+  const auto of_rate = symbols(
+      "  point pa on a\n  scalar d [N*s/m]\n  scalar s_rate [m/s]\n  coordinate s [m] = dot(world.x, pa - x(b))\n"
+      "  force on s = -d*(rate(s) - s_rate)\n");
+  EXPECT_TRUE(of_rate.contains({"s_rate", Role::parameter}));
+  EXPECT_TRUE(of_rate.contains({"s_rate_", Role::given}));
+  const auto of_direction = symbols(
+      "  point pa on a\n  unit n on a\n  unit n_world on world\n  scalar F [N]\n  force on pa = F*(n - n_world)\n");
+  EXPECT_TRUE(of_direction.contains({"n_world", Role::world_vector}));
+  EXPECT_TRUE(of_direction.contains({"n_world__x", Role::given}));
+  // A coordinate with the name that the centre of a body would have.
+  const Derivation own_centre = derivation_of(
+      "  coordinate centre_a [m] = dot(world.x, x(a) - x(b))\n  scalar k [N/m]\n"
+      "  force on centre_a = -k*dot(world.x, x(a) - x(b))\n");
+  EXPECT_EQ(own_centre.rows.rows.size(), 1u + 2 + 2);
+}
+
 constexpr const char* two_points = "  point pa on a\n  point pb on b\n  unit n on a\n  scalar F [N]\n";
 
 TEST(EffectLaws, ForcesThatAreNotOppositeAreTold) {
@@ -81,9 +105,9 @@ TEST(EffectLaws, ForcesThatAreNotOppositeAreTold) {
   };
   EXPECT_EQ(text_of("  force on pa = F*unit(pa - pb)\n  force on pb = F*unit(pb - pa)\n"), "");
   EXPECT_EQ(text_of("  force on pa = F*unit(pa - pb)\n  force on pb = F*unit(pa - pb)\n"),
-            "the forces add up to more than 0");
+            "momentum is not conserved: the forces do not add up to 0");
   EXPECT_EQ(text_of("  force on pa = F*n\n  force on pb = -F*n\n"),
-            "the forces are opposite, but not on one line: they have a moment");
+            "angular momentum is not conserved: the forces are opposite, but not on one line");
   // The same with the torque that the lever leaves.
   EXPECT_EQ(text_of("  force on pa = F*n\n  force on pb = -F*n\n  torque on b = cross(pb - pa, F*n)\n"), "");
 }

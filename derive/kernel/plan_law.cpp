@@ -1,0 +1,36 @@
+// The functions of an effect's law. Their inputs are C, its rate, parameters and time.
+#include <algorithm>
+
+#include "derive/expression/components.hpp"
+#include "derive/kernel/factor.hpp"
+#include "derive/kernel/plan.hpp"
+
+namespace cdot::derive {
+
+void plan_law(const Joint& joint, const DerivedLaw& law, std::vector<KernelFunction>& functions) {
+  PoseInputs parameters(joint);
+  Components components;
+  const auto of = [&](Expr e) { return parameters.of(components.of(e)); };
+  const auto add = [&](std::string name, std::string summary, const std::vector<NamedExpr>& outputs) {
+    functions.push_back({std::move(name), std::move(summary), assemble(outputs), false, {}});
+  };
+  const auto elements = [&](const std::string& array, const std::vector<Expr>& numbers) {
+    std::vector<NamedExpr> outputs;
+    for (std::size_t i = 0; i < numbers.size(); ++i) outputs.push_back({element(array, i), of(numbers[i])});
+    return outputs;
+  };
+  if (law.energy) add("energy", "the energy E(C)", {{"E", of(law.energy)}});
+  add("force", "the force along each row", elements("F", law.force));
+  const bool works = std::ranges::any_of(law.unstored, [](Expr e) { return !is_zero(e); });
+  if (works && law.energy) add("unstored", "the part of the force without an energy", elements("F", law.unstored));
+  std::vector<NamedExpr> slopes;
+  for (std::size_t i = 0; i < law.force.size(); ++i) {
+    for (std::size_t j = 0; j < law.force.size(); ++j) {
+      slopes.push_back({element(element("k", i), j), of(law.stiffness[i][j])});
+      slopes.push_back({element(element("d", i), j), of(law.damping[i][j])});
+    }
+  }
+  add("slopes", "k = -dF/dC and d = -dF/d(rate)", slopes);
+}
+
+}  // namespace cdot::derive
