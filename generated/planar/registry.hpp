@@ -12,7 +12,9 @@
 #include <cdot/planar/gear_revolute_prismatic.hpp>
 #include <cdot/planar/gear_revolute_revolute.hpp>
 #include <cdot/planar/gravity_well.hpp>
+#include <cdot/planar/induction_motor.hpp>
 #include <cdot/planar/line.hpp>
+#include <cdot/planar/magnetic_field.hpp>
 #include <cdot/planar/max_distance.hpp>
 #include <cdot/planar/motor.hpp>
 #include <cdot/planar/prismatic.hpp>
@@ -62,6 +64,8 @@ using Joints = std::tuple<
 using Effects = std::tuple<
     drag,
     gravity_well,
+    induction_motor,
+    magnetic_field,
     servo,
     spring,
     thruster,

@@ -14,6 +14,8 @@ struct Work {
   double put_in = 0, taken = 0;
   // Work of a force that can only take. A part with the other sign is the method's own error.
   void take(double work) { taken += std::max(-work, 0.0); }
+  // Work of a force that can do either.
+  void give(double work) { (work > 0 ? put_in : taken) += std::abs(work); }
 };
 
 // dC/dt of one slot whose bias holds something else by now. C and J keep their values.
@@ -50,6 +52,25 @@ void work_of_parted_springs(const WorldData<S>& world, Batch<S>& batch, int slot
   }
 }
 
+// Effects whose impulse is that of what rates change, or the force at rest over h. C must be that of the kick.
+template <class S, class Lambda>
+void work_of_parted_effect(const WorldData<S>& world, Batch<S>& batch, int slot, Lambda lambda, bool of_rates,
+                           typename S::Scalar time, double h, Work& work) {
+  using T = typename S::Scalar;
+  constexpr T at_rest[most_rows] = {};
+  T drift[most_rows] = {}, whole[most_rows], unstored[most_rows];
+  if (batch.ops->explicit_time) find_drift(world, batch, slot, time, drift);
+  batch.law->force(batch, slot, at_rest, whole);
+  batch.law->unstored(batch, slot, at_rest, unstored);
+  double done = 0;
+  for (int r = 0; r < batch.ops->rows; ++r) {
+    const int i = slot * batch.ops->rows + r;
+    done += (of_rates ? double(lambda(i)) : h * double(unstored[r])) * double(batch.rate[i] + drift[r]);
+    work.put_in -= (of_rates ? double(lambda(i)) : h * double(whole[r])) * double(drift[r]);
+  }
+  work.give(done);
+}
+
 // Rows that are springs, given J v of the rate at which they acted and, in Batch::rate, of the mean velocity.
 template <class S, class Lambda>
 void work_of_springs(const WorldData<S>& world, Batch<S>& batch, int slot, const typename S::Scalar* acted,
@@ -59,17 +80,18 @@ void work_of_springs(const WorldData<S>& world, Batch<S>& batch, int slot, const
   T drift[most_rows] = {}, rate[most_rows], force[most_rows];
   if (batch.ops->explicit_time) find_drift(world, batch, slot, time, drift);
   for (int r = 0; r < rows; ++r) rate[r] = acted[r] + drift[r];
-  if (batch.law->unstored) batch.law->unstored(batch, slot, rate, force);
+  const bool of_effect = batch.law->is_of_effect();
+  if (of_effect) batch.law->unstored(batch, slot, rate, force);
   else find_damping(batch, slot, rate, force);
   double done = 0;
   for (int r = 0; r < rows; ++r) {
     const int i = slot * rows + r;
     const double of_row = h * double(force[r]) * double(batch.rate[i] + drift[r]);
-    if (batch.law->unstored) done += of_row;
+    if (of_effect) done += of_row;
     else work.take(of_row);
     work.put_in -= double(lambda(i)) * double(drift[r]);
   }
-  (done > 0 ? work.put_in : work.taken) += std::abs(done);
+  work.give(done);
 }
 
 // Whether a step exerts the impulses of rows in one kick or in two. Work that is only taken is that of both.
@@ -109,8 +131,11 @@ void work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S
     if (!batch.law) {
       for (int i = begin * rows; i < end * rows; ++i) work.put_in += double(of_row(i)) * double(batch.rate[i]);
     } else if (batch.law->spring && springs != Springs::whole) {
-      for (int slot = begin; slot < end; ++slot)
-        work_of_parted_springs(world, batch, slot, of_row, springs == Springs::dampers, time, work);
+      const bool dampers = springs == Springs::dampers;
+      for (int slot = begin; slot < end; ++slot) {
+        if (batch.law->is_of_effect()) work_of_parted_effect(world, batch, slot, of_row, dampers, time, h, work);
+        else work_of_parted_springs(world, batch, slot, of_row, dampers, time, work);
+      }
     } else if (batch.law->force) {
       const auto* const rates = acted(batch, begin, end);
       for (int slot = begin; slot < end; ++slot)
@@ -174,8 +199,9 @@ constexpr Kick kick_of(Impulses impulses) {
 
 constexpr Springs springs_of(Impulses impulses) {
   if (impulses == Impulses::euler || impulses == Impulses::soft || impulses == Impulses::drift) return Springs::whole;
-  return impulses == Impulses::rattle_start || impulses == Impulses::middle ? Springs::without_dampers
-                                                                            : Springs::dampers;
+  const bool in_kick =
+      impulses == Impulses::rattle_start || impulses == Impulses::rattle_end || impulses == Impulses::middle;
+  return in_kick ? Springs::without_dampers : Springs::dampers;
 }
 
 }  // namespace

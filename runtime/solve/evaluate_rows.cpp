@@ -100,7 +100,7 @@ void evaluate_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h)
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     if (batch.law) {
-      if (batch.law->unstored)
+      if (batch.law->is_of_effect())
         batch.ops->velocity(batch, segment.begin, segment.end, world.bodies.velocity.data(), batch.rate.data());
       batch.law->fill(batch, segment.begin, segment.end, h, world.settings);
     } else if (world.settings.drift == Drift::baumgarte) {

@@ -101,6 +101,15 @@ void evaluate_anew(WorldData<S>& world, Island<S>& island, typename S::Scalar ti
 }
 
 template <class S>
+void restore_drift(WorldData<S>& world, const Island<S>& island, const Segment<S>& segment) {
+  Batch<S>& batch = *segment.batch;
+  const int begin = segment.begin * batch.ops->rows, end = segment.end * batch.ops->rows;
+  if (batch.ops->explicit_time)
+    batch.ops->evaluate(batch, segment.begin, segment.end, world.bodies, island.evaluated_at);
+  else std::fill(batch.bias.begin() + begin, batch.bias.begin() + end, typename S::Scalar(0));
+}
+
+template <class S>
 void fill_lambda(const Island<S>& island, typename S::Scalar value) {
   for (const Segment<S>& segment : island.segments) {
     const int rows = segment.batch->ops->rows;
@@ -213,6 +222,7 @@ void project_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
   template void fill_lambda(const Island<S>&, S::Scalar);                           \
   template void scale_corrections(const Island<S>&, S::Scalar);                     \
   template void add_corrections(WorldData<S>&, Island<S>&, S::Scalar);              \
+  template void restore_drift(WorldData<S>&, const Island<S>&, const Segment<S>&);  \
   template void evaluate_anew(WorldData<S>&, Island<S>&, S::Scalar);                \
   template bool left_the_joints(const WorldData<S>&, const Island<S>&, S::Scalar);  \
   template void fail_if_open(const WorldData<S>&, Island<S>&, S::Scalar);           \

@@ -39,6 +39,9 @@ void add_corrections(WorldData<S>& world, Island<S>& island, typename S::Scalar 
 // Evaluates C, J and the inertias at the present poses. Keeps w at acceleration level, otherwise the angular momentum.
 template <class S>
 void evaluate_anew(WorldData<S>& world, Island<S>& island, typename S::Scalar time);
+// Restores dC/dt of evaluated rows in the bias, which a law has changed.
+template <class S>
+void restore_drift(WorldData<S>& world, const Island<S>& island, const Segment<S>& segment);
 
 // True if the direct solver failed to project the poses onto C = 0 although the start of the step satisfied C = 0 up to
 // `at_start`, and the remaining error is not the one that contradicting joints share. The step was too long for Newton,

@@ -4,6 +4,8 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/solve/projection.hpp"
+
 namespace cdot {
 
 template <class S>
@@ -20,6 +22,18 @@ void find_spring_impulses(Batch<S>& batch, int begin, int end, typename S::Scala
   for (int i = begin * rows; i < end * rows; ++i) batch.impulse[i] *= h;
 }
 
+// t R(r) at the start of a step of h: half of it, or less where the effect is stiff for the step.
+template <class S>
+static void push_effects(Batch<S>& batch, int begin, int end, typename S::Scalar h) {
+  for (int slot = begin; slot < end; ++slot) {
+    const EffectAtRates<S> now(batch, slot);
+    for (int r = 0; r < batch.ops->rows; ++r) {
+      const auto K = batch.factor[slot * batch.triangle() + r * (r + 1) / 2 + r];
+      batch.lambda[slot * batch.ops->rows + r] = dampers(now.bound[r], K, h, false).time_at_start * now.R[r];
+    }
+  }
+}
+
 template <class S>
 void push_dampers(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
@@ -28,6 +42,10 @@ void push_dampers(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
     Batch<S>& batch = *segment;
     if (!batch.law || !batch.law->spring) continue;
     batch.ops->velocity(batch, begin, end, v, batch.rate.data());
+    if (batch.law->is_of_effect()) {
+      push_effects(batch, begin, end, h);
+      continue;
+    }
     find_spring_impulses(batch, begin, end, h / 2);
     each_spring(batch, begin, end, [&](int i, const SpringNumbers<T>& spring, T K) {
       const T damping = -dampers(spring, K, h, false).start * (batch.rate[i] + batch.bias[i]);
@@ -38,10 +56,32 @@ void push_dampers(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
     if (batch->law && batch->law->spring) batch->ops->apply(*batch, begin, end, world.bodies, batch->lambda.data(), v);
 }
 
-#define CDOT_INSTANTIATE(S)                                           \
-  template void weigh_springs(const WorldData<S>&, const Island<S>&); \
-  template void find_spring_impulses(Batch<S>&, int, int, S::Scalar); \
-  template void push_dampers(WorldData<S>&, Island<S>&, S::Scalar);
+template <class S>
+void find_rates_of_effects(WorldData<S>& world, const Island<S>& island) {
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    if (batch->law && batch->law->is_of_effect())
+      batch->ops->velocity(*batch, begin, end, world.bodies.velocity.data(), batch->rate.data());
+}
+
+template <class S>
+void look_at_effects(WorldData<S>& world, const Island<S>& island, typename S::Scalar time) {
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    if (batch->law && batch->law->is_of_effect()) batch->ops->position(*batch, begin, end, world.bodies, time);
+}
+
+template <class S>
+void forget_dampers(WorldData<S>& world, const Island<S>& island) {
+  for (const Segment<S>& segment : island.segments)
+    if (segment.batch->law && segment.batch->law->is_of_effect()) restore_drift(world, island, segment);
+}
+
+#define CDOT_INSTANTIATE(S)                                                  \
+  template void weigh_springs(const WorldData<S>&, const Island<S>&);        \
+  template void find_spring_impulses(Batch<S>&, int, int, S::Scalar);        \
+  template void push_dampers(WorldData<S>&, Island<S>&, S::Scalar);          \
+  template void find_rates_of_effects(WorldData<S>&, const Island<S>&);      \
+  template void look_at_effects(WorldData<S>&, const Island<S>&, S::Scalar); \
+  template void forget_dampers(WorldData<S>&, const Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -123,6 +123,7 @@ void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   bound_rows(world, island, h);
   island.factored = false;
   island.solver->velocities(world, island, world.bodies.velocity.data(), typename S::Scalar(1));
+  forget_dampers(world, island);
 }
 
 #define CDOT_INSTANTIATE(S)                                                  \

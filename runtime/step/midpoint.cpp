@@ -111,6 +111,17 @@ void leave_middle(WorldData<S>& world, Island<S>& island) {
   island.factored = false;
 }
 
+// Books the forces of the middle, to whose poses C of effects belongs.
+template <class S>
+void book_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  if (island.works && has_effects(island)) {
+    drift(world, island, h / 2);
+    look_at_effects(world, island, typename S::Scalar(world.time) + h / 2);
+    drift(world, island, h);
+  }
+  book_kick(world, island, Impulses::middle, h);
+}
+
 // v' = 2 v_m - v
 template <class S>
 void double_middle(WorldData<S>& world, Island<S>& island) {
@@ -127,6 +138,7 @@ void double_middle(WorldData<S>& world, Island<S>& island) {
 template <class S>
 void bound_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   factorize_rows(world, island);
+  find_rates_of_effects(world, island);
   for (const auto& [batch, begin, end, whole] : island.segments) {
     if (!batch->law) continue;
     if (is_bounded(*batch)) {
@@ -219,7 +231,7 @@ bool take_part(WorldData<S>& world, Island<S>& island, typename S::Scalar h, boo
   }
   if (!found) return give_up();
   island.evaluated_at = T(world.time) + h / 2;
-  book_kick(world, island, Impulses::middle, h);
+  book_middle(world, island, h);
   double_middle(world, island);
   evaluate_anew(world, island, T(world.time) + h);
   restore_masses(world, island);
@@ -230,6 +242,7 @@ bool take_part(WorldData<S>& world, Island<S>& island, typename S::Scalar h, boo
   const double energy = moved_energy(world, island);
   begin_kick(world, island);
   const double loss = solve_end_of_part(world, island);
+  forget_dampers(world, island);
   if (!last && loss > slight_work<T> * energy && !hardly_moves(world, island, h)) return give_up();
   book_kick(world, island, Impulses::end, h);
   island.evaluated = true;

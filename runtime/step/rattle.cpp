@@ -133,12 +133,14 @@ void drift_with_renewed_directions(WorldData<S>& world, Island<S>& island, typen
 // Books the first half: at the poses of its start, to which J belongs.
 template <class S>
 void book_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
   if (!island.works) return;
   const auto swap_poses = [&] {
     for (size_t k = 0; k < island.bodies.size(); ++k)
       std::swap(world.bodies.pose[island.bodies[k]], island.flow.pose[k]);
   };
   swap_poses();
+  look_at_effects(world, island, T(world.time));
   book_kick(world, island, Impulses::rattle_start, h);
   swap_poses();
 }
@@ -190,6 +192,7 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     v = S::sum(S::sum({}, half, T(2)), start, T(-1));
     start = half;
   }
+  find_rates_of_effects(world, island);
   weigh_springs(world, island);
   begin_kick(world, island);
   kick(world, island, h / 2);

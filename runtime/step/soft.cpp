@@ -81,7 +81,7 @@ void fill_laws(WorldData<S>& world, Island<S>& island, typename S::Scalar h, Sof
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     if (!batch.law) continue;
-    if (batch.law->unstored)
+    if (batch.law->is_of_effect())
       batch.ops->velocity(batch, segment.begin, segment.end, world.bodies.velocity.data(), batch.rate.data());
     batch.law->fill(batch, segment.begin, segment.end, h, world.settings);
     if (!batch.law->error) continue;
@@ -106,10 +106,8 @@ void restore_rates(WorldData<S>& world, Island<S>& island) {
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     if (island.evaluated && !batch.law) continue;
-    const int begin = segment.begin * batch.ops->rows, end = segment.end * batch.ops->rows;
-    if (!island.evaluated || batch.ops->explicit_time)
-      batch.ops->evaluate(batch, segment.begin, segment.end, world.bodies, island.evaluated_at);
-    else std::fill(batch.bias.begin() + begin, batch.bias.begin() + end, typename S::Scalar(0));
+    if (island.evaluated) restore_drift(world, island, segment);
+    else batch.ops->evaluate(batch, segment.begin, segment.end, world.bodies, island.evaluated_at);
   }
 }
 

@@ -127,6 +127,8 @@ struct Law {
   // of springs and constant forces, whose dampers are all that is not stored.
   void (*unstored)(const Batch<S>&, int slot, const T* rate, T* force) = nullptr;
   bool in_time = false;  // the force depends on the time: its island never sleeps
+
+  bool is_of_effect() const { return unstored != nullptr; }
 };
 
 template <class S>

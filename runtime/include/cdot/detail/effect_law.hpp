@@ -88,19 +88,11 @@ struct EffectLaw {
     }
   }
 
-  // Stiffness as bounded; damping such that force(rate) = force(0) - d rate.
+  // Stiffness and damping as bounded.
   static void spring(const Batch<S>& batch, int slot, SpringNumbers<T>* numbers) {
-    constexpr T at_rest[rows] = {};
-    T rate[rows], moving[rows], resting[rows];
+    T rate[rows];
     rate_of(batch, slot, rate);
-    force(batch, slot, rate, moving);
-    force(batch, slot, at_rest, resting);
-    SpringNumbers<T> bound[rows];
-    bounds(batch, slot, rate, bound);
-    for (int r = 0; r < rows; ++r) {
-      const T secant = rate[r] == T(0) ? bound[r].d : (resting[r] - moving[r]) / rate[r];
-      numbers[r] = {bound[r].k, std::max(secant, T(0))};
-    }
+    bounds(batch, slot, rate, reinterpret_cast<SpringNumbers<T>(&)[rows]>(*numbers));
   }
 };
 
