@@ -3,17 +3,28 @@
 
 #include <cdot/planar/angle.hpp>
 #include <cdot/planar/angle_ratio.hpp>
+#include <cdot/planar/bearing_friction.hpp>
+#include <cdot/planar/bungee.hpp>
+#include <cdot/planar/buoyancy.hpp>
+#include <cdot/planar/bushing.hpp>
+#include <cdot/planar/damper.hpp>
+#include <cdot/planar/dc_motor.hpp>
 #include <cdot/planar/distance.hpp>
 #include <cdot/planar/drag.hpp>
 #include <cdot/planar/driven_crank.hpp>
+#include <cdot/planar/duffing_spring.hpp>
+#include <cdot/planar/gas_spring.hpp>
 #include <cdot/planar/gear.hpp>
 #include <cdot/planar/gear_on_base.hpp>
 #include <cdot/planar/gear_prismatic_prismatic.hpp>
 #include <cdot/planar/gear_revolute_prismatic.hpp>
 #include <cdot/planar/gear_revolute_revolute.hpp>
+#include <cdot/planar/gravity_between.hpp>
 #include <cdot/planar/gravity_well.hpp>
 #include <cdot/planar/induction_motor.hpp>
+#include <cdot/planar/lift.hpp>
 #include <cdot/planar/line.hpp>
+#include <cdot/planar/linear_actuator.hpp>
 #include <cdot/planar/magnetic_field.hpp>
 #include <cdot/planar/max_distance.hpp>
 #include <cdot/planar/motor.hpp>
@@ -23,13 +34,17 @@
 #include <cdot/planar/revolute.hpp>
 #include <cdot/planar/rolling.hpp>
 #include <cdot/planar/rope.hpp>
+#include <cdot/planar/rotational_drag.hpp>
 #include <cdot/planar/servo.hpp>
+#include <cdot/planar/shaker.hpp>
 #include <cdot/planar/sine_track.hpp>
 #include <cdot/planar/slot.hpp>
+#include <cdot/planar/soft_stop.hpp>
 #include <cdot/planar/spring.hpp>
 #include <cdot/planar/target.hpp>
 #include <cdot/planar/thruster.hpp>
 #include <cdot/planar/torsion_spring.hpp>
+#include <cdot/planar/viscous_drag.hpp>
 #include <cdot/planar/weld.hpp>
 #include <cdot/planar/wheel.hpp>
 #include <cdot/planar/wind.hpp>
@@ -62,14 +77,29 @@ using Joints = std::tuple<
     wheel>;
 
 using Effects = std::tuple<
+    bearing_friction,
+    bungee,
+    buoyancy,
+    bushing,
+    damper,
+    dc_motor,
     drag,
+    duffing_spring,
+    gas_spring,
+    gravity_between,
     gravity_well,
     induction_motor,
+    lift,
+    linear_actuator,
     magnetic_field,
+    rotational_drag,
     servo,
+    shaker,
+    soft_stop,
     spring,
     thruster,
     torsion_spring,
+    viscous_drag,
     wind>;
 
 }  // namespace cdot::planar

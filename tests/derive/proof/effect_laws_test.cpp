@@ -131,5 +131,18 @@ TEST(EffectLaws, DampersTakeEnergyAndMotorsPutItIn) {
   EXPECT_EQ(check(effect_in(damped_spring)).findings.size(), 1u);
 }
 
+// The powers of the rows cancel but for round-off, which is neither of both.
+TEST(EffectLaws, AForceAcrossTheVelocityHasNoPower) {
+  const auto power_of_force = [](const std::string& force) {
+    const ReadResult read = effect_in("  point pa on a\n  scalar c [kg/m]\n  force on pa = " + force + "\n");
+    for (const Finding& finding : check(read).findings)
+      if (finding.kind == "power") return finding.message;
+    return std::string();
+  };
+  EXPECT_NE(power_of_force("c*norm(v(pa))*perp(v(pa))").find("has no power"), std::string::npos);
+  EXPECT_NE(power_of_force("c*norm(v(pa))*(perp(v(pa)) + 1e-6*v(pa))").find("can put energy in"), std::string::npos);
+  EXPECT_NE(power_of_force("c*norm(v(pa))*(perp(v(pa)) - 1e-6*v(pa))").find("only takes energy"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace cdot::derive
