@@ -12,7 +12,7 @@ using effects::expect_orders;
 using effects::wheel;
 using effects::with;
 
-void run(World<double>& world, double duration, double h) {
+void run_in_steps(World<double>& world, double duration, double h) {
   const long steps = std::lround(1 / h);
   for (long n = 0; n < steps; ++n) EXPECT_TRUE(world.step(duration / static_cast<double>(steps)));
 }
@@ -23,7 +23,7 @@ double error_in_syrup(Integrator integrator, double h) {
   World<double> world(with(integrator));
   const int body = ball(world, 0, 0, vx, vy, m);
   world.add_joint({"viscous_drag", {body}, {{"pa", {0, 0}}, {"d", {d}}}, {}});
-  run(world, 1, h);
+  run_in_steps(world, 1, h);
   const double far = m / d * (1 - std::exp(-d / m));
   return std::hypot(world.pose(body).x - vx * far, world.pose(body).y - vy * far);
 }
@@ -36,7 +36,7 @@ double error_of_fan(Integrator integrator, double h) {
   World<double> world(with(integrator));
   const int fan = wheel(world, I, 0, w);
   world.add_joint({"rotational_drag", {fan}, {{"c", {c}}}, {}});
-  run(world, 1, h);
+  run_in_steps(world, 1, h);
   return std::abs(world.velocity(fan).w - w / (1 + c * std::abs(w) / I));
 }
 
@@ -48,7 +48,7 @@ double error_of_wing(Integrator integrator, double h) {
   World<double> world(with(integrator));
   const int wing = ball(world, 0, 0, speed, 0, m);
   world.add_joint({"lift", {wing}, {{"pa", {0, 0}}, {"c", {c}}}, {}});
-  run(world, 1, h);
+  run_in_steps(world, 1, h);
   return std::hypot(world.pose(wing).x - m / c * std::sin(angle), world.pose(wing).y - m / c * (1 - std::cos(angle)));
 }
 
@@ -60,7 +60,7 @@ double error_of_run_up(Integrator integrator, double h) {
   World<double> world(with(integrator));
   const int rotor = wheel(world, I);
   world.add_joint({"dc_motor", {rotor, world.ground()}, {{"stall", {stall}}, {"idle", {idle}}}, {}});
-  run(world, 1, h);
+  run_in_steps(world, 1, h);
   return std::abs(world.velocity(rotor).w - idle * (1 - std::exp(-stall / (I * idle))));
 }
 
@@ -73,7 +73,7 @@ double error_of_bearing(Integrator integrator, double h) {
   World<double> world(with(integrator));
   const int rotor = wheel(world, I, 0, start);
   world.add_joint({"bearing_friction", {rotor, world.ground()}, {{"most", {most}}, {"creep", {creep}}}, {}});
-  run(world, I / most * (G(start) - G(end)), h);
+  run_in_steps(world, I / most * (G(start) - G(end)), h);
   return std::abs(world.velocity(rotor).w - end);
 }
 
@@ -96,7 +96,7 @@ double error_of_shaker(Integrator integrator, double h) {
   World<double> world(with(integrator));
   const int body = ball(world, 0, 0, 0, 0, m);
   world.add_joint({"shaker", {body}, {{"pa", {0, 0}}, {"amplitude", {A[0], A[1]}}, {"omega", {W}}}, {}});
-  run(world, 1, h);
+  run_in_steps(world, 1, h);
   const double far = (1 - std::sin(W) / W) / (m * W);
   return std::hypot(world.pose(body).x - A[0] * far, world.pose(body).y - A[1] * far);
 }
@@ -112,7 +112,7 @@ double error_of_actuator(Integrator integrator, double h) {
                    {body, world.ground()},
                    {{"pa", {0, 0}}, {"pb", {0, 0}}, {"k", {k}}, {"rest", {rest}}, {"stroke", {stroke}}, {"omega", {W}}},
                    {}});
-  run(world, 1, h);
+  run_in_steps(world, 1, h);
   const double w = std::sqrt(k / m);
   return std::abs(world.pose(body).x - rest - k * stroke / (k - m * W * W) * (std::sin(W) - W / w * std::sin(w)));
 }

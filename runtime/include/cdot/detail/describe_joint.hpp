@@ -27,6 +27,7 @@ JointType describe_joint() {
   for (const ParameterInfo& info : type.parameters)
     type.parameter_size = std::max(type.parameter_size, info.offset + info.size);
   type.explicit_time = Joint::explicit_time;
+  if constexpr (requires { Joint::law_in_time; }) type.explicit_time |= Joint::law_in_time;
   type.is_effect = requires { Joint::is_effect; };
   return type;
 }
