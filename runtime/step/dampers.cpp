@@ -29,7 +29,7 @@ static void push_effects(Batch<S>& batch, int begin, int end, typename S::Scalar
     const EffectAtRates<S> now(batch, slot);
     for (int r = 0; r < batch.ops->rows; ++r) {
       const auto K = batch.factor[slot * batch.triangle() + r * (r + 1) / 2 + r];
-      batch.lambda[slot * batch.ops->rows + r] = dampers(now.bound[r], K, h, false).time_at_start * now.R[r];
+      batch.lambda[slot * batch.ops->rows + r] = now.time_at_start(r, K, h) * now.R[r];
     }
   }
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "runtime/state/world_data.hpp"
@@ -50,18 +51,46 @@ void find_force_of_rates(const Batch<S>& batch, int slot, const typename S::Scal
   for (int r = 0; r < batch.ops->rows; ++r) R[r] -= resting[r];
 }
 
-// The rows of an effect at its rates r = J v + dC/dt of Batch::rate.
+// As impulse per rate. With z = h d K and u = h^2 k K:
+//   start = h d min(1/2, 1/z),   end = h d - start + h^2 k max(0, 1 - 1/u)
+// Below z = 2 this is the trapezoidal rule. Above, it stops the motion, which the rule would reverse. The
+// last term, of `calm`, ends oscillations too fast for the step, u > 1.
+template <class T>
+struct Dampers {
+  T start, end;
+};
+template <class T>
+Dampers<T> dampers(const SpringNumbers<T>& spring, T K, T h, bool calm) {
+  const T mass = inverse(K), start = std::min(T(0.5) * h * spring.d, mass);
+  return {start, h * spring.d - start + (calm ? std::max(T(0), h * h * spring.k - mass) : T(0))};
+}
+
+// The rows of an effect at its rates r = J v + dC/dt of Batch::rate. K must be present.
 template <class S>
 struct EffectAtRates {
   using T = typename S::Scalar;
   T rate[most_rows], R[most_rows];
   SpringNumbers<T> bound[most_rows];  // of the slopes
+  T secant;                           // |R| / |r|, by the energies of the rows; 0 at rest
 
   EffectAtRates(const Batch<S>& batch, int slot) {
-    const int first = slot * batch.ops->rows;
-    for (int r = 0; r < batch.ops->rows; ++r) rate[r] = batch.rate[first + r] + batch.bias[first + r];
+    const int rows = batch.ops->rows, first = slot * rows;
+    for (int r = 0; r < rows; ++r) rate[r] = batch.rate[first + r] + batch.bias[first + r];
     batch.law->spring(batch, slot, bound);
     find_force_of_rates(batch, slot, rate, R);
+    T push = 0, motion = 0;
+    for (int r = 0; r < rows; ++r) {
+      const T K = batch.factor[slot * batch.triangle() + r * (r + 1) / 2 + r];
+      push += R[r] * R[r] * K, motion += K > T(0) ? rate[r] * rate[r] / K : T(0);
+    }
+    secant = motion > T(0) ? std::sqrt(push / motion) : T(0);
+  }
+
+  // The share of h in which R acts at the start. A force that saturates would reverse the motion if its slope alone
+  // set the time.
+  T time_at_start(int r, T K, T h) const {
+    const T d = std::max(bound[r].d, secant), half = T(0.5) * h;
+    return half * d * K > T(1) ? T(1) / (d * K) : half;
   }
 };
 
@@ -99,48 +128,96 @@ void bound_dampers(Batch<S>& batch, int begin, int end, typename S::Scalar h, bo
 template <class S>
 void forget_dampers(WorldData<S>& world, const Island<S>& island);
 
-// As impulse per rate. With z = h d K and u = h^2 k K:
-//   start = h d min(1/2, 1/z),   end = h d - start + h^2 k max(0, 1 - 1/u)
-// Below z = 2 this is the trapezoidal rule. Above, it stops the motion, which the rule would reverse. The
-// last term, of `calm`, ends oscillations too fast for the step, u > 1.
-template <class T>
-struct Dampers {
-  T start, end;
-  T time_at_start;  // start / d, the share of h in which the damper acts at the start
+// The end of a step of h for the rows of an effect, were they alone: rates p = r + K t R(p), by Newton's method with
+// the diagonal of K and of the slopes. t is the rest of h that the start left, end the impulse per rate.
+template <class S>
+struct EffectAtEnd {
+  using T = typename S::Scalar;
+  Batch<S>& batch;
+  const int slot, rows = batch.ops->rows;
+  const T h;
+  const bool calm;
+  T r[most_rows], p[most_rows], R[most_rows], d[most_rows], end[most_rows], t[most_rows];
+  T g[most_rows];  // p - r - K t R(p)
+
+  EffectAtEnd(Batch<S>& batch, int slot, T h, bool calm) : batch(batch), slot(slot), h(h), calm(calm) {
+    const EffectAtRates<S> now(batch, slot);
+    std::copy_n(now.rate, rows, r);
+    std::copy_n(now.rate, rows, p);
+    look(now);
+  }
+
+  // A force that saturates can throw Newton's method back and forth across its steep part: steps that do not bring the
+  // rates nearer are halved.
+  void find_rates() {
+    constexpr int most_rounds = 30, most_halvings = 20;
+    constexpr T enough = T(by_precision<T>(1e-4, 1e-6));  // the solver's own step squares it
+    T miss = size_of(g);
+    for (int round = 0; round < most_rounds && miss > enough * (size_of(r) + size_of(p)); ++round) {
+      T from[most_rows], step[most_rows];
+      std::copy_n(p, rows, from);
+      for (int c = 0; c < rows; ++c) step[c] = -g[c] / (T(1) + end[c] * own(c));
+      const T before = miss;
+      for (int k = 0; k < most_halvings && (k == 0 || !(miss < before)); ++k) {
+        for (int c = 0; c < rows; ++c) p[c] = from[c] + step[c] / T(1 << k);
+        look_at(p);
+        miss = size_of(g);
+      }
+      if (!(miss < before)) {
+        std::copy_n(from, rows, p);
+        look_at(p);
+        return;
+      }
+    }
+  }
+
+ private:
+  T own(int r) const { return batch.factor[slot * batch.triangle() + r * (r + 1) / 2 + r]; }
+
+  // By the energies of the rows.
+  T size_of(const T* rates) const {
+    T sum = 0;
+    for (int c = 0; c < rows; ++c) sum += rates[c] * rates[c] * (own(c) > T(0) ? inverse(own(c)) : T(1));
+    return std::sqrt(sum);
+  }
+
+  void look_at(const T* rates) {
+    T* const rate = batch.rate.data() + slot * rows;
+    T kept[most_rows];
+    std::copy_n(rate, rows, kept);
+    for (int c = 0; c < rows; ++c) rate[c] = rates[c] - batch.bias[slot * rows + c];
+    look(EffectAtRates<S>(batch, slot));
+    std::copy_n(kept, rows, rate);
+  }
+
+  void look(const EffectAtRates<S>& at) {
+    const T* const K = batch.factor.data() + slot * batch.triangle();
+    for (int c = 0; c < rows; ++c) {
+      const SpringNumbers<T>& bound = at.bound[c];
+      R[c] = at.R[c], d[c] = bound.d, t[c] = h - at.time_at_start(c, own(c), h);
+      end[c] = t[c] * d[c] + (calm ? std::max(T(0), h * h * bound.k - inverse(own(c))) : T(0));
+      g[c] = p[c] - r[c];
+    }
+    for (int c = 0; c < rows; ++c)
+      for (int k = 0; k < rows; ++k) g[c] -= K[k < c ? c * (c + 1) / 2 + k : k * (k + 1) / 2 + c] * t[k] * R[k];
+  }
 };
-template <class T>
-Dampers<T> dampers(const SpringNumbers<T>& spring, T K, T h, bool calm) {
-  const T mass = inverse(K), half = T(0.5) * h * spring.d, start = std::min(half, mass);
-  return {start, h * spring.d - start + (calm ? std::max(T(0), h * h * spring.k - mass) : T(0)),
-          start < half ? start / spring.d : T(0.5) * h};
-}
 
 // An effect's impulse at the end, t R(r') over the rest t of h, with R linear about a prediction p of r':
-//   lambda = t (R(p) + d (p - r')) - (end - t d) r'   gives   r' = t (R(p) + d p) / end - lambda / end,
-//   p = r + K t R(r), less where the effect is stiff for the step.
+//   lambda = t (R(p) + d (p - r')) - (end - t d) r'   gives   r' = t (R(p) + d p) / end - lambda / end.
 template <class S>
 void bound_effect(Batch<S>& batch, int slot, typename S::Scalar h, bool calm) {
   using T = typename S::Scalar;
-  const int rows = batch.ops->rows;
-  const T* const K = batch.factor.data() + slot * batch.triangle();
-  const EffectAtRates<S> now(batch, slot);
-  T end[most_rows], rest[most_rows], predicted[most_rows], R[most_rows];
-  std::copy_n(now.rate, rows, predicted);
-  for (int r = 0; r < rows; ++r) {
-    const T own = K[r * (r + 1) / 2 + r];
-    const Dampers<T> damper = dampers(now.bound[r], own, h, calm);
-    end[r] = damper.end, rest[r] = h - damper.time_at_start;
-    const T lambda = rest[r] * now.R[r] / (T(1) + end[r] * own);
-    for (int c = 0; c < rows; ++c) predicted[c] += lambda * K[c < r ? r * (r + 1) / 2 + c : c * (c + 1) / 2 + r];
-  }
-  find_force_of_rates(batch, slot, predicted, R);
-  for (int r = 0; r < rows; ++r) {
-    const int i = slot * rows + r;
-    const bool soft = end[r] > T(0);
-    batch.softness[i] = soft ? inverse(end[r]) : T(0);
-    batch.lower[i] = soft ? -std::numeric_limits<T>::infinity() : rest[r] * R[r];
-    batch.upper[i] = soft ? std::numeric_limits<T>::infinity() : rest[r] * R[r];
-    if (soft) batch.bias[i] -= rest[r] * (R[r] + now.bound[r].d * predicted[r]) / end[r];
+  EffectAtEnd<S> last(batch, slot, h, calm);
+  last.find_rates();
+  for (int r = 0; r < last.rows; ++r) {
+    const int i = slot * last.rows + r;
+    const T end = last.end[r], impulse = last.t[r] * last.R[r];
+    const bool soft = end > T(0);
+    batch.softness[i] = soft ? inverse(end) : T(0);
+    batch.lower[i] = soft ? -std::numeric_limits<T>::infinity() : impulse;
+    batch.upper[i] = soft ? std::numeric_limits<T>::infinity() : impulse;
+    if (soft) batch.bias[i] -= (impulse + last.t[r] * last.d[r] * last.p[r]) / end;
   }
 }
 

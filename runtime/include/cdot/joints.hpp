@@ -23,9 +23,10 @@ struct JointType {
   std::vector<RowKind> row_kinds;
   std::vector<ParameterInfo> parameters;
   std::vector<CoordinateInfo> coordinates;
-  int parameter_size;      // numbers in Parameters<T>
-  bool explicit_time;      // C or the force of an effect depends on t explicitly
-  bool is_effect = false;  // its rows are coordinates that its law pushes, not constraints
+  int parameter_size;           // numbers in Parameters<T>
+  bool explicit_time;           // C or the force of an effect depends on t explicitly
+  bool is_effect = false;       // its rows are coordinates that its law pushes, not constraints
+  bool without_energy = false;  // an effect with a force beside that of its energy, which may damp
 };
 
 enum class Dimension { planar, spatial };

@@ -147,7 +147,8 @@ bool acts_one_way(const CoordinateEffects& effects) {
 
 bool acts_one_way(Dimension dimension, const SceneJoint& joint) {
   const JointType& type = *find_joint_type(dimension, joint.definition.type);
-  return type.explicit_time || joint.breaking || (joint.definition.soft && damps(*joint.definition.soft)) ||
+  return type.explicit_time || type.without_energy || joint.breaking ||
+         (joint.definition.soft && damps(*joint.definition.soft)) ||
          std::any_of(type.row_kinds.begin(), type.row_kinds.end(),
                      [](RowKind kind) { return kind == RowKind::inequality; }) ||
          std::any_of(joint.effects.begin(), joint.effects.end(),

@@ -81,13 +81,19 @@ TEST(DrivingEffects, ABearingSlowsAWheel) { expect_orders("bearing_friction", 0.
 
 // Friction of a bearing lets a load creep at the speed where both are equal, though the step is long for its slope.
 TEST(DrivingEffects, ABearingCreepsUnderLoad) {
-  constexpr double most = 2, creep = 0.01, load = 1.2, share = load / most;
-  World<double> world(with(Integrator::euler));
-  const int rotor = wheel(world, 0.5);
-  world.add_joint({"bearing_friction", {rotor, world.ground()}, {{"most", {most}}, {"creep", {creep}}}, {}});
-  world.add_joint({"dc_motor", {rotor, world.ground()}, {{"stall", {load}}, {"idle", {1e9}}}, {}});
-  for (int n = 0; n < 600; ++n) ASSERT_TRUE(world.step(1.0 / 60));
-  EXPECT_NEAR(world.velocity(rotor).w, creep * share / std::sqrt(1 - share * share), 1e-9);
+  constexpr double most = 2, load = 1.2, share = load / most;
+  for (const Integrator integrator : {Integrator::euler, Integrator::rattle, Integrator::implicit}) {
+    for (const double creep : {0.1, 0.01, 1e-3, 1e-4}) {
+      World<double> world(with(integrator));
+      const int rotor = wheel(world, 0.5);
+      world.add_joint({"bearing_friction", {rotor, world.ground()}, {{"most", {most}}, {"creep", {creep}}}, {}});
+      world.add_joint({"dc_motor", {rotor, world.ground()}, {{"stall", {load}}, {"idle", {1e9}}}, {}});
+      for (int n = 0; n < 600; ++n) ASSERT_TRUE(world.step(1.0 / 60));
+      const double right = creep * share / std::sqrt(1 - share * share), w = world.velocity(rotor).w;
+      fmt::print("  {}, creep {}: {:.10f} rad/s of {:.10f}\n", name_of(integrators, integrator), creep, w, right);
+      EXPECT_NEAR(w / right, 1, 1e-6);
+    }
+  }
 }
 
 // x = A/(m W) (t - sin(W t)/W) from rest.

@@ -27,8 +27,13 @@ JointType describe_joint() {
   for (const ParameterInfo& info : type.parameters)
     type.parameter_size = std::max(type.parameter_size, info.offset + info.size);
   type.explicit_time = Joint::explicit_time;
-  if constexpr (requires { Joint::law_in_time; }) type.explicit_time |= Joint::law_in_time;
   type.is_effect = requires { Joint::is_effect; };
+  if constexpr (requires { Joint::is_effect; }) {
+    type.explicit_time |= Joint::law_in_time;
+    constexpr bool stores = requires { &Joint::template energy<double>; };
+    constexpr bool also_pushes = requires { &Joint::template unstored<double>; };
+    type.without_energy = also_pushes || !stores;
+  }
   return type;
 }
 
