@@ -1,4 +1,6 @@
 // Opens the accounts of a World, and books what changes it from outside.
+#include <algorithm>
+
 #include <cdot/spaces.hpp>
 
 #include "runtime/balance/balance.hpp"
@@ -34,8 +36,11 @@ void prepare_accounts(WorldData<S>& world) {
     works |= island.works;
     find_free_motions(world, island, at);
     if (island.floats) island.momentum.assign(7, -1.0);
-    if (works_on_accelerations(world.settings.integrator) && island.works) island.flow.work.assign(2, 0);
+    if (works_on_accelerations(world.settings.integrator) && island.works)
+      island.flow.work.assign(2 + world.sources.size(), 0);
   }
+  world.accounts.by_source.append(world.sources.size() - world.accounts.by_source.size(), 0.0);
+  world.work_by_source.resize(world.sources.size()), world.kept_by_source.resize(world.sources.size());
   const auto bodies = static_cast<size_t>(works ? world.bodies.count() : 0);
   world.start_of_kick.assign(bodies, {});
   world.mean_of_kick.assign(bodies, {});
@@ -45,12 +50,24 @@ void prepare_accounts(WorldData<S>& world) {
 }
 
 template <class S>
+void put_in(WorldData<S>& world, Source source, double work) {
+  world.accounts.put_in += work;
+  world.accounts.by_source[static_cast<size_t>(source)] += work;
+}
+
+template <class S>
+void take(WorldData<S>& world, Source source, double work) {
+  world.accounts.taken += work;
+  world.accounts.by_source[static_cast<size_t>(source)] -= work;
+}
+
+template <class S>
 void begin_accounts(WorldData<S>& world) {
   Accounts& accounts = world.accounts;
   if (!accounts.open || accounts.changed) {
     const Energy now = energy_of(world, world.one_slot);
     const double energy = now.kinetic + now.potential;
-    if (accounts.open) accounts.put_in += energy - accounts.before_change;
+    if (accounts.open) put_in(world, Source::outside, energy - accounts.before_change);
     else accounts.start = energy;
     accounts.open = true, accounts.changed = false;
     for (Island<S>& island : world.islands) island.levelled = false;
@@ -73,16 +90,20 @@ void note_change(WorldData<S>& world) {
 
 template <class S>
 void book_work(WorldData<S>& world, Island<S>& island) {
+  using T = typename S::Scalar;
   if (island.flow.work.empty()) return;
   world.accounts.put_in += double(island.flow.work[0]);
   world.accounts.taken += double(island.flow.work[1]);
-  island.flow.work[0] = island.flow.work[1] = 0;
+  for (size_t k = 2; k < island.flow.work.size(); ++k) world.accounts.by_source[k - 2] += double(island.flow.work[k]);
+  std::fill(island.flow.work.begin(), island.flow.work.end(), T(0));
 }
 
-#define CDOT_INSTANTIATE(S)                      \
-  template void prepare_accounts(WorldData<S>&); \
-  template void begin_accounts(WorldData<S>&);   \
-  template void note_change(WorldData<S>&);      \
+#define CDOT_INSTANTIATE(S)                            \
+  template void prepare_accounts(WorldData<S>&);       \
+  template void begin_accounts(WorldData<S>&);         \
+  template void put_in(WorldData<S>&, Source, double); \
+  template void take(WorldData<S>&, Source, double);   \
+  template void note_change(WorldData<S>&);            \
   template void book_work(WorldData<S>&, Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -46,6 +46,11 @@ void prepare_accounts(WorldData<S>& world);
 // and measures the momentum of islands that changed.
 template <class S>
 void begin_accounts(WorldData<S>& world);
+// Books work that is done at once.
+template <class S>
+void put_in(WorldData<S>& world, Source source, double work);
+template <class S>
+void take(WorldData<S>& world, Source source, double work);
 // Call before a change from outside.
 template <class S>
 void note_change(WorldData<S>& world);

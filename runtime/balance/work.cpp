@@ -11,11 +11,20 @@ namespace cdot {
 namespace {
 
 struct Work {
+  double* by_source;  // put in, less taken
   double put_in = 0, taken = 0;
+  void put(size_t source, double work) { put_in += work, by_source[source] += work; }
   // Work of a force that can only take. A part with the other sign is the method's own error.
-  void take(double work) { taken += std::max(-work, 0.0); }
+  void take(size_t source, double work) {
+    if (!(work >= 0)) taken -= work, by_source[source] += work;
+  }
   // Work of a force that can do either.
-  void give(double work) { (work > 0 ? put_in : taken) += std::abs(work); }
+  void give(size_t source, double work) {
+    if (work > 0) put(source, work);
+    else take(source, work);
+  }
+  void put(Source source, double work) { put(static_cast<size_t>(source), work); }
+  void take(Source source, double work) { take(static_cast<size_t>(source), work); }
 };
 
 // dC/dt of one slot whose bias holds something else by now. C and J keep their values.
@@ -47,8 +56,8 @@ void work_of_parted_springs(const WorldData<S>& world, Batch<S>& batch, int slot
   if (batch.ops->explicit_time) find_drift(world, batch, slot, time, drift);
   for (int r = 0; r < batch.ops->rows; ++r) {
     const int i = slot * batch.ops->rows + r;
-    if (dampers) work.take(double(lambda(i)) * double(batch.rate[i] + drift[r]));
-    work.put_in -= double(lambda(i)) * double(drift[r]);
+    if (dampers) work.take(batch.source, double(lambda(i)) * double(batch.rate[i] + drift[r]));
+    work.put(batch.source, -double(lambda(i)) * double(drift[r]));
   }
 }
 
@@ -66,9 +75,9 @@ void work_of_parted_effect(const WorldData<S>& world, Batch<S>& batch, int slot,
   for (int r = 0; r < batch.ops->rows; ++r) {
     const int i = slot * batch.ops->rows + r;
     done += (of_rates ? double(lambda(i)) : h * double(unstored[r])) * double(batch.rate[i] + drift[r]);
-    work.put_in -= (of_rates ? double(lambda(i)) : h * double(whole[r])) * double(drift[r]);
+    work.put(batch.source, -(of_rates ? double(lambda(i)) : h * double(whole[r])) * double(drift[r]));
   }
-  work.give(done);
+  work.give(batch.source, done);
 }
 
 // Rows that are springs, given J v of the rate at which they acted and, in Batch::rate, of the mean velocity.
@@ -88,10 +97,10 @@ void work_of_springs(const WorldData<S>& world, Batch<S>& batch, int slot, const
     const int i = slot * rows + r;
     const double of_row = h * double(force[r]) * double(batch.rate[i] + drift[r]);
     if (of_effect) done += of_row;
-    else work.take(of_row);
-    work.put_in -= double(lambda(i)) * double(drift[r]);
+    else work.take(batch.source, of_row);
+    work.put(batch.source, -double(lambda(i)) * double(drift[r]));
   }
-  work.give(done);
+  work.give(batch.source, done);
 }
 
 // Whether a step exerts the impulses of rows in one kick or in two. Work that is only taken is that of both.
@@ -109,8 +118,10 @@ void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& 
     const double before = kick == Kick::second ? double(batch.error[i]) : 0;
     const double done = double(lambda(i)) * double(batch.rate[i]) + before;
     if (kick == Kick::first) batch.error[i] = typename S::Scalar(done);
-    else if (batch.ops->explicit_time || (moves && guards[r].rate != 0)) work.put_in += done;
-    else if (moves || guards[r].one_sided()) work.take(done);
+    else if (moves && guards[r].rate != 0) work.put(Source::motor, done);
+    else if (batch.ops->explicit_time) work.put(batch.source, done);
+    else if (moves) work.take(Source::friction, done);
+    else if (guards[r].one_sided()) work.take(batch.source, done);
   }
 }
 
@@ -129,7 +140,7 @@ void work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S
     batch.ops->velocity(batch, begin, end, mean, batch.rate.data());
     const auto of_row = [&](int i) { return lambda(batch, i); };
     if (!batch.law) {
-      for (int i = begin * rows; i < end * rows; ++i) work.put_in += double(of_row(i)) * double(batch.rate[i]);
+      for (int i = begin * rows; i < end * rows; ++i) work.put(batch.source, double(of_row(i)) * double(batch.rate[i]));
     } else if (batch.law->spring && springs != Springs::whole) {
       const bool dampers = springs == Springs::dampers;
       for (int slot = begin; slot < end; ++slot) {
@@ -155,7 +166,7 @@ void work_of_stiffness(WorldData<S>& world, const Island<S>& island, const typen
     if (!batch.law || !batch.law->energy || batch.law->constants < 3) continue;
     for (int slot = segment.begin; slot < segment.end; ++slot)
       if (batch.constants[slot * batch.law->constants] != 0)
-        work.put_in += h * power_of_stiffness(world, batch, slot, v, world.one_slot, world.few);
+        work.put(batch.source, h * power_of_stiffness(world, batch, slot, v, world.one_slot, world.few));
   }
 }
 
@@ -171,10 +182,10 @@ void work_on_bodies(const WorldData<S>& world, const Island<S>& island, const ty
     const T linear = implicit_drag ? drag.linear / (T(1) + h * drag.linear) : drag.linear;
     const T angular = implicit_drag ? drag.angular / (T(1) + h * drag.angular) : drag.angular;
     const auto force = S::force(all.inverse_mass[drag.body], S::damped(acted[drag.body], linear, angular));
-    work.take(-double(h) * S::dot(force, mean[drag.body]));
+    work.take(Source::damping, -double(h) * S::dot(force, mean[drag.body]));
   }
   if constexpr (S::has_gyroscopes)
-    for (int i : island.bodies) work.put_in += double(h) * S::dot(S::damped(all.force[i], 0, 1), mean[i]);
+    for (int i : island.bodies) work.put(Source::torque, double(h) * S::dot(S::damped(all.force[i], 0, 1), mean[i]));
 }
 
 template <class S>
@@ -230,7 +241,7 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
   }
   const bool at_end = impulses == Impulses::euler || impulses == Impulses::soft;
   const auto* const acted = at_end ? v.data() : start.data();
-  Work work;
+  Work work{world.accounts.by_source.data()};
   const bool of_rows = impulses == Impulses::drift || impulses == Impulses::dampers || impulses == Impulses::end ||
                        impulses == Impulses::relaxed;
   if (!of_rows) work_on_bodies(world, island, start.data(), mean.data(), impulses != Impulses::middle, at_end, h, work);
@@ -249,7 +260,8 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
 template <class S>
 void find_power(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar* power) {
   using T = typename S::Scalar;
-  Work work;
+  std::fill(world.work_by_source.begin(), world.work_by_source.end(), 0);
+  Work work{world.work_by_source.data()};
   const auto* const v = world.bodies.velocity.data();
   work_on_bodies(world, island, v, v, true, false, T(1), work);
   work_of_rows(
@@ -261,6 +273,7 @@ void find_power(WorldData<S>& world, Island<S>& island, typename S::Scalar time,
       Springs::whole, Kick::only, time, 1, work);
   work_of_stiffness(world, island, v, 1, work);
   power[0] = T(work.put_in), power[1] = T(work.taken);
+  std::copy(world.work_by_source.begin(), world.work_by_source.end(), power + 2);
 }
 
 // The same over a step of Euler's method: K is still that of its start.
@@ -275,6 +288,7 @@ void book_stiffness(WorldData<S>& world, Island<S>& island) {
     batch.ops->effective_mass(batch, segment.begin, segment.end, world.bodies);
     for (int slot = segment.begin; slot < segment.end; ++slot) after += batch.law->energy(batch, slot);
     world.accounts.put_in += after - before;
+    world.accounts.by_source[batch.source] += after - before;
   }
 }
 

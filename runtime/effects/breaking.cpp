@@ -28,7 +28,7 @@ struct SwapSlots {
 template <class S>
 void break_joint(WorldData<S>& world, int joint) {
   JointRecord& record = world.joints[joint];
-  world.accounts.taken += potential_of(world, record, world.one_slot);
+  take(world, Source::breaking, potential_of(world, record, world.one_slot));
   record.broken = true;
   Island<S>& island = world.islands[world.island_of[movable_body(world, record)]];
   for (const Place& place : record.places) {

@@ -12,14 +12,28 @@
 namespace cdot {
 namespace {
 
+// Rows of effects on coordinates have the source of their kind, where work_of_bounded() tells motors from friction. All
+// others have that of their joint.
 template <class S>
-int find_batch(WorldData<S>& world, const BlockOps<S>* ops, const Law<S>* law, const std::vector<RowKind>& kinds) {
+size_t source_of(WorldData<S>& world, const Law<S>* law, std::string_view type) {
+  if (law && !law->reported && !law->is_of_effect())
+    return static_cast<size_t>(law->guard ? Source::limit : Source::spring);
+  const auto found = std::find(world.sources.begin(), world.sources.end(), type);
+  if (found != world.sources.end()) return static_cast<size_t>(found - world.sources.begin());
+  world.sources.push_back(type);
+  return world.sources.size() - 1;
+}
+
+template <class S>
+int find_batch(WorldData<S>& world, const BlockOps<S>* ops, const Law<S>* law, const std::vector<RowKind>& kinds,
+               std::string_view type) {
   for (size_t i = 0; i < world.batches.size(); ++i)
     if (world.batches[i]->ops == ops && world.batches[i]->law == law) return static_cast<int>(i);
   world.batches.push_back(std::make_unique<Batch<S>>());
   world.batches.back()->ops = ops;
   world.batches.back()->law = law;
   world.batches.back()->kinds = kinds;
+  world.batches.back()->source = source_of(world, law, type);
   return static_cast<int>(world.batches.size()) - 1;
 }
 
@@ -39,9 +53,10 @@ void add_rows(WorldData<S>& world, int joint, const BlockOps<S>* ops, const Law<
               std::span<const double> constants) {
   using T = typename S::Scalar;
   ops = ops->with(world.settings.kernels);
-  const int index = find_batch(world, ops, law, kinds);
-  Batch<S>& batch = *world.batches[index];
   JointRecord& record = world.joints[joint];
+  const std::string_view type = joint_types(S::dimension)[static_cast<size_t>(record.type)].name;
+  const int index = find_batch(world, ops, law, kinds, type);
+  Batch<S>& batch = *world.batches[index];
   record.added.add(index), record.added.add(ops->rows), record.added.add(ops->bodies);
   record.added.bytes(constants.data(), constants.size_bytes());
   record.places.push_back({index, batch.count()});

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -33,6 +35,11 @@ struct JointModel {
   std::vector<Place> places;  // the joint's rows, then its effects; empty if all bodies are immovable
   Hash added;                 // of its definition and effects at first
 };
+
+// Who puts work in or takes it. Rows of joints and of generated effects have a source for each joint type, after these.
+enum class Source : char { outside, damping, torque, spring, motor, friction, limit, breaking, sleep };
+inline constexpr std::string_view source_names[] = {
+    "changes from outside", "damping", "torque", "spring", "motor", "friction", "limit", "breaking", "sleep"};
 
 template <class S>
 struct Drag {
@@ -68,6 +75,7 @@ struct Model {
   std::vector<std::pair<int, double>> breaking_loads;  // by joint
   std::vector<Hook> after_substep;
   std::vector<Note> notes;
+  std::vector<std::string_view> sources{std::begin(source_names), std::end(source_names)};
 
   bool prepared = false;       // the members below and the order of slots are current
   std::vector<int> island_of;  // by body; -1: immovable

@@ -42,8 +42,8 @@ struct FlowState {
   StateArray<T> end_forces;            // of the joints, by row
   StateArray<T> rates;                 // of the numbers, [stage][...]
   StateArray<T> further_terms;         // of the interpolant, [term][...]
-  // Work since the start of that step, put in and taken [J]: two more numbers that the method integrates, after those
-  // of the bodies. Empty if nothing in the island does work.
+  // Work since the start of that step [J]: put in, taken, and by source as Accounts::by_source. More numbers that the
+  // method integrates, after those of the bodies. Empty if nothing in the island does work.
   StateArray<T> work;
 
   // Call after a change of the state from outside.
@@ -82,6 +82,7 @@ struct Accounts {
   StateNumber<bool> changed = false;  // from outside, since the last step
   StateNumber<double> start = 0.0, put_in = 0.0, taken = 0.0;
   StateNumber<double> before_change = 0.0;  // the energy then
+  StateArray<double> by_source;             // put in, less taken, by Model::sources
 };
 
 template <class S>

@@ -79,8 +79,9 @@ struct StateList {
     auto& [time, last_step, counts, accounts, gyroscopes] = static_cast<State<S>&>(world);
     visit.item("time", -1, true), visit(time), visit(last_step);  // must come first: Snapshot::time()
     visit.counts(counts);
-    auto& [open, changed, start, put_in, taken, before_change] = accounts;
+    auto& [open, changed, start, put_in, taken, before_change, by_source] = accounts;
     visit.item("accounts", -1, true), visit(start), visit(put_in), visit(taken), visit(before_change);
+    visit.item("accounts.by_source", -1, true), visit(by_source);
     visit.item("accounts.flags", -1, true), visit(open), visit(changed);
     visit.common_ends();
     visit.item("joints.broken", -1, true);

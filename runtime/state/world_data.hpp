@@ -39,8 +39,9 @@ struct WorldData : Model<S>, State<S>, Workspace {
   std::vector<std::byte> before;  // the State before the step, for roll_back()
   // For the accounts (runtime/balance), by body: velocities at the start of a kick, and their mean over it.
   std::vector<typename S::Velocity> start_of_kick, mean_of_kick;
-  Batch<S> one_slot;  // in which the potential of rows is evaluated
-  Bodies<S> few;      // those of one slot
+  std::vector<double> work_by_source, kept_by_source;  // scratch
+  Batch<S> one_slot;                                   // in which the potential of rows is evaluated
+  Bodies<S> few;                                       // those of one slot
 };
 
 // The joint's first movable body, which determines its island; -1: none.

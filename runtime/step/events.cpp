@@ -154,7 +154,7 @@ void stop_what_hits(WorldData<S>& world, Island<S>& island) {
       });
   const double before = kinetic_energy(world, island);
   solve(world, island, world.bodies.velocity.data());
-  world.accounts.taken += before - kinetic_energy(world, island);
+  take(world, Source::limit, before - kinetic_energy(world, island));
   for (const Segment<S>& segment : island.segments)
     for (int i = segment.begin * segment.batch->ops->rows; i < segment.end * segment.batch->ops->rows; ++i)
       segment.batch->correction[i] += segment.batch->lambda[i];
@@ -262,7 +262,7 @@ void choose_modes(WorldData<S>& world, Island<S>& island, typename S::Scalar tim
   const bool starts_motor = has_strong_motor(island);
   const double before = starts_motor ? kinetic_energy(world, island) : 0;
   project_velocities(world, island);
-  if (starts_motor) world.accounts.put_in += kinetic_energy(world, island) - before;
+  if (starts_motor) put_in(world, Source::motor, kinetic_energy(world, island) - before);
   note_rates(world, island);
   accelerate(world, island, time);
   find_resolution(world, island, h);

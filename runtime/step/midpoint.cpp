@@ -55,7 +55,7 @@ void drag(WorldData<S>& world, const Island<S>& island, typename S::Scalar h) {
     const auto energy = [&] { return 0.5 * S::dot(S::force(world.bodies.inverse_mass[drag.body], v), v); };
     const double before = energy();
     v = S::damped(v, std::exp(-h * drag.linear), std::exp(-h * drag.angular));
-    world.accounts.taken += before - energy();
+    take(world, Source::damping, before - energy());
   }
 }
 
@@ -213,9 +213,11 @@ bool take_part(WorldData<S>& world, Island<S>& island, typename S::Scalar h, boo
   const auto momentum = island.floats ? momentum_of(world, island) : MomentumOf<S>{};
   keep(world, island);
   const double put_in = world.accounts.put_in, taken = world.accounts.taken;
+  std::copy(world.accounts.by_source.begin(), world.accounts.by_source.end(), world.kept_by_source.begin());
   const auto give_up = [&] {
     go_back_to_kept(world, island);
     world.accounts.put_in = put_in, world.accounts.taken = taken;
+    std::copy(world.kept_by_source.begin(), world.kept_by_source.end(), world.accounts.by_source.begin());
     return false;
   };
   begin_kick(world, island);

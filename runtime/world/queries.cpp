@@ -234,6 +234,25 @@ Balance BasicWorld<S>::balance() const {
 }
 
 template <class S>
+std::vector<WorkOfSource> BasicWorld<S>::work_by_source() const {
+  const WorldData<S>& world = *data_;
+  const Accounts& accounts = world.accounts;
+  std::vector<WorkOfSource> sources;
+  for (size_t k = 0; k < accounts.by_source.size(); ++k) {
+    double work = accounts.by_source[k];
+    if (k == static_cast<size_t>(Source::outside) && accounts.changed) {
+      Batch<S> one_slot;
+      const Energy now = energy_of(world, one_slot);
+      work += now.kinetic + now.potential - accounts.before_change;
+    }
+    for (const Island<S>& island : world.islands)
+      if (!island.flow.work.empty()) work += double(island.flow.work[2 + k]);
+    if (work != 0) sources.push_back({world.sources[k], work});
+  }
+  return sources;
+}
+
+template <class S>
 int BasicWorld<S>::redundant_rows() const {
   int sum = 0;
   for (const auto& island : data_->islands) sum += island.redundant_rows;

@@ -93,7 +93,7 @@ void put_to_sleep(WorldData<S>& world, double h) {
       island.rested = 0;  // asks again after another sleep_after
       return false;
     }
-    world.accounts.taken += kinetic_energy(world, island);
+    take(world, Source::sleep, kinetic_energy(world, island));
     stop(world, island);
     return true;
   };

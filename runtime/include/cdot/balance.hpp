@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 namespace cdot {
 
@@ -31,6 +32,15 @@ struct Balance {
     int body = -1;                // the island's first
   };
   Momentum linear, angular;
+};
+
+// Work since the first step [J]: positive if put in, negative if taken.
+struct WorkOfSource {
+  // Of effects on coordinates the kind ("motor", "friction" with standing motors, "limit", "spring"); of effects from
+  // specs, ropes and joints that depend on time their type ("drag", "driven_crank"); "damping" and "torque" of bodies;
+  // "changes from outside", "breaking", "sleep".
+  std::string_view name;
+  double work;
 };
 
 // Follows the balance of a run and keeps its worst moment. Shares refer to a scale: the largest kinetic energy so far,

@@ -164,6 +164,8 @@ class BasicWorld {
   // The energy since the first step against the work done, and the momentum of free islands. Always kept; this call
   // costs about as much as energy().
   Balance balance() const;
+  // The same work by who did it, without those who did none; the sum is Balance::put_in - taken.
+  std::vector<WorkOfSource> work_by_source() const;
   // Rows that the direct solver found redundant in its last factorisation.
   int redundant_rows() const;
   // The weakest row of that factorisation.

@@ -57,6 +57,13 @@ std::string if_any(const BalanceWatch::Worst& worst, const char* what) {
   return fmt::format("{} within {:.2g} of its size", what, worst.share());
 }
 
+// "  work            motor 12.1 J, friction -3.9 J"
+std::string work_text(const std::vector<WorkOfSource>& sources) {
+  std::string text;
+  for (const auto& [name, work] : sources) text += fmt::format("{}{} {:.6g} J", text.empty() ? "" : ", ", name, work);
+  return text.empty() ? text : "  work            " + text + "\n";
+}
+
 text::Json json_of(const BalanceWatch::Worst& worst) {
   return {{"error", worst.amount}, {"scale", worst.scale}, {"time", worst.time}};
 }
@@ -79,18 +86,23 @@ std::string balance_warning(const Scene& scene, const RunResult& result) {
   return wrong_with(scene, result, small_share * scene.energy_tolerance).what;
 }
 
-std::string balance_text(const BalanceWatch& seen) {
+std::string balance_text(const RunResult& result) {
+  const BalanceWatch& seen = result.balance;
   std::string text = fmt::format(
       "  balance         {:.6g} J put in, {:.6g} J taken; the method's own at most {:.3g} J ({}), at t = {:.6g} s\n",
       seen.last.put_in, seen.last.taken, seen.energy.amount, percent(seen.energy.share()), seen.energy.time);
+  text += work_text(result.work);
   const std::string linear = if_any(seen.linear, "linear"), angular = if_any(seen.angular, "angular");
   if (!linear.empty() || !angular.empty())
     text += fmt::format("  momentum        {}{}{}\n", linear, linear.empty() || angular.empty() ? "" : ", ", angular);
   return text;
 }
 
-text::Json balance_json(const BalanceWatch& seen) {
+text::Json balance_json(const RunResult& result) {
+  const BalanceWatch& seen = result.balance;
   text::Json json = {{"put_in", seen.last.put_in}, {"taken", seen.last.taken}, {"method", json_of(seen.energy)}};
+  json["work"] = text::Json::object();
+  for (const auto& [name, work] : result.work) json["work"][std::string(name)] = work;
   if (seen.linear.scale > 0) json["momentum"] = json_of(seen.linear);
   if (seen.angular.scale > 0) json["angular_momentum"] = json_of(seen.angular);
   return json;

@@ -14,7 +14,7 @@ double worst_share(const BalanceWatch& balance);
 std::string balance_failure(const Scene& scene, const RunResult& result);
 std::string balance_warning(const Scene& scene, const RunResult& result);
 
-std::string balance_text(const BalanceWatch& balance);
-text::Json balance_json(const BalanceWatch& balance);
+std::string balance_text(const RunResult& result);
+text::Json balance_json(const RunResult& result);
 
 }  // namespace cdot

@@ -151,7 +151,7 @@ std::string summary_text(const Scene& asked, const RunResult& result) {
     text += fmt::format("  sensor          {}: {:.6g} to {:.6g} {}, {:.6g} at the end\n", sensor.name, range.least,
                         range.most, sensor.formula.unit(), range.end);
   }
-  text += balance_text(result.balance);
+  text += balance_text(result);
   if (result.error.samples > 0) text += error_text(scene, result.error);
   if (result.redundant_rows > 0) text += fmt::format("  redundant rows  {}\n", result.redundant_rows);
   const std::string losses = rank_losses_text(scene, result.rank_losses);
@@ -212,7 +212,7 @@ std::string summary_json(const Scene& asked, const RunResult& result) {
       {"energy_start", result.energy_start},
       {"energy_end", result.energy_end},
       {"energy_drift", result.energy_drift},
-      {"balance", balance_json(result.balance)},
+      {"balance", balance_json(result)},
       {"warning", balance_warning(scene, result)},
       {"trajectory_warning", trajectory_warning(scene, result)},
       {"accuracy_warning", warning_of_accuracy(scene, result)},

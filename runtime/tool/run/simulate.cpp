@@ -181,6 +181,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
       progress.show(fmt::format("{}{:3.0f} %  {:.4g} s of {:.4g} s", options.doing, 100 * after.time / scene.duration,
                                 after.time, scene.duration));
   }
+  result.work = world.work_by_source();
   rank.end();
   result.rank_losses = rank.found();
   result.worst_step = worst_step.found();

@@ -67,6 +67,7 @@ struct RunResult {
   double energy_start = 0, energy_end = 0,
          energy_drift = 0;           // [J]; drift: the largest |E - E_start|
   BalanceWatch balance;              // after every step
+  std::vector<WorkOfSource> work;    // of the whole run
   std::vector<SensorRange> sensors;  // of the scene
   WorstStep worst_step;
   TrajectoryError error;  // of fixed steps

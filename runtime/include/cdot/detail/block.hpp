@@ -136,6 +136,7 @@ struct BatchModel {
   const BlockOps<S>* ops = nullptr;
   const Law<S>* law = nullptr;  // null: exact rows, J v = -bias
   std::vector<RowKind> kinds;   // [rows]
+  size_t source = 0;            // of the work of these rows, in Model::sources
 };
 
 // Arrays by slot. Slots change places when a joint breaks.

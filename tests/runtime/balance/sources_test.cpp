@@ -1,0 +1,106 @@
+// Work by who did it: closed forms, and the sum is that of the balance.
+#include <cdot/methods.hpp>
+
+#include "tests/runtime/balance/method.hpp"
+#include "tests/runtime/spatial_support.hpp"
+
+namespace cdot::test {
+namespace {
+
+// RATTLE's first half step has no friction yet: M w h / 2.
+double allowed_of(const Method& method) { return method.order() == 1 ? 2e-2 : method.order() == 2 ? 2e-3 : 1e-6; }
+
+template <class S>
+double work_of(const BasicWorld<S>& world, std::string_view name) {
+  for (const WorkOfSource& source : world.work_by_source())
+    if (source.name == name) return source.work;
+  return 0;
+}
+
+template <class S>
+void expect_sum(const BasicWorld<S>& world, const std::string& what) {
+  const Balance balance = world.balance();
+  double sum = 0;
+  for (const WorkOfSource& source : world.work_by_source()) sum += source.work;
+  EXPECT_NEAR(sum, balance.put_in - balance.taken, 1e-11 * (1 + std::abs(balance.put_in) + balance.taken)) << what;
+}
+
+// A motor turns a wheel at w for a time t against friction M and drag c w^2: M w t and c w^3 t are taken, and the motor
+// puts in as much.
+TEST(WorkBySource, AMotorFeedsFrictionAndDrag) {
+  constexpr double w = 3, M = 0.7, c = 0.05, I = 2, duration = 1;
+  for (const Method& method : methods()) {
+    World<double> world(method.settings());
+    const int wheel = world.add_body({.w = w, .mass = 1, .inertia = I});
+    const int joint = revolute(world, world.ground(), wheel, 0, 0, 0, 0);
+    add_motor(world, joint, "angle", {.speed = w});
+    add_friction(world, joint, "angle", {.max_force = M});
+    world.add_joint({"rotational_drag", {wheel}, {{"c", {c}}}, {}});
+    for (int k = 0; k < 1000; ++k) ASSERT_TRUE(world.step(duration / 1000)) << method.name();
+    const double tolerance = allowed_of(method);
+    EXPECT_NEAR(work_of(world, "friction"), -M * w * duration, tolerance) << method.name();
+    EXPECT_NEAR(work_of(world, "rotational_drag"), -c * w * w * w * duration, tolerance) << method.name();
+    EXPECT_NEAR(work_of(world, "motor"), (M + c * w * w) * w * duration, tolerance) << method.name();
+    expect_sum(world, method.name());
+  }
+}
+
+// Each source of a mechanism with many of them, and the sum.
+TEST(WorkBySource, TheSumIsThatOfTheBalance) {
+  for (const Method& method : methods()) {
+    World<double> world(method.settings(-9.81));
+    const int rod_body =
+        world.add_body({.x = 0.5, .vy = 0.5, .w = 1, .mass = 2, .inertia = 0.2, .angular_damping = 0.3});
+    const int pin = revolute(world, world.ground(), rod_body, 0, 0, -0.5, 0);
+    add_spring(world, pin, "angle", {.softness = {.by_frequency = true, .frequency = 1, .damping_ratio = 0.2}});
+    add_limit(world, pin, "angle", {.lower = -0.4, .upper = 2});
+    world.add_joint({"shaker", {rod_body}, {{"pa", {0, 0}}, {"amplitude", {2, 0}}, {"omega", {3}}}, {}});
+    const int crank = world.add_body(rod(4, 0, 0));
+    world.add_joint({"driven_crank", {world.ground(), crank}, {{"pa", {4, 0}}, {"pb", {-0.5, 0}}, {"rate", {1}}}, {}});
+    for (int k = 0; k < 1000; ++k) {
+      if (k == 500) world.set_velocity(rod_body, {0, 1, 2});
+      ASSERT_TRUE(world.step(1e-3)) << method.name();
+    }
+    for (const char* name : {"changes from outside", "damping", "spring", "limit", "shaker", "driven_crank"})
+      EXPECT_NE(work_of(world, name), 0) << method.name() << " " << name;
+    for (const char* name : {"damping", "limit"}) EXPECT_LT(work_of(world, name), 0) << method.name() << " " << name;
+    expect_sum(world, method.name());
+  }
+}
+
+// A snapshot and what follows it give the same accounts as the run that was not interrupted.
+TEST(WorkBySource, SnapshotsKeepIt) {
+  for (const Method& method : methods()) {
+    World<double> world(method.settings(-9.81));
+    const int body = world.add_body(rod(0, 0, 0));
+    const int pin = revolute(world, world.ground(), body, 0, 0, -0.5, 0);
+    add_motor(world, pin, "angle", {.speed = 2, .max_force = 3});
+    for (int k = 0; k < 50; ++k) ASSERT_TRUE(world.step(0.01));
+    const auto kept = world.snapshot();
+    for (int k = 0; k < 50; ++k) ASSERT_TRUE(world.step(0.01));
+    const double there = work_of(world, "motor");
+    world.restore(kept);
+    EXPECT_NE(work_of(world, "motor"), there) << method.name();
+    for (int k = 0; k < 50; ++k) ASSERT_TRUE(world.step(0.01));
+    EXPECT_EQ(work_of(world, "motor"), there) << method.name();
+  }
+}
+
+// A torque in space has no potential.
+TEST(WorkBySource, InSpaceATorqueIsOne) {
+  for (const Method& method : methods()) {
+    SpatialWorld<double> world([&] {
+      Settings s = method.settings();
+      s.gravity_z = 0;
+      return s;
+    }());
+    const int body = world.add_body(brick(0, 0, 0));
+    world.set_force(body, {.torque_z = 2});
+    for (int k = 0; k < 100; ++k) ASSERT_TRUE(world.step(0.01)) << method.name();
+    EXPECT_GT(work_of(world, "torque"), 0) << method.name();
+    expect_sum(world, method.name());
+  }
+}
+
+}  // namespace
+}  // namespace cdot::test
