@@ -1,4 +1,4 @@
-// `cdot-run list`: the joints with their parameters and coordinates, or the keys of a scene.
+// `cdot-run list`: the joints and effects with their parameters and coordinates, or the keys of a scene.
 #include <fmt/format.h>
 
 #include <cdot/effects.hpp>
@@ -24,30 +24,36 @@ std::string body_name(const ParameterInfo& parameter) {
   return parameter.body < 0 ? "world" : std::string(1, static_cast<char>('a' + parameter.body));
 }
 
-std::string list_text(Dimension dimension) {
+std::string list_text(const JointType& type) {
   std::vector<const char*> effects;
   for (const EffectKind* kind : effect_kinds) effects.push_back(kind->key);
-  std::string text;
-  for (const JointType& type : joint_types(dimension)) {
-    text += fmt::format("{}  ({} {}, {} row{})\n", type.name, type.bodies, type.bodies == 1 ? "body" : "bodies",
-                        type.row_kinds.size(), type.row_kinds.size() == 1 ? "" : "s");
-    for (const ParameterInfo& parameter : type.parameters) {
-      const std::string body = body_name(parameter);
-      text +=
-          fmt::format("    {:<12} {} [{}]{}{}\n", parameter.name, kind_of(parameter), parameter.unit,
-                      body.empty() ? range_of(parameter) : " on " + body, parameter.has_default ? ", optional" : "");
-    }
-    for (const CoordinateInfo& coordinate : type.coordinates) {
-      text +=
-          fmt::format("    {:<12} coordinate [{}]: {}\n", coordinate.name, coordinate.unit, fmt::join(effects, ", "));
-    }
+  const char* body_or_bodies = type.bodies == 1 ? "body" : "bodies";
+  const size_t rows = type.row_kinds.size();
+  std::string text = type.is_effect ? fmt::format("{}  ({} {})\n", type.name, type.bodies, body_or_bodies)
+                                    : fmt::format("{}  ({} {}, {} row{})\n", type.name, type.bodies, body_or_bodies,
+                                                  rows, rows == 1 ? "" : "s");
+  for (const ParameterInfo& parameter : type.parameters) {
+    const std::string body = body_name(parameter);
+    text += fmt::format("    {:<12} {} [{}]{}{}\n", parameter.name, kind_of(parameter), parameter.unit,
+                        body.empty() ? range_of(parameter) : " on " + body, parameter.has_default ? ", optional" : "");
   }
+  for (const CoordinateInfo& coordinate : type.coordinates)
+    text += fmt::format("    {:<12} coordinate [{}]: {}\n", coordinate.name, coordinate.unit, fmt::join(effects, ", "));
   return text;
+}
+
+std::string list_text(Dimension dimension, const char* place) {
+  std::string joints, effects;
+  for (const JointType& type : joint_types(dimension)) (type.is_effect ? effects : joints) += list_text(type);
+  return fmt::format("Joints {0}\n\n{1}\nEffects {0}\n\n{2}", place, joints, effects);
 }
 
 void add_to(Json& list, Dimension dimension) {
   for (const JointType& type : joint_types(dimension)) {
-    Json joint = {{"type", type.name}, {"dimension", dimension == Dimension::planar ? 2 : 3}, {"bodies", type.bodies}};
+    Json joint = {{"type", type.name},
+                  {"dimension", dimension == Dimension::planar ? 2 : 3},
+                  {"bodies", type.bodies},
+                  {"effect", type.is_effect}};
     for (const RowKind kind : type.row_kinds) joint["rows"].push_back(row_kinds[static_cast<int>(kind)]);
     joint["parameters"] = Json::array();
     for (const ParameterInfo& parameter : type.parameters) {
@@ -66,8 +72,8 @@ void add_to(Json& list, Dimension dimension) {
 }
 
 std::string list_text() {
-  return "In the plane (dimension = 2)\n\n" + list_text(Dimension::planar) + "\nIn space (dimension = 3)\n\n" +
-         list_text(Dimension::spatial);
+  return list_text(Dimension::planar, "in the plane (dimension = 2)") + "\n" +
+         list_text(Dimension::spatial, "in space (dimension = 3)");
 }
 
 std::string list_json() {

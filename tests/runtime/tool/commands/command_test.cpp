@@ -96,6 +96,23 @@ TEST(Command, AFullDiskBehindStandardOutputIsNoSuccess) {
   }
 }
 
+TEST(Command, ListShowsEffectsInSectionsOfTheirOwn) {
+  const std::string text = cdot_run("list").out;
+  size_t from = 0;
+  for (const char* part :
+       {"Joints in the plane", "\nrevolute  (2 bodies, 2 rows)", "Effects in the plane", "\nservo  (2 bodies)\n",
+        "Joints in space", "\nrevolute_n1  (", "Effects in space", "\ndrag  ("}) {
+    const size_t at = text.find(part, from);
+    ASSERT_NE(at, std::string::npos) << part << " after " << text.substr(0, from);
+    from = at;
+  }
+  for (const auto& type : nlohmann::json::parse(cdot_run("list --json").out))
+    EXPECT_EQ(bool(type["effect"]),
+              std::filesystem::exists(scenes_dir().parent_path() / (type["dimension"] == 2 ? "planar" : "spatial") /
+                                      (std::string(type["type"]) + ".effect")))
+        << type;
+}
+
 TEST(Command, ListShowsJointsWithParametersAndCoordinates) {
   const CommandResult text = cdot_run("list");
   EXPECT_EQ(text.status, 0);
@@ -108,6 +125,7 @@ TEST(Command, ListShowsJointsWithParametersAndCoordinates) {
   EXPECT_EQ((*revolute)["parameters"][0]["name"], "pa");
   EXPECT_EQ((*revolute)["parameters"][0]["kind"], "point");
   EXPECT_EQ((*revolute)["coordinates"][0]["name"], "angle");
+  EXPECT_FALSE((*revolute)["effect"]);
 }
 
 TEST(Command, ListShowsTheKeysOfAScene) {
