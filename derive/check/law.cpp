@@ -58,9 +58,18 @@ Power power_at_random(const Joint& joint, const DerivedLaw& law, const std::vect
   return range;
 }
 
-}  // namespace
+void check_bounded(const Derivation& derivation, Findings& findings) {
+  for (std::size_t i = 0; i < derivation.bounded.size(); ++i) {
+    const BoundedRow& row = derivation.joint.law->bounded[i];
+    if (!row.rate) continue;
+    const bool drives = !is_zero(row.rate);
+    findings.add(Level::note, "power", row.where,
+                 drives ? "the row " + row.name + " prescribes a rate: its force can put energy in"
+                        : "the force of the row " + row.name + " only takes energy, while 0 lies within its bounds");
+  }
+}
 
-void check_law(const Derivation& derivation, const Proof& proof, Findings& findings) {
+void check_forces(const Derivation& derivation, const Proof& proof, Findings& findings) {
   const DerivedLaw& law = *derivation.law;
   const Span where = derivation.joint.rows.front().where;
   if (const Law& opposite = proof.of(LawId::opposite); !opposite.text.empty())
@@ -80,6 +89,13 @@ void check_law(const Derivation& derivation, const Proof& proof, Findings& findi
     findings.add(Level::note, "power", where,
                  fmt::format("the force without an energy can put energy in, for instance {:.2g} W{}{}", range.most,
                              range.at_most.empty() ? "" : " where ", range.at_most));
+}
+
+}  // namespace
+
+void check_law(const Derivation& derivation, const Proof& proof, Findings& findings) {
+  if (derivation.law) check_forces(derivation, proof, findings);
+  check_bounded(derivation, findings);
 }
 
 }  // namespace cdot::derive

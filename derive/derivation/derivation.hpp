@@ -71,14 +71,19 @@ struct DerivedLaw {
   // Of the force: -dF_i/d(value_j) and -dF_i/d(rate_j).
   std::vector<std::vector<Expr>> stiffness, damping;
 };
-DerivedLaw derive_law(const Joint& joint);
+
+// The prescribed rate of a bounded row, and its derivative by time.
+struct DerivedBound {
+  Expr rate, acceleration;  // empty for the ends of a coordinate
+};
 
 // A joint and all parts of its kernels, derived once: the same object is proved, planned, printed and explained.
 struct Derivation {
-  Joint joint;                     // without coordinates that an include brought and rows constrain
-  Block rows;                      // refers to rows of `joint`: a Derivation moves, but has no copies
-  std::vector<Block> coordinates;  // in the order of those of `joint`
-  std::optional<DerivedLaw> law;   // of an effect
+  Joint joint;                        // without coordinates that an include brought and rows constrain
+  Block rows;                         // refers to rows of `joint`: a Derivation moves, but has no copies
+  std::vector<Block> coordinates;     // in the order of those of `joint`
+  std::optional<DerivedLaw> law;      // of an effect with a force or an energy
+  std::vector<DerivedBound> bounded;  // in the order of those of `joint`
 
   explicit Derivation(Joint of) : joint(std::move(of)) {}
   Derivation(Derivation&&) = default;
@@ -121,6 +126,7 @@ std::vector<JacobianEntry> factors_of_velocities(Expr Cdot, const Joint& joint);
 std::vector<JacobianEntry> isolate_velocities(Expr Cdot, const Joint& joint);
 
 Derivation derive(Joint joint);
+void derive_law(Derivation& derivation);  // of an effect: `law` and `bounded`
 Block derive_rows(const Joint& joint, int immovable = -1);
 Block derive_coordinate(const Joint& joint, const Coordinate& coordinate, int immovable = -1);
 

@@ -115,8 +115,8 @@ Derivation derive(Joint joint) {
   Derivation d(std::move(joint));
   d.rows = derive_rows(d.joint);
   for (const Coordinate& c : d.joint.coordinates) d.coordinates.push_back(derive_coordinate(d.joint, c));
-  drop_constrained_coordinates(d);
-  if (d.joint.law) d.law = derive_law(d.joint);
+  if (!d.joint.law) drop_constrained_coordinates(d);
+  else derive_law(d);
   d.rows.variants = variants(d.joint, [&](int immovable) { return derive_rows(d.joint, immovable); });
   for (std::size_t i = 0; i < d.coordinates.size(); ++i) {
     d.coordinates[i].variants =

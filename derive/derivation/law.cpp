@@ -42,9 +42,7 @@ Expr slope(Expr e, Expr by, const Joint& joint) {
   return by ? time_derivative(e, joint, {.only = by}) : joint.pool->number(0);
 }
 
-}  // namespace
-
-DerivedLaw derive_law(const Joint& joint) {
+DerivedLaw law_of(const Joint& joint) {
   Pool& pool = *joint.pool;
   const Leaves leaves(joint);
   DerivedLaw law{leaves.value, leaves.rate, {}, {}, {}, {}, {}};
@@ -70,6 +68,15 @@ DerivedLaw derive_law(const Joint& joint) {
   law.force = std::move(forces);
   if (joint.law->energy) law.energy = energy;
   return law;
+}
+
+}  // namespace
+
+void derive_law(Derivation& derivation) {
+  const Joint& joint = derivation.joint;
+  if (!joint.law->inputs.empty()) derivation.law = law_of(joint);
+  for (const BoundedRow& row : joint.law->bounded)
+    derivation.bounded.push_back({row.rate, row.rate ? time_derivative(row.rate, joint) : Expr()});
 }
 
 }  // namespace cdot::derive

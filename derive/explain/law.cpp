@@ -18,10 +18,17 @@ std::vector<Chain> law_chains(const Lecture& lecture) {
 void explain_law(Lecture& lecture) {
   if (!lecture.joint.law) return;
   Step& step = lecture.section("The law");
-  step.say("The rows are no constraints: the effect pushes along them by a force F, J' F on the bodies.");
+  if (!lecture.joint.rows.empty())
+    step.say("The rows are no constraints: the effect pushes along them by a force F, J' F on the bodies.");
   for (Chain& chain : law_chains(lecture)) step.show(std::move(chain));
   if (lecture.joint.law->energy)
     step.say("The energy E adds its slope, -dE/dC, to the force along each row, and conserves what it stores.");
+  for (const BoundedRow& row : lecture.joint.law->bounded)
+    step.say(row.name + ", `" + row.text + "`: " +
+             (row.of_rate
+                  ? "a force along the coordinate " + row.coordinate +
+                        " keeps its rate, as far as its bounds allow. At a bound the coordinate slips."
+                  : "a force along the coordinate " + row.coordinate + " acts at an end only, and only away from it."));
 }
 
 }  // namespace cdot::derive

@@ -200,7 +200,9 @@ Formula row_of_J(const Statement& s) {
 void state_constraint(Lecture& lecture, const Part& part) {
   Step& step = lecture.section("Position constraint");
   if (part.statements.empty()) {
-    step.say("The joint has no row of its own: it only names coordinates, on which effects may act.");
+    step.say(lecture.joint.law
+                 ? "The effect constrains nothing: it acts along its coordinates."
+                 : "The joint has no row of its own: it only names coordinates, on which effects may act.");
   }
   if (!lecture.joint.lets.empty()) step.say("Names:");
   for (const Let& let : lecture.joint.lets) {

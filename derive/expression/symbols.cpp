@@ -84,13 +84,40 @@ bool is_word_of_cpp(std::string_view name) {
 }
 
 bool is_member_of_kernels(std::string_view name) {
-  static constexpr auto members = std::to_array<std::string_view>(
-      {"Coordinates", "Immovable",      "Jacobian",   "Parameters",    "apply",
-       "bodies",      "body_names",     "dense",      "default_value", "effective_mass",
-       "factor",      "explicit_time",  "gamma",      "jacobian",      "inverse_mass_jacobian",
-       "name",        "immovable_body", "parameters", "position",      "row_kinds",
-       "row_names",   "rows",           "solve",      "stiffness",     "time_derivative",
-       "title",       "unit",           "velocity"});
+  static constexpr auto members = std::to_array<std::string_view>({"Bounded",
+                                                                   "Coordinates",
+                                                                   "Immovable",
+                                                                   "Jacobian",
+                                                                   "Parameters",
+                                                                   "acts",
+                                                                   "apply",
+                                                                   "bodies",
+                                                                   "body_names",
+                                                                   "dense",
+                                                                   "energy",
+                                                                   "default_value",
+                                                                   "force",
+                                                                   "factor",
+                                                                   "effective_mass",
+                                                                   "explicit_time",
+                                                                   "gamma",
+                                                                   "jacobian",
+                                                                   "inverse_mass_jacobian",
+                                                                   "name",
+                                                                   "immovable_body",
+                                                                   "parameters",
+                                                                   "position",
+                                                                   "row_kinds",
+                                                                   "row_names",
+                                                                   "rows",
+                                                                   "slopes",
+                                                                   "solve",
+                                                                   "stiffness",
+                                                                   "title",
+                                                                   "time_derivative",
+                                                                   "unit",
+                                                                   "unstored",
+                                                                   "velocity"});
   return std::find(members.begin(), members.end(), name) != members.end();
 }
 

@@ -53,6 +53,7 @@ class KernelWriter {
     defaults();
     for (const KernelBlock& coordinate : kernel_.coordinates) coordinate_struct(coordinate);
     tuple("Coordinates", kernel_.coordinates, 1);
+    if (!kernel_.bounded.empty()) bounded();
     tuple("Immovable", kernel_.rows.variants, 1);
     line("};");
     variants(kernel_.rows, joint_.name);
@@ -111,7 +112,8 @@ class KernelWriter {
 
   // Rows without a force only tell the law where a direction points.
   void law_metadata() {
-    const DerivedLaw& law = *kernel_.derivation->law;
+    const Derivation& derivation = *kernel_.derivation;
+    const DerivedLaw law = derivation.law.value_or(DerivedLaw{});
     std::string acts;
     for (const Expr force : law.force)
       acts += std::string(acts.empty() ? "" : ", ") + (is_zero(force) ? "false" : "true");
@@ -235,6 +237,32 @@ class KernelWriter {
     block(coordinate, nullptr, 2);
     tuple("Immovable", coordinate.variants, 2);
     line("};", 1);
+  }
+
+  // A struct for each bounded row.
+  void bounded() {
+    std::string names;
+    for (const KernelBound& bound : kernel_.bounded) {
+      const BoundedRow& row = *bound.row;
+      const auto coordinate = std::ranges::find(joint_.coordinates, row.coordinate, &Coordinate::name);
+      const std::vector<Expr> numbers = {row.lower, row.upper, row.rate};
+      const bool in_time = std::ranges::any_of(numbers, [](Expr e) {
+        return e && std::ranges::any_of(leaves_of({&e, 1}), [](Expr leaf) { return leaf->role == Role::time; });
+      });
+      line("");
+      comment(1, row.name + ": " + row.text);
+      line("struct " + row.name + " {", 1);
+      line("static constexpr std::string_view name = " + literal(row.name) + ";", 2);
+      line(fmt::format("static constexpr int coordinate = {};", coordinate - joint_.coordinates.begin()), 2);
+      line(fmt::format("static constexpr bool of_rate = {}, in_time = {};", row.of_rate, in_time), 2);
+      out_ += fmt::format("\n{}// {}: {}\n", indent(2), bound.function.summary,
+                          derive::text(count(bound.function.program)));
+      for (const std::string& part : functions_.function(bound.function, 1, 2)) out_ += part + "\n";
+      line("};", 1);
+      names += (names.empty() ? "" : ", ") + row.name;
+    }
+    line("");
+    line("using Bounded = std::tuple<" + names + ">;", 1);
   }
 
   // `struct line::a_immovable : line`, with the members that differ.

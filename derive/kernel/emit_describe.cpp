@@ -13,7 +13,7 @@ std::vector<std::string> describe(const Kernel& kernel) {
   std::vector<std::string> lines = {joint.name + ": " + joint.title};
   if (!joint.source.empty()) lines.push_back("Source: " + joint.source);
   for (const std::vector<Chain>& part : summarise(*kernel.derivation)) {
-    lines.push_back("");
+    if (!part.empty()) lines.push_back("");
     for (const Chain& chain : part) {
       std::istringstream text(chain_text(chain, width));
       for (std::string line; std::getline(text, line);) lines.push_back(line);

@@ -34,7 +34,8 @@ const std::map<std::string, Signature>& signatures() {
       {"energy", {{"C", "p"}, "T& E"}},
       {"force", {{"C", "rate", "p", "time"}, "T (&F)[ROWS]"}},
       {"unstored", {{"C", "rate", "p", "time"}, "T (&F)[ROWS]"}},
-      {"slopes", {{"C", "rate", "p", "time"}, "T (&k)[ROWS][ROWS], T (&d)[ROWS][ROWS]"}}};
+      {"slopes", {{"C", "rate", "p", "time"}, "T (&k)[ROWS][ROWS], T (&d)[ROWS][ROWS]"}},
+      {"bounds", {{"C", "p", "time"}, "RowBounds<T>& B"}}};
   return table;
 }
 
@@ -128,7 +129,8 @@ void FunctionWriter::name_inputs_of_law(const Joint& joint) {
     if (!input.rate->vector) name(input, "");
     for (int k = 0; k < joint.dimension && input.rate->vector; ++k) name(input, std::string("_") + "xyz"[k]);
   }
-  for (const char* name : {"E", "k", "d"}) printing_.reserved.insert(name);
+  printing_.inputs[bounded_value] = "C[0]";
+  for (const char* name : {"B", "E", "k", "d"}) printing_.reserved.insert(name);
 }
 
 void FunctionWriter::name_inputs_of_body(const Joint& joint, std::size_t b) {
@@ -212,6 +214,7 @@ std::vector<std::string> FunctionWriter::function(const KernelFunction& f, std::
   std::string output = sized(signature.output, rows);
   const bool writes_jacobian = std::any_of(program.outputs.begin(), program.outputs.end(),
                                            [](const Output& o) { return o.name.starts_with("J."); });
+  if (program.outputs.empty()) output = replaced(output, "RowBounds<T>& B", "RowBounds<T>&");
   if (!writes_jacobian) output = replaced(output, "Jacobian<T>& J", "Jacobian<T>&");
   std::vector<std::string> lines = {indent(depth) + "template <class T>"};
   append(lines, wrapped(fmt::format("{}static void {}({}, {}) {{", indent(depth), name, list, output)));

@@ -380,6 +380,9 @@ Kernel plan(const Derivation& derivation) {
   for (const Block& coordinate : derivation.coordinates) {
     kernel.coordinates.push_back(plan_block(joint, coordinate, coordinate.name));
   }
+  for (std::size_t i = 0; i < derivation.bounded.size(); ++i) {
+    kernel.bounded.push_back(plan_bound(joint, joint.law->bounded[i], derivation.bounded[i]));
+  }
   for (std::size_t i = 0; i < joint.parameters.size(); ++i) {
     if (joint.parameters[i].default_value) {
       kernel.defaults.push_back(plan_default(joint, static_cast<int>(i)));

@@ -39,6 +39,12 @@ struct KernelBlock {
   std::vector<KernelBlock> variants;  // with one body immovable
 };
 
+// The bounds of a bounded row of an effect.
+struct KernelBound {
+  const BoundedRow* row = nullptr;
+  KernelFunction function;
+};
+
 struct DefaultValue {
   int parameter = 0;
   Program program;  // outputs "p.t_x", ...
@@ -48,6 +54,7 @@ struct Kernel {
   const Derivation* derivation = nullptr;  // every block is one of its blocks
   KernelBlock rows;
   std::vector<KernelBlock> coordinates;
+  std::vector<KernelBound> bounded;
   std::vector<DefaultValue> defaults;
 };
 
@@ -84,6 +91,9 @@ class PoseInputs {
 
 // Adds energy, force, unstored and slopes.
 void plan_law(const Joint& joint, const DerivedLaw& law, std::vector<KernelFunction>& functions);
+KernelBound plan_bound(const Joint& joint, const BoundedRow& row, const DerivedBound& derived);
+// The leaf of a coordinate in the bounds of its rows.
+inline constexpr const char* bounded_value = "value of the bounded coordinate";
 
 // The default of a parameter that has one, in its own frame.
 DefaultValue plan_default(const Joint& joint, int index);

@@ -1,5 +1,6 @@
 // The functions of an effect's law. Their inputs are C, its rate, parameters and time.
 #include <algorithm>
+#include <map>
 
 #include "derive/expression/components.hpp"
 #include "derive/kernel/factor.hpp"
@@ -31,6 +32,21 @@ void plan_law(const Joint& joint, const DerivedLaw& law, std::vector<KernelFunct
     }
   }
   add("slopes", "k = -dF/dC and d = -dF/d(rate)", slopes);
+}
+
+KernelBound plan_bound(const Joint& joint, const BoundedRow& row, const DerivedBound& derived) {
+  PoseInputs parameters(joint);
+  Components components;
+  const std::map<const Node*, Expr> own = {{&*row.value, joint.pool->symbol(bounded_value, Role::given)}};
+  std::vector<NamedExpr> outputs;
+  const auto add = [&](const char* name, Expr e) {
+    if (e) outputs.push_back({name, parameters.of(components.of(substitute(e, own)))});
+  };
+  add("B.lower", row.lower);
+  add("B.upper", row.upper);
+  if (row.of_rate && !is_zero(derived.rate)) add("B.rate", derived.rate), add("B.acceleration", derived.acceleration);
+  const char* const summary = row.of_rate ? "bounds of the force, and the rate" : "ends of the coordinate";
+  return {&row, {"bounds", summary, assemble(outputs), false, {}}};
 }
 
 }  // namespace cdot::derive

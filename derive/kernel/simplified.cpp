@@ -47,6 +47,7 @@ Kernel simplified(Kernel kernel, std::vector<CutShort>* cut_short, SearchBounds 
   KernelSearch search(bounds);
   search.simplify_functions(kernel.rows);
   for (KernelBlock& coordinate : kernel.coordinates) search.simplify_functions(coordinate);
+  for (KernelBound& bound : kernel.bounded) bound.function.program = search.simplified(bound.function.program);
   for (DefaultValue& value : kernel.defaults) value.program = search.simplified(value.program);
   if (cut_short != nullptr) *cut_short = std::move(search.cut_short);
   return kernel;

@@ -85,6 +85,7 @@ void Elaborator::statements(Source& source) {
       case StatementAst::Kind::coordinate: coordinate(source, s); break;
       case StatementAst::Kind::energy: energy(source, s); break;
       case StatementAst::Kind::force: force(source, s); break;
+      case StatementAst::Kind::bound: bound(source, s); break;
     }
   }
 }

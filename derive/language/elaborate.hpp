@@ -106,6 +106,11 @@ class Elaborator {
   LawInput* input_of(const std::string& text);
   Expr leaf_of_input(std::string name, bool vector_input);
   void check_law(Source& spec);
+  // elaborate_bound.cpp
+  void bound(Source& source, const StatementAst& s);
+  Expr bound_value(Source& source, const Ast& ast, const Unit& unit, const std::vector<Expr>& also);
+  const Coordinate* bounded_coordinate(Source& source, const Word& name);
+  void drop_idle_inputs();
   // Checks at the end.
   void check_bodies(Source& spec);
   void warn_unused(Source& spec);
@@ -131,7 +136,8 @@ class Elaborator {
   int row_count_ = 0;
   bool of_world_ = false;  // the statement has named a quantity of the world so far
   bool in_law_ = false;    // the statement is the law of an effect
-  std::map<std::string, Value, std::less<>> law_values_, law_rates_;  // by names of inputs
+  std::map<std::string, Value, std::less<>> law_values_, law_rates_;   // by names of inputs
+  std::map<std::string, Coordinate, std::less<>> bounded_candidates_;  // the coordinates of an effect
 };
 
 // Scope as one source sees them.

@@ -72,6 +72,9 @@ void Elaborator::coordinate_of_effect(Source& source, const StatementAst& s, con
   row.text = d.name.text + " = " + written(source, s);
   row.of_world = of_world_;
   joint_.uses_time |= depends_on_role(value.e, Role::time);
+  bounded_candidates_.emplace(
+      d.name.text,
+      Coordinate{d.name.text, value.e, unit, in_spec(source, d.name.where), written(source, s), "", {}, of_world_});
   add_input(d.name.text, std::move(row), true);
   enter(source, d.name.text, "coordinate", law_values_.at(d.name.text), d.name.where);
 }
@@ -209,9 +212,11 @@ void Elaborator::force(Source& source, const StatementAst& s) {
 void Elaborator::check_law(Source& spec) {
   if (spec.diagnostics.has_errors()) return;
   const auto acts = [](const LawInput& input) { return static_cast<bool>(input.force); };
-  if (!joint_.law->energy && std::ranges::none_of(joint_.law->inputs, acts))
-    spec.diagnostics.error(spec.ast.name.where, "the effect has neither an energy nor a force: it does nothing",
-                           "write energy ..., force on NAME = ..., or torque on BODY = ...");
+  if (!joint_.law->energy && std::ranges::none_of(joint_.law->inputs, acts) && joint_.law->bounded.empty())
+    spec.diagnostics.error(spec.ast.name.where,
+                           "the effect has neither an energy nor a force nor a row with bounds: it does nothing",
+                           "write energy ..., force on NAME = ..., NAME in [..., ...], or rate(NAME) = ...");
+  drop_idle_inputs();
 }
 
 }  // namespace cdot::derive

@@ -29,8 +29,9 @@ bool Elaborator::free_of_velocity(Source& source, const Ast& ast, const Value& v
 // [ NAME ":" ] [ "velocity" ] left ( "=" | "<=" | ">=" ) right [ "keep" NUMBER ]
 void Elaborator::row(Source& source, const StatementAst& s) {
   if (joint_.law)
-    return source.diagnostics.error(s.where, "an effect has no rows",
-                                    "write energy ..., force on NAME = ..., or torque on BODY = ...");
+    return source.diagnostics.error(s.where, "an effect has no rows without bounds",
+                                    "write energy ..., force on NAME = ..., NAME >= ..., NAME in [..., ...], or "
+                                    "rate(NAME) = ..., force in [..., ...]");
   const auto C = constraint(source, s);
   if (!C || !row_makes_sense(source, s, *C)) return;
   Row row;
@@ -205,7 +206,9 @@ void Elaborator::coordinate(Source& source, const StatementAst& s) {
 std::string Elaborator::written(const Source& source, const StatementAst& s) const {
   std::string out = s.velocity ? "velocity " : "";
   int end = -1;
-  const int begin = s.kind == StatementAst::Kind::row ? s.left.where.begin : s.declared.value->where.begin;
+  const int begin = s.kind == StatementAst::Kind::row     ? s.left.where.begin
+                    : s.kind == StatementAst::Kind::bound ? s.relation_where.begin
+                                                          : s.declared.value->where.begin;
   for (int i = s.first_token; i < s.end_token; ++i) {
     const Token& t = source.tokens.list[static_cast<std::size_t>(i)];
     if (t.where.begin < begin || t.kind == TokenKind::newline) continue;

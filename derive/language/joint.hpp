@@ -84,10 +84,24 @@ struct LawInput {
   Expr force;  // along it, without that of the energy; empty: none
 };
 
-// The law of an effect: generalised forces along the rows of its joint, F = force - dE/d(value).
+// A row with bounds on a coordinate of the effect: lower <= value <= upper, or a prescribed rate by a force within
+// [lower, upper]. A missing bound is infinite.
+struct BoundedRow {
+  std::string name;
+  std::string coordinate;  // among Joint::coordinates
+  bool of_rate = false;
+  Expr rate;          // prescribed; depends on parameters and time
+  Expr lower, upper;  // may depend on `value` too, if they are bounds of the force
+  Expr value;         // the leaf of the coordinate
+  Span where;
+  std::string text;  // as written, for people
+};
+
+// The law of an effect: generalised forces along the rows of its joint, F = force - dE/d(value), and rows with bounds.
 struct EffectLaw {
   std::vector<LawInput> inputs;
   Expr energy;  // empty: none
+  std::vector<BoundedRow> bounded;
 };
 
 // Folders, namespaces and headers of specs are named so.

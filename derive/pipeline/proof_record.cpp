@@ -106,6 +106,8 @@ std::string statement_of(const Derivation& derivation) {
   add(derivation.rows, text, expressions);
   for (const Block& coordinate : derivation.coordinates) add(coordinate, text, expressions);
   if (derivation.law) add(*derivation.law, text, expressions);
+  for (const DerivedBound& bound : derivation.bounded)
+    if (bound.rate) expressions.insert(expressions.end(), {bound.rate, bound.acceleration});
   return hash_of(text + text_of_graph(*joint.pool, expressions));
 }
 

@@ -73,8 +73,8 @@ class StatementPrinter {
       for (const char c : output) stem += std::string_view(letters).find(c) == std::string_view::npos ? '_' : c;
       return stem.replace(stem.find("__"), 2, "_");
     }
-    if (output.compare(0, 2, "J.") == 0) return output.substr(2);
-    if (output.compare(0, 2, "p.") == 0) return output.substr(2);
+    for (const char* object : {"J.", "p.", "B."})
+      if (output.starts_with(object)) return output.substr(2);
     if (open == std::string::npos) return output;
     const int i = std::stoi(output.substr(open + 1));
     if (output[0] != 'K' && output[0] != 'F') return output.substr(0, open) + std::to_string(i + 1);

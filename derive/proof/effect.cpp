@@ -10,7 +10,8 @@ class EffectProver {
   EffectProver(const Derivation& derivation)
       : joint_(derivation.joint),
         block_(derivation.rows),
-        law_(*derivation.law),
+        bounded_(derivation.bounded),
+        law_(derivation.law.value_or(DerivedLaw{})),
         names_(joint_, Algebra::Route::names),
         of_law_(joint_, Algebra::Route::names) {
     for (std::size_t b = 0; b < joint_.bodies.size(); ++b) names_.coordinates(static_cast<int>(b));
@@ -37,6 +38,17 @@ class EffectProver {
         require(law_.damping[i][j], i, law_.rate[j], j, "d");
       }
     }
+  }
+
+  // Of a prescribed rate.
+  void accelerations(Law& law) {
+    const Expr time = time_symbol(*joint_.pool);
+    for (std::size_t i = 0; i < bounded_.size(); ++i)
+      if (bounded_[i].rate && of_law_.is_zero(of_law_.of(bounded_[i].acceleration) - slope(bounded_[i].rate, time)) >
+                                  Algebra::Zero::shown) {
+        law.verdict = Verdict::fails;
+        law.text = joint_.law->bounded[i].name + ": the acceleration is not the derivative of the rate by time";
+      }
   }
 
   // The sum over rows of F times what the row feels of a common motion. F is written in C and its rate, so these take
@@ -75,7 +87,8 @@ class EffectProver {
 
   const Joint& joint_;
   const Block& block_;
-  const DerivedLaw& law_;
+  const std::vector<DerivedBound>& bounded_;
+  const DerivedLaw law_;
   Algebra names_, of_law_;
 };
 
@@ -83,8 +96,12 @@ class EffectProver {
 
 std::vector<Law> laws_of_effect(const Derivation& derivation) {
   EffectProver prover(derivation);
-  return {judged(LawId::force, [&](Law& law) { prover.force(law); }),
-          judged(LawId::slopes, [&](Law& law) { prover.slopes(law); }),
+  const auto slopes = [&](Law& law) {
+    prover.slopes(law);
+    prover.accelerations(law);
+  };
+  if (!derivation.law) return {judged(LawId::slopes, slopes)};
+  return {judged(LawId::force, [&](Law& law) { prover.force(law); }), judged(LawId::slopes, slopes),
           judged(LawId::opposite, [&](Law& law) { prover.opposite(law); })};
 }
 

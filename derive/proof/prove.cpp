@@ -328,7 +328,7 @@ Proof prove(const Joint& joint, const Block& block, std::int64_t slopes) { retur
 std::vector<Proved> prove_blocks(const Derivation& derivation) {
   const Joint& joint = derivation.joint;
   std::vector<Proved> all = {{"", {}, prove(joint, derivation.rows)}};
-  if (derivation.law) std::ranges::copy(laws_of_effect(derivation), std::back_inserter(all[0].proof.laws));
+  if (joint.law) std::ranges::copy(laws_of_effect(derivation), std::back_inserter(all[0].proof.laws));
   for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
     const Coordinate& coordinate = joint.coordinates[i];
     all.push_back({coordinate.name, coordinate.where, prove(joint, derivation.coordinates[i])});

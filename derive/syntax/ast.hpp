@@ -76,7 +76,7 @@ struct IncludeAst {
 
 // One statement of a spec. `include` and declarations have one item each: the parser splits lists.
 struct StatementAst {
-  enum class Kind { include, declare, let, coordinate, row, energy, force };
+  enum class Kind { include, declare, let, coordinate, row, energy, force, bound };
   Kind kind = Kind::row;
   Span where;
   IncludeAst include;
@@ -87,11 +87,14 @@ struct StatementAst {
   Span relation_where;
   Ast left, right;      // row; energy, force: the expression is `left`
   bool torque = false;  // force: `torque on BODY`
-  Word keep;            // row: how many of its components, as written
+  Word bounded;         // bound: the coordinate. `left` is its prescribed rate, if `of_rate`
+  bool of_rate = false;
+  std::optional<Ast> lower, upper;  // bound: of the coordinate, or of the force that prescribes its rate
+  Word keep;                        // row: how many of its components, as written
   int first_token = 0, end_token = 0;
 
   // A row of a joint, or a part of the law of an effect: it declares no name.
-  bool acts() const { return kind == Kind::row || kind == Kind::energy || kind == Kind::force; }
+  bool acts() const { return kind == Kind::row || kind == Kind::energy || kind == Kind::force || kind == Kind::bound; }
 };
 
 // A joint or an effect.

@@ -106,6 +106,13 @@ void work_of_springs(const WorldData<S>& world, Batch<S>& batch, int slot, const
 // Whether a step exerts the impulses of rows in one kick or in two. Work that is only taken is that of both.
 enum class Kick : char { only, first, second };
 
+// A rate of 0 by a force that may be 0 is friction, which can only take.
+template <class S>
+void work_of_rate(const Batch<S>& batch, const Guard<typename S::Scalar>& guard, double done, Work& work) {
+  if (guard.rate != 0 || batch.law->in_time || guard.lower > 0 || guard.upper < 0) work.put(batch.source, done);
+  else work.take(batch.source, done);
+}
+
 // Rows with bounds: motors put in, friction takes, limits and ropes take what hits them. Rows that are held on both
 // sides without a rate of their own do no work. Batch::error keeps the work of the first kick.
 template <class S, class Lambda>
@@ -118,6 +125,7 @@ void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& 
     const double before = kick == Kick::second ? double(batch.error[i]) : 0;
     const double done = double(lambda(i)) * double(batch.rate[i]) + before;
     if (kick == Kick::first) batch.error[i] = typename S::Scalar(done);
+    else if (moves && batch.law->of_spec) work_of_rate(batch, guards[r], done, work);
     else if (moves && guards[r].rate != 0) work.put(Source::motor, done);
     else if (batch.ops->explicit_time) work.put(batch.source, done);
     else if (moves) work.take(Source::friction, done);

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include <cdot/detail/block.hpp>
+#include <cdot/detail/bounded_law.hpp>
 
 namespace cdot {
 
@@ -63,14 +63,6 @@ T spring_force(T C, T rate, T K, const T* constants) {
 template <class T>
 double spring_stiffness(T K, const T* constants) {
   return double(spring_numbers(K, constants).k);
-}
-
-// The bias of an inequality row. For C > 0 it lets C shrink to 0 within the step, but not further. For C < 0 it feeds
-// back the share of C that Drift::baumgarte removes per step.
-template <class T>
-T unilateral_bias(T C, T h, const Settings& settings) {
-  const T share = settings.drift == Drift::baumgarte ? T(settings.baumgarte) : T(0);
-  return select(C > T(0), C, share * C) / h;
 }
 
 }  // namespace cdot

@@ -20,6 +20,18 @@ void find_known_forces(WorldData<S>& world, Batch<S>& batch, int begin, int end,
   }
 }
 
+// The bounds of specs may change: the forces of rows at a bound follow it, and held rows the prescribed rate.
+template <class S>
+void follow_bounds(Batch<S>& batch, int begin, int end) {
+  Guard<typename S::Scalar> guard[most_rows];
+  for (int i = begin; i < end; ++i) {  // a coordinate has one row
+    batch.law->guard(batch, i, guard);
+    batch.bias[i] -= guard->acceleration;
+    if (batch.mode[i] == Mode::pushed) batch.lower[i] = batch.upper[i] = guard->upper;
+    if (batch.mode[i] == Mode::pulled) batch.lower[i] = batch.upper[i] = guard->lower;
+  }
+}
+
 template <class S>
 void ask_for_gamma(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   ++world.counts->evaluations;
@@ -33,6 +45,7 @@ void ask_for_gamma(WorldData<S>& world, Island<S>& island, typename S::Scalar ti
     }
     batch.ops->gamma(batch, segment.begin, segment.end, world.bodies, time, batch.bias.data());
     for (int i = begin; i < end; ++i) batch.bias[i] = -batch.bias[i];
+    if (batch.law && batch.law->of_spec) follow_bounds(batch, segment.begin, segment.end);
   }
 }
 

@@ -16,7 +16,7 @@ namespace {
 // others have that of their joint.
 template <class S>
 size_t source_of(WorldData<S>& world, const Law<S>* law, std::string_view type) {
-  if (law && !law->reported && !law->is_of_effect())
+  if (law && !law->reported && !law->is_of_effect() && !law->of_spec)
     return static_cast<size_t>(law->guard ? Source::limit : Source::spring);
   const auto found = std::find(world.sources.begin(), world.sources.end(), type);
   if (found != world.sources.end()) return static_cast<size_t>(found - world.sources.begin());
@@ -115,10 +115,20 @@ int add_coordinate_row(WorldData<S>& world, int joint, std::string_view coordina
   return static_cast<int>(record.places.size()) - 1;
 }
 
+template <class S>
+void add_bounded_rows(WorldData<S>& world, int joint) {
+  const JointRecord& record = world.joints[joint];
+  const JointEntry<S>& entry = joint_entries<S>()[record.type];
+  for (const BoundedEntry<S>& row : entry.bounded)
+    add_rows(world, joint, entry.coordinates[row.coordinate].choose(world.bodies, record.bodies), row.law,
+             {RowKind::equality}, {});
+}
+
 #define CDOT_INSTANTIATE(S)                                                                                      \
   template void add_rows(WorldData<S>&, int, const BlockOps<S>*, const Law<S>*, std::vector<RowKind>,            \
                          std::span<const double>);                                                               \
   template int add_coordinate_row(WorldData<S>&, int, std::string_view, const Law<S>*, std::span<const double>); \
+  template void add_bounded_rows(WorldData<S>&, int);                                                            \
   template void check_joint(const WorldData<S>&, int);                                                           \
   template int coordinate_index<S>(int, std::string_view);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)

@@ -17,6 +17,10 @@ template <class S>
 int add_coordinate_row(WorldData<S>& world, int joint, std::string_view coordinate, const Law<S>* law,
                        std::span<const double> constants);
 
+// Adds the bounded rows of an effect.
+template <class S>
+void add_bounded_rows(WorldData<S>& world, int joint);
+
 // Throws Error if the joint does not exist.
 template <class S>
 void check_joint(const WorldData<S>& world, int joint);

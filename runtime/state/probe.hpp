@@ -282,6 +282,25 @@ void check_values(Probe<S>& probe, const JointType& type, const JointRecord& rec
   }
 }
 
+// Throws Error if a bounded row has a bound without a value, or its lower bound above its upper one.
+template <class S>
+void check_bounds(const WorldData<S>& world, const JointRecord& record) {
+  const JointType& type = joint_types(S::dimension)[record.type];
+  Probe<S> probe(world);
+  const std::vector<typename S::Scalar> numbers(record.parameters.begin(), record.parameters.end());
+  for (const BoundedEntry<S>& row : joint_entries<S>()[record.type].bounded) {
+    check_value(world, record, row.coordinate);
+    probe.look_at(record, row.coordinate);
+    RowBounds<typename S::Scalar> B;
+    row.bounds(typename S::Scalar(probe.C(0)), numbers.data(), typename S::Scalar(world.time), B);
+    if (!(B.lower <= B.upper) || !std::isfinite(B.rate))
+      throw Error(
+          fmt::format("row `{}` of effect `{}` has bounds from {:.6g} to {:.6g}: the lower one must not lie "
+                      "above the upper one{}",
+                      row.name, type.name, double(B.lower), double(B.upper), scalars_of(type, record.parameters)));
+  }
+}
+
 // Throws Error if a row has no value here, jumps here, has its kink at C = 0, or holds nowhere. Velocity rows have no
 // C. A soft row is a spring and may have a kink.
 template <class S>
@@ -290,6 +309,7 @@ void check_rows(const WorldData<S>& world, const JointRecord& record, bool soft)
   Probe<S> probe(world);
   probe.look_at(record);
   check_values(probe, type, record);
+  check_bounds(world, record);
   probe.look_at(record);
   if (const int row = probe.jumping_row(); row >= 0)
     throw Error(fmt::format("row {} of joint `{}` has no value here: {}", row + 1, type.name, why_it_jumps));

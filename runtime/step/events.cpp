@@ -186,7 +186,7 @@ bool offer_bounds(WorldData<S>& world, Island<S>& island) {
           batch.mode[i] = Mode::off;
           batch.lower[i] = batch.upper[i] = 0;
         } else if (!guard.one_sided() && !slow) {
-          batch.mode[i] = Mode::pushed;
+          batch.mode[i] = missing > T(0) ? Mode::pushed : Mode::pulled;
           batch.lower[i] = batch.upper[i] = missing > T(0) ? guard.upper : guard.lower;
         }
       });
@@ -204,7 +204,7 @@ void decide_by_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar
     if (batch.mode[i] != Mode::held) return;
     const T force = batch.lambda[i];
     if (!guard.bilateral() && (force <= batch.lower[i] || force >= batch.upper[i])) {
-      batch.mode[i] = guard.one_sided() ? Mode::off : Mode::pushed;
+      batch.mode[i] = guard.one_sided() ? Mode::off : force >= batch.upper[i] ? Mode::pushed : Mode::pulled;
       batch.lower[i] = batch.upper[i] = force;
     } else {
       batch.lower[i] = -infinite<T>;
@@ -224,8 +224,9 @@ typename S::Scalar margin_of(const Batch<S>& batch, int i, const Guard<typename 
     case Mode::held:
       return std::min(force - guard.lower, guard.upper - force) / (resolution.force + slight<T> * std::abs(force));
     case Mode::pushed:
+    case Mode::pulled:
       if (guard.lower == guard.upper) return infinite<T>;
-      return (force == guard.upper ? guard.rate - rate : rate - guard.rate) / resolution.rate;
+      return (batch.mode[i] == Mode::pushed ? guard.rate - rate : rate - guard.rate) / resolution.rate;
     case Mode::bounded: break;
   }
   return infinite<T>;

@@ -64,15 +64,15 @@ void look_at_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h
   }
 }
 
-// The error of limits, motors and friction in the step, as a rate into Batch::impulse, and the bounds of their impulse.
-// The mean velocity has the speed of a motor; the end has the C of a limit, which must not pass its end.
+// The error of bounded rows in the step, as a rate into Batch::impulse, and the bounds of their impulse. Motors and
+// friction (`of_rate`) are asked at the middle: the mean velocity has the speed of a motor. Limits are asked at the
+// end, which must not pass theirs.
 template <class S>
-void find_misses_of_bounded(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+void find_misses_of_bounded(WorldData<S>& world, Island<S>& island, typename S::Scalar h, bool of_rate) {
   using T = typename S::Scalar;
   for (const auto& [segment, begin, end, whole] : island.segments) {
     Batch<S>& batch = *segment;
-    if (!is_bounded(batch)) continue;
-    const bool of_rate = !batch.law->error;
+    if (!is_bounded(batch) || of_rate != !batch.law->error) continue;
     each_row(batch, begin, end, [&](int i) {
       batch.impulse[i] = batch.bias[i];
       if (!of_rate) batch.bias[i] = 0;
@@ -211,10 +211,11 @@ bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     look_at_middle(world, island, h);
     if (renew) stiffen_masses(world, island, h / 4);
     drift_with_rates(world, island, h);
+    find_misses_of_bounded(world, island, h, true);
     island.residual = find_errors(world, island, time);
     find_errors_of_rates(island, h);
     if (!std::isfinite(island.residual)) return false;
-    find_misses_of_bounded(world, island, h);
+    find_misses_of_bounded(world, island, h, false);
     const T change = improve(world, island, h, renew), miss = std::max(change / settled<T>, island.residual / goal);
     if (!(change < furthest<T>)) return false;
     const bool shared = change <= settled<T> && island.residual <= shared_error(island, at_start);

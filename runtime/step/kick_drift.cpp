@@ -1,6 +1,7 @@
 #include "runtime/step/kick_drift.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <cdot/spaces.hpp>
 
@@ -13,33 +14,68 @@
 namespace cdot {
 namespace {
 
-// Velocity rows have no C for the first half of a step: it repeats their impulses from the second half of the last
-// step. A start from 0 would alternate between 0 and twice the impulse forever. The start is therefore half of their
-// impulse in h.
 template <class S>
-void exert_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
-  using T = typename S::Scalar;
-  for (const Segment<S>& segment : island.segments) {
-    Batch<S>& batch = *segment.batch;
-    for (int i = segment.begin * batch.ops->rows; batch.law && i < segment.end * batch.ops->rows; ++i)
-      batch.softness[i] = batch.lower[i] = batch.upper[i] = T(0);
-  }
-  const T time = T(world.time);
-  accelerate(world, island, time);
-  for (const Segment<S>& segment : island.segments) {
-    Batch<S>& batch = *segment.batch;
-    for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i)
-      batch.lambda[i] *= batch.law ? T(0) : h / 2;
-  }
-  evaluate_anew(world, island, time);  // restores dC/dt, which gamma replaced
+bool has_velocity_rows(const Batch<S>& batch) {
+  return !batch.law && std::find(batch.kinds.begin(), batch.kinds.end(), RowKind::velocity) != batch.kinds.end();
+}
+// Motors and friction.
+template <class S>
+bool acts_by_force(const Batch<S>& batch) {
+  return is_bounded(batch) && !batch.law->error;
 }
 
 template <class S>
-bool has_velocity_rows(const Island<S>& island) {
-  return std::any_of(island.segments.begin(), island.segments.end(), [](const Segment<S>& segment) {
-    const auto& kinds = segment.batch->kinds;
-    return !segment.batch->law && std::find(kinds.begin(), kinds.end(), RowKind::velocity) != kinds.end();
-  });
+bool has_rows(const Island<S>& island, bool (*are)(const Batch<S>&)) {
+  return std::any_of(island.segments.begin(), island.segments.end(),
+                     [&](const Segment<S>& s) { return s.begin < s.end && are(*s.batch); });
+}
+
+// Bounds of the force at the start, and into Batch::impulse the rate that a motor or friction misses. Others under a
+// law do not act.
+template <class S>
+void offer_bounds(WorldData<S>& world, Batch<S>& batch, int begin, int end) {
+  using T = typename S::Scalar;
+  each_row(batch, begin, end, [&](int i) { batch.softness[i] = batch.lower[i] = batch.upper[i] = T(0); });
+  if (!acts_by_force(batch)) return;
+  batch.ops->velocity(batch, begin, end, world.bodies.velocity.data(), batch.rate.data());
+  for (int i = begin; i < end; ++i) {  // a coordinate has one row
+    Guard<T> guard;
+    batch.law->guard(batch, i, &guard);
+    batch.lower[i] = guard.lower;
+    batch.upper[i] = guard.upper;
+    batch.impulse[i] = guard.rate - batch.rate[i] - batch.bias[i];
+  }
+}
+
+// Accelerations by which motors and friction reach their rates in the time t, as far as their bounds allow.
+template <class S>
+void reach_rates(WorldData<S>& world, Island<S>& island, typename S::Scalar t) {
+  ask_for_gamma(world, island, typename S::Scalar(world.time));
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    for (int i = begin; acts_by_force(*batch) && i < end; ++i) batch->bias[i] -= batch->impulse[i] / t;
+  island.solver->renew(world, island);
+  island.solver->velocities(world, island, world.bodies.velocity_rate.data(), typename S::Scalar(0));
+  island.factored = false;
+}
+
+// Rows without C have none for the first half of a step: velocity rows, motors and friction. They repeat their impulses
+// from the second half of the last step. A start from 0 would alternate between 0 and twice the impulse forever. The
+// start is therefore half of their impulse in h.
+template <class S>
+void exert_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    if (batch->law) offer_bounds(world, *batch, begin, end);
+  const T time = T(world.time);
+  if (has_rows(island, acts_by_force<S>)) reach_rates(world, island, h / 2);
+  else accelerate(world, island, time);
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    const bool acts = !batch.law || acts_by_force(batch);
+    for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i)
+      batch.lambda[i] *= acts ? h / 2 : T(0);
+  }
+  evaluate_anew(world, island, time);  // restores dC/dt, which gamma replaced
 }
 
 // Motors, limits and friction are solved with the exact rows. Springs have acted as forces.
@@ -57,6 +93,7 @@ void bound_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     }
     batch.law->fill(batch, segment.begin, segment.end, h, world.settings);
     for (int i = begin; i < end; ++i) {
+      if (!acts_at_start(batch, i)) continue;
       batch.lower[i] *= T(0.5);  // the other half acts at the start of the next step
       batch.upper[i] *= T(0.5);
     }
@@ -92,7 +129,7 @@ typename S::Scalar begin_kick_drift(WorldData<S>& world, Island<S>& island, type
   project_velocities(world, island);
   fill_lambda(island, T(0));
   island.evaluated = true;
-  if (has_velocity_rows(island)) exert_at_start(world, island, h);
+  if (has_rows(island, has_velocity_rows<S>) || has_rows(island, acts_by_force<S>)) exert_at_start(world, island, h);
   return T(1);
 }
 

@@ -5,6 +5,17 @@
 
 namespace cdot {
 
+// f(i) for the rows of slots, f(batch, i) for those of an island.
+template <class S, class F>
+void each_row(const Batch<S>& batch, int begin, int end, F f) {
+  for (int i = begin * batch.ops->rows; i < end * batch.ops->rows; ++i) f(i);
+}
+template <class S, class F>
+void each_row(const Island<S>& island, F f) {
+  for (const Segment<S>& segment : island.segments)
+    each_row(*segment.batch, segment.begin, segment.end, [&](int i) { f(*segment.batch, i); });
+}
+
 // Prepares the start of a step of h. A state that is not the end of a step is projected, and its exact rows are
 // factored. Returns the factor that scales the present impulses to this step: h / last step, for sweeps at most 1.
 template <class S>
@@ -26,5 +37,12 @@ void drift_with_rates(WorldData<S>& world, Island<S>& island, typename S::Scalar
 // act with half of their impulse; the other half acts at the start of the next step. Springs have acted as forces.
 template <class S>
 void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
+
+// True if the row repeats its impulse at the start of the next step. A clutch that drives one way does not: it could
+// not take back what was too much.
+template <class S>
+bool acts_at_start(const Batch<S>& batch, int i) {
+  return !batch.law || !batch.law->of_spec || (batch.lower[i] != 0 && batch.upper[i] != 0);
+}
 
 }  // namespace cdot

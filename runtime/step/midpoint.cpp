@@ -134,7 +134,7 @@ void double_middle(WorldData<S>& world, Island<S>& island) {
 }
 
 // Softness and bounds of the rows under a law at the end of the step. The whole impulse of a limit, a motor or friction
-// keeps its bounds, and a rope never pushes.
+// keeps its bounds, and a rope never pushes. Bounds of a force are those of the middle.
 template <class S>
 void bound_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   factorize_rows(world, island);
@@ -142,10 +142,12 @@ void bound_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   for (const auto& [batch, begin, end, whole] : island.segments) {
     if (!batch->law) continue;
     if (is_bounded(*batch)) {
+      const bool of_force = !batch->law->error;
+      each_row(*batch, begin, end, [of = batch](int i) { of->impulse[i] = of->lower[i], of->error[i] = of->upper[i]; });
       batch->law->fill(*batch, begin, end, h, world.settings);
-      each_row(*batch, begin, end, [of = batch](int i) {
-        of->lower[i] -= of->correction[i];
-        of->upper[i] -= of->correction[i];
+      each_row(*batch, begin, end, [=, of = batch](int i) {
+        of->lower[i] = (of_force ? of->impulse[i] : of->lower[i]) - of->correction[i];
+        of->upper[i] = (of_force ? of->error[i] : of->upper[i]) - of->correction[i];
       });
       continue;
     }

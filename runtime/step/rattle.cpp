@@ -1,7 +1,7 @@
 // RATTLE: half a kick with impulses along J of the start, such that C = 0 after the drift. Then the drift. Then half a
 // kick with impulses along J of the end, such that J v = -dC/dt there. Second order and symmetric, so energy errors do
-// not accumulate. (H. C. Andersen, J. Comput. Phys. 52, 1983.) Dampers act at both ends of the step. Limits, motors and
-// friction act at the end, at first order.
+// not accumulate. (H. C. Andersen, J. Comput. Phys. 52, 1983.) Dampers, motors and friction act at both ends of the
+// step; where friction begins or ends within a step, that step is of first order. Limits act at the end.
 #include <algorithm>
 #include <cmath>
 
@@ -53,7 +53,7 @@ void guess_impulses(WorldData<S>& world, Island<S>& island, typename S::Scalar s
     const int rows = batch.ops->rows;
     const T repeated = batch.law && (batch.law->error || is_force(batch)) ? T(0) : share;
     for (int i = segment.begin * rows; i < segment.end * rows; ++i)
-      batch.correction[i] = batch.impulse[i] = repeated * batch.lambda[i];
+      batch.correction[i] = batch.impulse[i] = acts_at_start(batch, i) ? repeated * batch.lambda[i] : T(0);
     batch.ops->apply(batch, segment.begin, segment.end, world.bodies, batch.impulse.data(),
                      world.bodies.velocity.data());
   }

@@ -131,9 +131,10 @@ void evaluate_law(const T (&C)[Block::rows], const T (&rate)[Block::rows], const
   Block::slopes(C, rate, p, time, slopes.k, slopes.d), keep<T>(out, law_slopes, slopes);
 }
 
-template <class Joint>
+// A row block with a law: not the coordinates of an effect.
+template <class Block>
 constexpr bool is_effect = requires {
-  Joint::is_effect;
+  Block::is_effect;
 };
 
 template <template <class> class In, class Joint, class General, class Block, class T>
@@ -168,7 +169,7 @@ std::vector<Outputs> evaluate(std::span<const Inputs> lanes) {
   Block::gamma(q, v, p, time[0], g), keep<T>(out, gamma, g);
   Block::time_derivative(q, p, time[0], g), keep<T>(out, time_derivative, g);
   Block::stiffness(q, p, time[0], lambda, H), keep<T>(out, stiffness, H);
-  if constexpr (is_effect<Joint>) evaluate_law<Block>(C, rhs, p, time[0], out);
+  if constexpr (is_effect<Block>) evaluate_law<Block>(C, rhs, p, time[0], out);
   if constexpr (In<T>::dimension == 3) {
     typename In<T>::Velocity pushed[n];
     std::copy(v, v + n, pushed);
@@ -216,7 +217,7 @@ AnyBlock erased(std::string name, std::size_t general, bool is_coordinate) {
           immovable,
           general,
           is_coordinate,
-          is_effect<Joint>,
+          is_effect<Block>,
           Block::explicit_time,
           Block::row_names,
           Block::row_kinds,

@@ -55,13 +55,13 @@ std::vector<int> add_chain(World<T>& world, int links, double angle, double mass
   return rods;
 }
 
-// Some value for every parameter that has no default.
+// Some value for every parameter that has no default. A lower end lies below others.
 inline std::vector<NamedValue> some_values(const JointType& type) {
   std::vector<NamedValue> values;
   for (const ParameterInfo& info : type.parameters) {
     if (info.has_default) continue;
     std::vector<double> numbers;
-    if (info.kind == ParameterKind::scalar) numbers = {0.7};
+    if (info.kind == ParameterKind::scalar) numbers = {info.name == "lower" ? -0.7 : 0.7};
     else if (info.kind == ParameterKind::point) numbers = {0.4, 0.1 * info.offset / 3.0, 0.2};
     else numbers = {0.3, -0.2 + 0.05 * info.offset, 1};
     if (info.size < 3) numbers.resize(static_cast<size_t>(info.size));

@@ -43,6 +43,7 @@
 //   default_value      (index, q, p, t)                            writes p's parameter `index` from q and those before
 //   Coordinates                                                    std::tuple of the coordinates
 //   Immovable                                                      a coordinate: std::tuple of the variants
+//   Bounded                                                        an effect: std::tuple of its bounded rows, if any
 //   immovable_body                                                 a variant only: the index of that body
 // A variant inherits every unchanged member from its block. T is float, double, cdot::Pack, or any type with + - * /,
 // comparison, select and the functions used.
@@ -127,6 +128,13 @@ inline T pivot(T d, T k) {
   constexpr auto epsilon = std::numeric_limits<typename ScalarOf<T>::type>::epsilon();
   return select(d > T(64 * epsilon) * k, T(1) / d, T(0));
 }
+
+// The bounds of a bounded row of an effect, B::bounds(C, p, t, bounds). Of a coordinate, lower <= C <= upper. Of a
+// force (B::of_rate), that of a row J v = rate, with `acceleration` the derivative of the rate by time.
+template <class T>
+struct RowBounds {
+  T lower = T(-unbounded), upper = T(unbounded), rate = T(0), acceleration = T(0);
+};
 
 namespace planar {
 

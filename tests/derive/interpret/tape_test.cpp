@@ -2,6 +2,7 @@
 #include "derive/interpret/tape.hpp"
 
 #include <cstring>
+#include <filesystem>
 #include <gtest/gtest.h>
 #include <map>
 
@@ -69,7 +70,8 @@ TEST_P(OfSpace, TapesGiveTheBitsOfCompiledKernels) {
     if (block.dimension != GetParam() || block.immovable >= 0) continue;
     const std::string joint = std::string(block.space()) + "/" + block.joint;
     if (!kernels.contains(joint)) {
-      const ReadResult read = folder.read(CDOT_SOURCE_DIR "/specs/" + joint + (block.is_effect ? ".effect" : ".joint"));
+      const std::string spec = CDOT_SOURCE_DIR "/specs/" + joint;
+      const ReadResult read = folder.read(spec + (std::filesystem::exists(spec + ".effect") ? ".effect" : ".joint"));
       const Derivation& derivation = derivations.emplace(joint, derive(*read.joint)).first->second;
       kernels.emplace(joint, simplified(plan(derivation)));
     }

@@ -7,8 +7,7 @@
 namespace cdot::test {
 namespace {
 
-// RATTLE's first half step has no friction yet: M w h / 2.
-double allowed_of(const Method& method) { return method.order() == 1 ? 2e-2 : method.order() == 2 ? 2e-3 : 1e-6; }
+double allowed_of(const Method& method) { return method.order() == 1 ? 2e-2 : method.order() == 2 ? 2e-4 : 1e-6; }
 
 template <class S>
 double work_of(const BasicWorld<S>& world, std::string_view name) {

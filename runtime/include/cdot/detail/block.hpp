@@ -80,17 +80,20 @@ enum class Mode : char {
   bounded,  // for the other integrators: every step solves within the bounds
   off,      // out of reach or let go: no force
   held,     // the rate is prescribed, the force lies within its bounds
-  pushed,   // the force is known: that of a spring, or a bound
+  pushed,   // the force is known: its upper bound
+  pulled,   // the same at the lower bound
 };
 
 // The conditions under which a row under a law acts. A row with one bound at 0 is one-sided: it acts where C has
 // reached `end`, with a force away from the end.
 template <class T>
 struct Guard {
-  T off_by;        // C - end: the error while the row is held; 0 for rows without an end
-  T rate;          // J v + dC/dt while the row is held
-  T lower, upper;  // of its force
-  bool one_sided() const { return (lower == T(0)) != (upper == T(0)); }
+  T off_by;               // C - end: the error while the row is held; 0 for rows without an end
+  T rate;                 // J v + dC/dt while the row is held
+  T lower, upper;         // of its force
+  T acceleration = T(0);  // the derivative of `rate` by time
+  bool of_rate = false;   // it has no end, though one bound may be 0: a clutch that drives one way
+  bool one_sided() const { return !of_rate && (lower == T(0)) != (upper == T(0)); }
   bool bilateral() const { return std::isinf(lower) && std::isinf(upper); }
   // Distance from acting, for one-sided rows only.
   T gap() const { return lower == T(0) ? off_by : -off_by; }
@@ -127,6 +130,7 @@ struct Law {
   // of springs and constant forces, whose dampers are all that is not stored.
   void (*unstored)(const Batch<S>&, int slot, const T* rate, T* force) = nullptr;
   bool in_time = false;  // the force depends on the time: its island never sleeps
+  bool of_spec = false;  // of a bounded row: its bounds may change with C and with the time
 
   bool is_of_effect() const { return unstored != nullptr; }
 };

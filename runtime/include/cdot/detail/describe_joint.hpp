@@ -34,6 +34,11 @@ JointType describe_joint() {
     constexpr bool also_pushes = requires { &Joint::template unstored<double>; };
     type.without_energy = also_pushes || !stores;
   }
+  if constexpr (requires { typename Joint::Bounded; }) {
+    [&]<class... Rows>(std::type_identity<std::tuple<Rows...>>) {
+      type.explicit_time |= (Rows::in_time || ...);
+    }(std::type_identity<typename Joint::Bounded>{});
+  }
   return type;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <cdot/detail/block_ops.hpp>
+#include <cdot/detail/bounded_law.hpp>
 #include <cdot/detail/effect_law.hpp>
 #include <cdot/joints.hpp>
 
@@ -39,6 +40,16 @@ struct BlockVariants {
   }
 };
 
+// A bounded row of an effect, on one of its coordinates.
+template <class S>
+struct BoundedEntry {
+  using T = typename S::Scalar;
+  int coordinate;
+  std::string_view name;
+  const Law<S>* law;
+  void (*bounds)(T C, const T* parameters, T time, RowBounds<T>&);
+};
+
 template <class S>
 struct JointEntry {
   BlockVariants<S> rows;
@@ -46,7 +57,18 @@ struct JointEntry {
   // Writes the default of parameter `index`, computed from the poses, the earlier parameters and the time.
   void (*default_value)(int index, const typename S::Pose* q, typename S::Scalar* parameters, typename S::Scalar time);
   const Law<S>* law = nullptr;  // of an effect
+  std::vector<BoundedEntry<S>> bounded{};
 };
+
+template <class S, class Effect, class Row>
+BoundedEntry<S> bounded_entry() {
+  using T = typename S::Scalar;
+  return {Row::coordinate, Row::name, &bounded_law<S, Effect, Row>,
+          [](T C, const T* parameters, T time, RowBounds<T>& B) {
+            const T value[1] = {C};
+            Row::bounds(value, *reinterpret_cast<const typename Effect::template Parameters<T>*>(parameters), time, B);
+          }};
+}
 
 template <class S, class Joint, class Block>
 BlockVariants<S> block_variants() {
@@ -66,7 +88,12 @@ template <class S, class Joint>
 JointEntry<S> joint_entry() {
   using T = typename S::Scalar;
   JointEntry<S> entry{block_variants<S, Joint, Joint>(), {}, nullptr, nullptr};
-  if constexpr (requires { Joint::is_effect; }) entry.law = &effect_law<S, Joint>;
+  if constexpr (requires { Joint::is_effect; } && Joint::rows > 0) entry.law = &effect_law<S, Joint>;
+  if constexpr (requires { typename Joint::Bounded; }) {
+    [&]<class... Rows>(std::type_identity<std::tuple<Rows...>>) {
+      (entry.bounded.push_back(bounded_entry<S, Joint, Rows>()), ...);
+    }(std::type_identity<typename Joint::Bounded>{});
+  }
   [&]<class... Coordinates>(std::type_identity<std::tuple<Coordinates...>>) {
     (entry.coordinates.push_back({&block_ops<S, Joint, Coordinates>, {}}), ...);
   }(std::type_identity<typename Joint::Coordinates>{});

@@ -1,0 +1,122 @@
+// Rows with bounds in the law of an effect: ends of a coordinate, and a rate that a bounded force prescribes.
+#include <algorithm>
+
+#include "derive/expression/symbols.hpp"
+#include "derive/language/elaborate.hpp"
+
+namespace cdot::derive {
+namespace {
+
+// Radians count as numbers: a torque is in N m, or in N m/rad.
+Unit without_angle(Unit u) {
+  u.rad = 0;
+  return u;
+}
+
+}  // namespace
+
+// A number in a bounded row. It may read parameters, and what else `also` has.
+Expr Elaborator::bound_value(Source& source, const Ast& ast, const Unit& unit, const std::vector<Expr>& also) {
+  Diagnostics& d = source.diagnostics;
+  in_law_ = true;
+  const Value v = evaluate(source, ast);
+  in_law_ = false;
+  if (v.type == Type::poison || !v.e) return {};
+  if (v.type != Type::scalar) {
+    d.error(ast.where, "a bound is a number, not " + std::string(in_words(v.type)));
+    return {};
+  }
+  if (v.unit && !v.zero && without_angle(*v.unit) != without_angle(unit)) {
+    d.error(ast.where, "this is in " + spoken(*v.unit) + ", not in " + spoken(unit));
+    return {};
+  }
+  const auto known = [&](Expr leaf) {
+    return leaf->role == Role::parameter || leaf->role == Role::constant || std::ranges::find(also, leaf) != also.end();
+  };
+  if (std::ranges::all_of(leaves_of(std::span<const Expr>(&v.e, 1)), known)) return v.e;
+  if (also.empty())
+    d.error(ast.where, "an end of a coordinate depends on parameters alone",
+            "move the rest into the coordinate, and bound that by 0");
+  else
+    d.error(ast.where,
+            also.size() > 1 ? "a bound of a force depends on parameters, time and its own coordinate alone"
+                            : "a prescribed rate depends on parameters and time alone",
+            "write a law of rates or of other coordinates as a force: force on NAME = ...");
+  return {};
+}
+
+// The coordinate that a row bounds, as a row block of its own. Null after an error.
+const Coordinate* Elaborator::bounded_coordinate(Source& source, const Word& name) {
+  const auto declared = bounded_candidates_.find(name.text);
+  if (declared == bounded_candidates_.end()) {
+    source.diagnostics.error(name.where, quote(name.text) + " is no coordinate of this effect",
+                             "declare it before: coordinate " + name.text + " [m] = ...");
+    return nullptr;
+  }
+  names_.at(name.text).used = true;
+  auto& all = joint_.coordinates;
+  const auto known = std::ranges::find(all, name.text, &Coordinate::name);
+  if (known != all.end()) return &*known;
+  all.push_back(declared->second);
+  return &all.back();
+}
+
+// [ NAME ":" ] ( NAME ( ( ">=" | "<=" ) expression | "in" range ) | "rate" "(" NAME ")" "=" expression ... )
+void Elaborator::bound(Source& source, const StatementAst& s) {
+  const Coordinate* const coordinate = bounded_coordinate(source, s.bounded);
+  if (!coordinate) return;
+  const Unit unit = coordinate->unit, joule{.m = 2, .s = -2, .kg = 1};
+  const Expr value = law_values_.at(s.bounded.text).e;
+  BoundedRow row{s.label.text.empty() ? s.bounded.text + (s.of_rate ? "_rate" : "_ends") : s.label.text,
+                 s.bounded.text,
+                 s.of_rate,
+                 {},
+                 {},
+                 {},
+                 value,
+                 in_spec(source, s.where),
+                 written(source, s)};
+  const bool is_named = !s.label.text.empty();
+  const auto taken = [&](const std::string& name) {
+    return std::ranges::find(joint_.law->bounded, name, &BoundedRow::name) != joint_.law->bounded.end() ||
+           bounded_candidates_.contains(name) || is_word_of_cpp(name) || is_member_of_kernels(name) ||
+           name == joint_.name;
+  };
+  if (is_named && taken(row.name))
+    return source.diagnostics.error(s.label.where, quote(row.name) + " is already a name of the generated kernel",
+                                    "choose another name");
+  while (taken(row.name)) row.name += '_';
+  const auto number = [&](const std::optional<Ast>& ast, Expr& to, const Unit& of, const std::vector<Expr>& also) {
+    if (ast) to = bound_value(source, *ast, of, also);
+    return !ast || to;
+  };
+  const Expr time = time_symbol(*pool_);
+  const Unit of_bounds = s.of_rate ? joule / unit : unit;
+  const std::vector<Expr> also = s.of_rate ? std::vector{value, time} : std::vector<Expr>{};
+  bool right = number(s.lower, row.lower, of_bounds, also);
+  right &= number(s.upper, row.upper, of_bounds, also);
+  if (s.of_rate) right &= number(s.left, row.rate, unit / Unit{.s = 1}, {time});
+  for (const Expr e : {row.lower, row.upper, row.rate}) joint_.uses_time |= e && depends_on_role(e, Role::time);
+  if (right) joint_.law->bounded.push_back(std::move(row));
+}
+
+// Coordinates that only bounded rows read are no inputs of the forces.
+void Elaborator::drop_idle_inputs() {
+  EffectLaw& law = *joint_.law;
+  std::vector<Expr> read;
+  if (law.energy) read.push_back(law.energy);
+  for (const LawInput& input : law.inputs)
+    if (input.force) read.push_back(input.force);
+  const std::vector<Expr> leaves = leaves_of(read);
+  const auto reads = [&](Expr leaf) { return std::ranges::find(leaves, leaf) != leaves.end(); };
+  for (std::size_t i = law.inputs.size(); i-- > 0;) {
+    const LawInput& input = law.inputs[i];
+    const bool bounded =
+        std::ranges::find(joint_.coordinates, input.name, &Coordinate::name) != joint_.coordinates.end();
+    if (!bounded || input.force || reads(input.value) || reads(input.rate)) continue;
+    law.inputs.erase(law.inputs.begin() + static_cast<std::ptrdiff_t>(i));
+    joint_.rows.erase(joint_.rows.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
+}  // namespace cdot::derive
