@@ -61,14 +61,65 @@
 
 namespace cdot::planar {
 
-using Joints = std::tuple<angle, angle_ratio, distance, driven_crank, gear, gear_on_base, gear_prismatic_prismatic,
-                          gear_revolute_prismatic, gear_revolute_revolute, line, max_distance, motor, prismatic, pulley,
-                          rack_and_pinion, revolute, rolling, rope, sine_track, slot, target, weld, wheel>;
+using Joints = std::tuple<
+    angle,
+    angle_ratio,
+    distance,
+    driven_crank,
+    gear,
+    gear_on_base,
+    gear_prismatic_prismatic,
+    gear_revolute_prismatic,
+    gear_revolute_revolute,
+    line,
+    max_distance,
+    motor,
+    prismatic,
+    pulley,
+    rack_and_pinion,
+    revolute,
+    rolling,
+    rope,
+    sine_track,
+    slot,
+    target,
+    weld,
+    wheel>;
 
-using Effects =
-    std::tuple<air_brake, backlash, bearing_friction, brake, bungee, buoyancy, bushing, conveyor, damper, dc_motor,
-               detent, disc_on_line, drag, duffing_spring, end_stops, freewheel, gas_spring, gravity_between,
-               gravity_well, induction_motor, lift, linear_actuator, magnetic_field, press_fit, rotational_drag, servo,
-               shaker, soft_stop, spindle, spring, thruster, torsion_spring, viscous_drag, wind>;
+using Effects = std::tuple<
+    air_brake,
+    backlash,
+    bearing_friction,
+    brake,
+    bungee,
+    buoyancy,
+    bushing,
+    conveyor,
+    damper,
+    dc_motor,
+    detent,
+    disc_on_line,
+    drag,
+    duffing_spring,
+    end_stops,
+    freewheel,
+    gas_spring,
+    gravity_between,
+    gravity_well,
+    induction_motor,
+    lift,
+    linear_actuator,
+    magnetic_field,
+    press_fit,
+    rotational_drag,
+    servo,
+    shaker,
+    soft_stop,
+    spindle,
+    spring,
+    thruster,
+    torsion_spring,
+    viscous_drag,
+    wind>;
 
 }  // namespace cdot::planar

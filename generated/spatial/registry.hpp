@@ -46,11 +46,50 @@
 
 namespace cdot::spatial {
 
-using Joints = std::tuple<cone, constant_velocity, cylindrical, distance, driven, fixed, gear, hinge, lesson_example,
-                          max_distance, n1, n2, p1, p2, planar_joint, point_on_line, point_on_plane, prismatic, pulley,
-                          rack_and_pinion, relative_orientation, revolute, revolute_n1, rolling_disc, rolling_sphere,
-                          screw, six_dof, slider, spherical, spherical_spherical, surface, swing_twist, universal>;
+using Joints = std::tuple<
+    cone,
+    constant_velocity,
+    cylindrical,
+    distance,
+    driven,
+    fixed,
+    gear,
+    hinge,
+    lesson_example,
+    max_distance,
+    n1,
+    n2,
+    p1,
+    p2,
+    planar_joint,
+    point_on_line,
+    point_on_plane,
+    prismatic,
+    pulley,
+    rack_and_pinion,
+    relative_orientation,
+    revolute,
+    revolute_n1,
+    rolling_disc,
+    rolling_sphere,
+    screw,
+    six_dof,
+    slider,
+    spherical,
+    spherical_spherical,
+    surface,
+    swing_twist,
+    universal>;
 
-using Effects = std::tuple<ball_on_plane, brake, conveyor, drag, end_stops, press_fit, spindle, spring, thruster>;
+using Effects = std::tuple<
+    ball_on_plane,
+    brake,
+    conveyor,
+    drag,
+    end_stops,
+    press_fit,
+    spindle,
+    spring,
+    thruster>;
 
 }  // namespace cdot::spatial
