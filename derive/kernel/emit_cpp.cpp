@@ -54,6 +54,7 @@ class KernelWriter {
     for (const KernelBlock& coordinate : kernel_.coordinates) coordinate_struct(coordinate);
     tuple("Coordinates", kernel_.coordinates, 1);
     if (!kernel_.bounded.empty()) bounded();
+    if (const auto on = on_coordinate(joint_)) write_on_coordinate(*on);
     tuple("Immovable", kernel_.rows.variants, 1);
     line("};");
     variants(kernel_.rows, joint_.name);
@@ -237,6 +238,18 @@ class KernelWriter {
     block(coordinate, nullptr, 2);
     tuple("Immovable", coordinate.variants, 2);
     line("};", 1);
+  }
+
+  void write_on_coordinate(const OnCoordinate& on) {
+    constexpr const char* words[] = {"none", "required", "by_default", "value"};  // in the order of OnCoordinate::Use
+    std::string uses;
+    for (const OnCoordinate::Use use : on.uses)
+      uses += (uses.empty() ? "CoordinateUse::" : ", CoordinateUse::") + std::string(words[use]);
+    line("");
+    line("// On the coordinate of any joint in this unit, and the parameters there.", 1);
+    line("static constexpr std::string_view coordinate_unit = " + literal(derive::text(on.unit)) + ";", 1);
+    line(fmt::format("static constexpr std::array<CoordinateUse, {}> coordinate_uses = {{{}}};", on.uses.size(), uses),
+         1);
   }
 
   // A struct for each bounded row.

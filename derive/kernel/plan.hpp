@@ -45,6 +45,16 @@ struct KernelBound {
   KernelFunction function;
 };
 
+// An effect on the coordinate of any joint in this unit.
+struct OnCoordinate {
+  // Of a parameter there: not read; to be given; has a default; by default the value of the coordinate.
+  enum Use { none, required, by_default, value };
+  Unit unit;
+  std::vector<Use> uses;  // by parameter
+};
+// Nothing if the law of the effect is about more than one coordinate.
+std::optional<OnCoordinate> on_coordinate(const Joint& joint);
+
 struct DefaultValue {
   int parameter = 0;
   Program program;  // outputs "p.t_x", ...

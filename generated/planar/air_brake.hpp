@@ -183,6 +183,11 @@ struct air_brake {
 
   using Bounded = std::tuple<grab>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "rad";
+  static constexpr std::array<CoordinateUse, 2> coordinate_uses = {CoordinateUse::required,
+      CoordinateUse::required};
+
   using Immovable = std::tuple<>;
 };
 

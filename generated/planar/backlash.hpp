@@ -189,6 +189,11 @@ struct backlash {
 
   using Bounded = std::tuple<turn_ends>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "rad";
+  static constexpr std::array<CoordinateUse, 2> coordinate_uses = {CoordinateUse::required,
+      CoordinateUse::value};
+
   using Immovable = std::tuple<>;
 };
 

@@ -168,6 +168,11 @@ struct bearing_friction {
 
   using Coordinates = std::tuple<>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "rad";
+  static constexpr std::array<CoordinateUse, 2> coordinate_uses = {CoordinateUse::required,
+      CoordinateUse::required};
+
   struct a_immovable;
   struct b_immovable;
   using Immovable = std::tuple<a_immovable, b_immovable>;

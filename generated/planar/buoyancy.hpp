@@ -197,6 +197,11 @@ struct buoyancy {
 
   using Coordinates = std::tuple<>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "m";
+  static constexpr std::array<CoordinateUse, 4> coordinate_uses = {CoordinateUse::none,
+      CoordinateUse::none, CoordinateUse::required, CoordinateUse::by_default};
+
   using Immovable = std::tuple<>;
 };
 

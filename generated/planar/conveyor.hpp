@@ -270,6 +270,11 @@ struct conveyor {
 
   using Bounded = std::tuple<drag>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "m";
+  static constexpr std::array<CoordinateUse, 5> coordinate_uses = {CoordinateUse::none,
+      CoordinateUse::none, CoordinateUse::none, CoordinateUse::required, CoordinateUse::required};
+
   using Immovable = std::tuple<>;
 };
 

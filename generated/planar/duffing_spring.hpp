@@ -317,6 +317,11 @@ struct duffing_spring {
 
   using Coordinates = std::tuple<>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "m";
+  static constexpr std::array<CoordinateUse, 5> coordinate_uses = {CoordinateUse::none,
+      CoordinateUse::none, CoordinateUse::required, CoordinateUse::required, CoordinateUse::value};
+
   struct a_immovable;
   struct b_immovable;
   using Immovable = std::tuple<a_immovable, b_immovable>;

@@ -266,6 +266,11 @@ struct end_stops {
 
   using Bounded = std::tuple<stops>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "m";
+  static constexpr std::array<CoordinateUse, 5> coordinate_uses = {CoordinateUse::none,
+      CoordinateUse::none, CoordinateUse::none, CoordinateUse::required, CoordinateUse::required};
+
   using Immovable = std::tuple<>;
 };
 

@@ -176,6 +176,10 @@ struct freewheel {
 
   using Bounded = std::tuple<drive>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "rad";
+  static constexpr std::array<CoordinateUse, 1> coordinate_uses = {CoordinateUse::required};
+
   using Immovable = std::tuple<>;
 };
 

@@ -296,6 +296,11 @@ struct gravity_between {
 
   using Coordinates = std::tuple<>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "m";
+  static constexpr std::array<CoordinateUse, 3> coordinate_uses = {CoordinateUse::none,
+      CoordinateUse::none, CoordinateUse::required};
+
   struct a_immovable;
   struct b_immovable;
   using Immovable = std::tuple<a_immovable, b_immovable>;

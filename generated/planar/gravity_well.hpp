@@ -227,6 +227,11 @@ struct gravity_well {
 
   using Coordinates = std::tuple<>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "m";
+  static constexpr std::array<CoordinateUse, 3> coordinate_uses = {CoordinateUse::none,
+      CoordinateUse::none, CoordinateUse::required};
+
   using Immovable = std::tuple<>;
 };
 

@@ -189,6 +189,11 @@ struct servo {
 
   using Coordinates = std::tuple<>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "rad";
+  static constexpr std::array<CoordinateUse, 4> coordinate_uses = {CoordinateUse::value,
+      CoordinateUse::required, CoordinateUse::by_default, CoordinateUse::required};
+
   struct a_immovable;
   struct b_immovable;
   using Immovable = std::tuple<a_immovable, b_immovable>;

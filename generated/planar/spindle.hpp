@@ -186,6 +186,11 @@ struct spindle {
 
   using Bounded = std::tuple<drive>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "rad";
+  static constexpr std::array<CoordinateUse, 3> coordinate_uses = {CoordinateUse::required,
+      CoordinateUse::required, CoordinateUse::required};
+
   using Immovable = std::tuple<>;
 };
 

@@ -324,6 +324,12 @@ struct spring {
 
   using Coordinates = std::tuple<>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "m";
+  static constexpr std::array<CoordinateUse, 5> coordinate_uses = {CoordinateUse::none,
+      CoordinateUse::none, CoordinateUse::required, CoordinateUse::value,
+      CoordinateUse::by_default};
+
   struct a_immovable;
   struct b_immovable;
   using Immovable = std::tuple<a_immovable, b_immovable>;

@@ -191,6 +191,11 @@ struct torsion_spring {
 
   using Coordinates = std::tuple<>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "rad";
+  static constexpr std::array<CoordinateUse, 3> coordinate_uses = {CoordinateUse::required,
+      CoordinateUse::value, CoordinateUse::by_default};
+
   struct a_immovable;
   struct b_immovable;
   using Immovable = std::tuple<a_immovable, b_immovable>;

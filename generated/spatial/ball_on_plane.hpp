@@ -510,6 +510,11 @@ struct ball_on_plane {
 
   using Bounded = std::tuple<contact>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "m";
+  static constexpr std::array<CoordinateUse, 4> coordinate_uses = {CoordinateUse::none,
+      CoordinateUse::none, CoordinateUse::none, CoordinateUse::none};
+
   using Immovable = std::tuple<>;
 };
 

@@ -661,6 +661,11 @@ struct brake {
 
   using Bounded = std::tuple<grip>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "rad";
+  static constexpr std::array<CoordinateUse, 3> coordinate_uses = {CoordinateUse::none,
+      CoordinateUse::none, CoordinateUse::required};
+
   using Immovable = std::tuple<>;
 };
 

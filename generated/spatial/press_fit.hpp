@@ -499,6 +499,11 @@ struct press_fit {
 
   using Bounded = std::tuple<friction>;
 
+  // On the coordinate of any joint in this unit, and the parameters there.
+  static constexpr std::string_view coordinate_unit = "m";
+  static constexpr std::array<CoordinateUse, 4> coordinate_uses = {CoordinateUse::none,
+      CoordinateUse::none, CoordinateUse::none, CoordinateUse::required};
+
   using Immovable = std::tuple<>;
 };
 

@@ -171,7 +171,7 @@ void work_of_stiffness(WorldData<S>& world, const Island<S>& island, const typen
                        Work& work) {
   for (const Segment<S>& segment : island.segments) {
     const Batch<S>& batch = *segment.batch;
-    if (!batch.law || !batch.law->energy || batch.law->constants < 3) continue;
+    if (!batch.law || !batch.law->energy || batch.law->constants < 3 || batch.law->is_of_effect()) continue;
     for (int slot = segment.begin; slot < segment.end; ++slot)
       if (batch.constants[slot * batch.law->constants] != 0)
         work.put(batch.source, h * power_of_stiffness(world, batch, slot, v, world.one_slot, world.few));

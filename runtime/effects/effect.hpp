@@ -22,7 +22,11 @@ struct NamedLaw {
   const char* name;  // in messages
 };
 
-// Throws Error if the joint has no effect of that number, or if the effect has another law.
+// The rows of the effect; null if all bodies of the joint are immovable. Throws Error if the joint has no effect of
+// that number, or if the effect has another law.
+template <class S>
+Batch<S>* batch_of_effect(BasicWorld<S>& world, int joint, int effect, const NamedLaw<S>& named);
+
 template <class S>
 void set_constants(BasicWorld<S>& world, int joint, int effect, const NamedLaw<S>& named,
                    std::span<const double> constants);

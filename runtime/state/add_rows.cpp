@@ -50,12 +50,12 @@ void grow(StateArray<Item>& column, int by, Item value = Item{}) {
 
 template <class S>
 void add_rows(WorldData<S>& world, int joint, const BlockOps<S>* ops, const Law<S>* law, std::vector<RowKind> kinds,
-              std::span<const double> constants) {
+              std::span<const double> constants, std::string_view source) {
   using T = typename S::Scalar;
   ops = ops->with(world.settings.kernels);
   JointRecord& record = world.joints[joint];
   const std::string_view type = joint_types(S::dimension)[static_cast<size_t>(record.type)].name;
-  const int index = find_batch(world, ops, law, kinds, type);
+  const int index = find_batch(world, ops, law, kinds, source.empty() ? type : source);
   Batch<S>& batch = *world.batches[index];
   record.added.add(index), record.added.add(ops->rows), record.added.add(ops->bodies);
   record.added.bytes(constants.data(), constants.size_bytes());
@@ -104,14 +104,14 @@ int coordinate_index(int type, std::string_view name) {
 
 template <class S>
 int add_coordinate_row(WorldData<S>& world, int joint, std::string_view coordinate, const Law<S>* law,
-                       std::span<const double> constants) {
+                       std::span<const double> constants, std::string_view source) {
   check_joint(world, joint);
   JointRecord& record = world.joints[joint];
   const int index = coordinate_index<S>(record.type, coordinate);
   if (record.places.empty()) return -1;
   check_value(world, record, index);
   const auto& variants = joint_entries<S>()[record.type].coordinates[index];
-  add_rows(world, joint, variants.choose(world.bodies, record.bodies), law, {RowKind::equality}, constants);
+  add_rows(world, joint, variants.choose(world.bodies, record.bodies), law, {RowKind::equality}, constants, source);
   return static_cast<int>(record.places.size()) - 1;
 }
 
@@ -124,12 +124,13 @@ void add_bounded_rows(WorldData<S>& world, int joint) {
              {RowKind::equality}, {});
 }
 
-#define CDOT_INSTANTIATE(S)                                                                                      \
-  template void add_rows(WorldData<S>&, int, const BlockOps<S>*, const Law<S>*, std::vector<RowKind>,            \
-                         std::span<const double>);                                                               \
-  template int add_coordinate_row(WorldData<S>&, int, std::string_view, const Law<S>*, std::span<const double>); \
-  template void add_bounded_rows(WorldData<S>&, int);                                                            \
-  template void check_joint(const WorldData<S>&, int);                                                           \
+#define CDOT_INSTANTIATE(S)                                                                                     \
+  template void add_rows(WorldData<S>&, int, const BlockOps<S>*, const Law<S>*, std::vector<RowKind>,           \
+                         std::span<const double>, std::string_view);                                            \
+  template int add_coordinate_row(WorldData<S>&, int, std::string_view, const Law<S>*, std::span<const double>, \
+                                  std::string_view);                                                            \
+  template void add_bounded_rows(WorldData<S>&, int);                                                           \
+  template void check_joint(const WorldData<S>&, int);                                                          \
   template int coordinate_index<S>(int, std::string_view);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

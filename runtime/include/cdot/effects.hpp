@@ -45,6 +45,14 @@ struct Load {
   bool acts_one_way() const { return false; }
 };
 
+// An effect of a spec on the coordinate of any joint, if its law is about one coordinate alone (coordinate_effects() in
+// joints.hpp): {"servo", {{"k", {50}}, {"most", {3}}}}. Parameters with a default may be missing.
+struct SpecEffect {
+  std::string type;
+  std::vector<NamedValue> parameters{};
+  bool acts_one_way() const;
+};
+
 // All effects on one coordinate of a joint.
 struct CoordinateEffects {
   std::string coordinate;
@@ -53,6 +61,7 @@ struct CoordinateEffects {
   std::vector<CoordinateSpring> springs{};  // a damper is a spring without stiffness
   std::optional<DryFriction> friction{};
   std::optional<Load> load{};
+  std::vector<SpecEffect> specs{};
 
   // f(effect) for each, in the order in which a scene adds them.
   template <class F>
@@ -62,12 +71,22 @@ struct CoordinateEffects {
     for (const CoordinateSpring& spring : springs) f(spring);
     if (friction) f(*friction);
     if (load) f(*load);
+    for (const SpecEffect& spec : specs) f(spec);
   }
 };
 
 // Adds one of these effects. Returns its number among those of the joint; -1 if all bodies of the joint are immovable.
 template <class S, class Effect>
 int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Effect& effect);
+
+// The effect must act on coordinates in the unit of this one. A default that is the effect's own coordinate is the
+// value that this one has now.
+template <class S>
+int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const SpecEffect& effect);
+
+// Changes the given parameters; the others stay.
+template <class S>
+void set_effect(BasicWorld<S>& world, int joint, int number, const SpecEffect& effect);
 
 // Changes the constants of an effect from the next step on and wakes the joint's island. max_force = 0 switches a motor
 // off; the ends -unlimited and unlimited switch a limit off. A limit with two ends cannot become a lock, nor a lock a

@@ -27,6 +27,9 @@ struct JointType {
   bool explicit_time;           // C or the force of an effect depends on t explicitly
   bool is_effect = false;       // its rows are coordinates that its law pushes, not constraints
   bool without_energy = false;  // an effect with a force beside that of its energy, which may damp
+  // Of an effect that acts on the coordinate of any joint too: the unit of that, and the use of each parameter there.
+  std::string_view coordinate_unit{};
+  std::vector<CoordinateUse> coordinate_uses{};
 };
 
 enum class Dimension { planar, spatial };
@@ -36,6 +39,11 @@ void add_joint_type(Dimension dimension, JointType type);
 
 // Every registered joint of a dimension, in the order of its registry.
 std::span<const JointType> joint_types(Dimension dimension);
+// The effects of the catalogue that act on the coordinate of any joint, in the plane and in space.
+std::span<const JointType> coordinate_effects();
+// nullptr if none has that name.
+const JointType* find_coordinate_effect(std::string_view name);
+
 // nullptr if no joint has that name.
 const JointType* find_joint_type(Dimension dimension, std::string_view name);
 

@@ -44,6 +44,7 @@
 //   Coordinates                                                    std::tuple of the coordinates
 //   Immovable                                                      a coordinate: std::tuple of the variants
 //   Bounded                                                        an effect: std::tuple of its bounded rows, if any
+//   coordinate_unit, coordinate_uses                               an effect whose law is about one coordinate alone
 //   immovable_body                                                 a variant only: the index of that body
 // A variant inherits every unchanged member from its block. T is float, double, cdot::Pack, or any type with + - * /,
 // comparison, select and the functions used.
@@ -72,6 +73,14 @@ enum class ParameterKind {
   unit,    // the same of length 1; the runtime normalises a scene's vector and refuses a zero vector
   frame,   // a triad fixed in a body: its x axis in the body's frame, 2 numbers; in space x, y and z axis, 9 numbers
   scalar   // 1 number
+};
+
+// A parameter of an effect on the coordinate of a joint.
+enum class CoordinateUse {
+  none,        // the law does not read it
+  required,    // to be given
+  by_default,  // default_value(index, ...) computes it without poses
+  value        // by default the value of the coordinate when the effect is added
 };
 
 inline constexpr double unbounded = std::numeric_limits<double>::infinity();

@@ -1,4 +1,5 @@
 // `cdot-run list`: the joints and effects with their parameters and coordinates, or the keys of a scene.
+#include <algorithm>
 #include <fmt/format.h>
 
 #include <cdot/effects.hpp>
@@ -24,9 +25,17 @@ std::string body_name(const ParameterInfo& parameter) {
   return parameter.body < 0 ? "world" : std::string(1, static_cast<char>('a' + parameter.body));
 }
 
-std::string list_text(const JointType& type) {
-  std::vector<const char*> effects;
+// What a scene may put on a coordinate.
+std::vector<std::string> effects_on(const CoordinateInfo& coordinate) {
+  std::vector<std::string> effects;
   for (const EffectKind* kind : effect_kinds) effects.push_back(kind->key);
+  for (const JointType& type : coordinate_effects())
+    if (type.coordinate_unit == coordinate.unit && std::ranges::find(effects, type.name) == effects.end())
+      effects.push_back(std::string(type.name));
+  return effects;
+}
+
+std::string list_text(const JointType& type) {
   const char* body_or_bodies = type.bodies == 1 ? "body" : "bodies";
   const size_t rows = type.row_kinds.size();
   std::string text = type.is_effect ? fmt::format("{}  ({} {})\n", type.name, type.bodies, body_or_bodies)
@@ -38,7 +47,8 @@ std::string list_text(const JointType& type) {
                         body.empty() ? range_of(parameter) : " on " + body, parameter.has_default ? ", optional" : "");
   }
   for (const CoordinateInfo& coordinate : type.coordinates)
-    text += fmt::format("    {:<12} coordinate [{}]: {}\n", coordinate.name, coordinate.unit, fmt::join(effects, ", "));
+    text += fmt::format("    {:<12} coordinate [{}]: {}\n", coordinate.name, coordinate.unit,
+                        fmt::join(effects_on(coordinate), ", "));
   return text;
 }
 
@@ -65,7 +75,8 @@ void add_to(Json& list, Dimension dimension) {
     }
     joint["coordinates"] = Json::array();
     for (const CoordinateInfo& coordinate : type.coordinates) {
-      joint["coordinates"].push_back({{"name", coordinate.name}, {"unit", coordinate.unit}});
+      joint["coordinates"].push_back(
+          {{"name", coordinate.name}, {"unit", coordinate.unit}, {"effects", effects_on(coordinate)}});
     }
     list.push_back(joint);
   }

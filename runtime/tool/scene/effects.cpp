@@ -1,4 +1,5 @@
 // The effects of a scene, read by the table of their kinds (<cdot/effects.hpp>).
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "runtime/tool/scene/keys.hpp"
@@ -48,6 +49,58 @@ void read_effect(Entry& entry, const EffectKind& kind, bool turns, CoordinateEff
     entry.error(entry.where(kind.key), fmt::format(fmt::runtime(wrong->cause), called), wrong->fix);
 }
 
+bool is_key_of_kind(std::string_view name) {
+  return std::ranges::any_of(effect_kinds, [&](const EffectKind* kind) { return kind->key == name; });
+}
+
+// "k = 1, most = 1": what must be given.
+std::string example_of(const JointType& type) {
+  std::string text;
+  for (std::size_t k = 0; k < type.parameters.size(); ++k)
+    if (type.coordinate_uses[k] == CoordinateUse::required)
+      text += fmt::format("{}{} = 1", text.empty() ? "" : ", ", type.parameters[k].name);
+  return text;
+}
+
+// An effect of a spec: { k = 50, most = 3 }, or the number of its only parameter.
+void read_spec(Entry& entry, const JointType& type, CoordinateEffects& effects) {
+  const std::string key(type.name);
+  SpecEffect effect{key};
+  std::vector<const ParameterInfo*> needed;
+  const auto quantity = [](const ParameterInfo& info) {
+    return Quantity{info.above >= 0 ? Sign::positive : Sign::any, info.unit == "rad"};
+  };
+  for (std::size_t k = 0; k < type.parameters.size(); ++k)
+    if (type.coordinate_uses[k] == CoordinateUse::required) needed.push_back(&type.parameters[k]);
+  if (needed.size() == 1 && !entry.is_table(key)) {
+    if (const auto number = entry.number(key.c_str(), quantity(*needed[0])))
+      effect.parameters.push_back({std::string(needed[0]->name), {*number}});
+  } else if (auto table = entry.table(key, fmt::format("{{ {} }}", example_of(type)))) {
+    for (std::size_t k = 0; k < type.parameters.size(); ++k) {
+      const ParameterInfo& info = type.parameters[k];
+      const std::string name(info.name);
+      if (type.coordinate_uses[k] == CoordinateUse::none) continue;
+      if (type.coordinate_uses[k] == CoordinateUse::required) table->required(name, name + " = 1");
+      if (const auto number = table->number(name, quantity(info))) effect.parameters.push_back({name, {*number}});
+    }
+    table->close();
+  }
+  effects.specs.push_back(std::move(effect));
+}
+
+void read_specs(Entry& entry, const CoordinateInfo& coordinate, CoordinateEffects& effects) {
+  for (const JointType& type : coordinate_effects()) {
+    const std::string key(type.name);
+    if (is_key_of_kind(key) || !entry.has(key)) continue;
+    if (type.coordinate_unit == coordinate.unit) read_spec(entry, type, effects);
+    else
+      entry.error(entry.where(key),
+                  fmt::format("`{}` acts on coordinates in {}; `{}` is in {}", key, type.coordinate_unit,
+                              coordinate.name, coordinate.unit),
+                  "");
+  }
+}
+
 }  // namespace
 
 void read_effects(Entry& joint, const JointType& type, std::vector<CoordinateEffects>& to) {
@@ -63,6 +116,7 @@ void read_effects(Entry& joint, const JointType& type, std::vector<CoordinateEff
     }
     CoordinateEffects effects{key};
     for (const EffectKind* kind : effect_kinds) read_effect(*entry, *kind, coordinate.unit == "rad", effects);
+    read_specs(*entry, coordinate, effects);
     entry->close();
     to.push_back(std::move(effects));
   }
@@ -82,6 +136,12 @@ std::optional<Softness> read_softness(Entry& joint, const char* key) {
 KeyTable keys_of_effects() {
   KeyTable table{"Effects on a coordinate of a joint: angle.motor = { speed = 2 }", {}};
   for (const EffectKind* kind : effect_kinds) table.rows.push_back({kind->key, kind->meaning, ""});
+  for (const JointType& type : coordinate_effects())
+    if (!is_key_of_kind(type.name))
+      table.rows.push_back(
+          {std::string(type.name),
+           fmt::format("`{{ {} }}` on a coordinate in {}: {}", example_of(type), type.coordinate_unit, type.title),
+           ""});
   return table;
 }
 

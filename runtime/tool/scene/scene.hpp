@@ -83,7 +83,6 @@ struct Measured {
   } what = energy;
   int joint = -1;
   std::string coordinate_name{};
-  int first = 0, last = 0;  // the coordinate's effects among those of the joint
 };
 
 // An expression that a run evaluates: a column of the output.

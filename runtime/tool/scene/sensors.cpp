@@ -22,28 +22,15 @@ struct Measurable {
 
 std::string unit_of_force(std::string_view unit) { return unit == "rad" ? "N*m" : unit == "m" ? "N" : ""; }
 
-// The numbers of a coordinate's effects among those of its joint: from 1, in the order of the scene.
-std::pair<int, int> effects_of(const SceneJoint& joint, std::string_view coordinate) {
-  int first = 1;
-  for (const CoordinateEffects& effects : joint.effects) {
-    int count = 0;
-    effects.each([&](const auto&) { ++count; });
-    if (effects.coordinate == coordinate) return {first, first + count};
-    first += count;
-  }
-  return {first, first};
-}
-
 void add_joint_to(Measurable& all, const SceneJoint& joint, int number, Dimension dimension) {
   using enum Measured::What;
   for (const CoordinateInfo& c : find_joint_type(dimension, joint.definition.type)->coordinates) {
     const std::string name(c.name), path = joint.name + "." + name, unit(c.unit);
-    const auto [first, last] = effects_of(joint, name);
     all.add(path, unit, {coordinate, number, name});
     all.add("rate(" + path + ")", unit + "/s", {rate, number, name});
     if (unit_of_force(unit).empty()) continue;
-    all.add("force(" + path + ")", unit_of_force(unit), {effects, number, name, first, last});
-    all.add("power(" + path + ")", "J/s", {power, number, name, first, last});
+    all.add("force(" + path + ")", unit_of_force(unit), {effects, number, name});
+    all.add("power(" + path + ")", "J/s", {power, number, name});
   }
   all.add("force(" + joint.name + ")", "N", {force, number, ""}, true);
   all.add("torque(" + joint.name + ")", "N*m", {torque, number, ""}, dimension == Dimension::spatial);

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "runtime/state/add_rows.hpp"
 #include "runtime/state/probe.hpp"
 #include "runtime/state/world_data.hpp"
 
@@ -25,10 +26,12 @@ double force_of_effects(BasicWorld<S>& world, const Measured& m) {
   const WorldData<S>& data = world.data();
   const JointRecord& joint = data.joints[static_cast<std::size_t>(m.joint)];
   if (joint.broken || data.last_step <= 0) return 0;
+  const auto coordinate = static_cast<std::size_t>(coordinate_index<S>(joint.type, m.coordinate_name));
+  const BlockVariants<S>& rows = joint_entries<S>()[static_cast<std::size_t>(joint.type)].coordinates[coordinate];
   double sum = 0;
-  for (int k = m.first; k < m.last && k < std::ssize(joint.places); ++k) {
-    const Place& place = joint.places[static_cast<std::size_t>(k)];
+  for (const Place& place : joint.places) {
     const Batch<S>& batch = *data.batches[static_cast<std::size_t>(place.batch)];
+    if (!rows.has(batch.ops)) continue;
     const auto i = static_cast<std::size_t>(slot_of(data, place) * batch.ops->rows);
     sum += (double(batch.lambda[i]) + double(batch.correction[i])) / data.last_step;
   }

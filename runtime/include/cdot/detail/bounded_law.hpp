@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <cdot/detail/block.hpp>
+#include <cdot/detail/effect_law.hpp>
 
 namespace cdot {
 
@@ -25,15 +25,14 @@ bool nearer_to_lower(T C, const RowBounds<T>& ends) {
   return C - ends.lower < ends.upper - C;
 }
 
-template <class S, class Effect, class Row>
+template <class S, class Effect, class Row, ParametersAt where>
 struct BoundedLaw {
   using T = typename S::Scalar;
-  using Parameters = typename Effect::template Parameters<T>;
 
   static RowBounds<T> bounds(const Batch<S>& batch, int slot) {
     RowBounds<T> B;
-    Row::bounds(reinterpret_cast<const T(&)[1]>(batch.C[slot]),
-                reinterpret_cast<const Parameters*>(batch.parameters.data())[slot], batch.time, B);
+    Row::bounds(reinterpret_cast<const T(&)[1]>(batch.C[slot]), parameters_of<S, Effect, where>(batch, slot),
+                batch.time, B);
     if (!(B.upper > B.lower)) B.upper = B.lower;
     return B;
   }
@@ -84,15 +83,16 @@ struct BoundedLaw {
   }
 };
 
-template <class S, class Effect, class Row>
+template <class S, class Effect, class Row, ParametersAt where = ParametersAt::joint>
 inline constexpr Law<S> bounded_law{
-    .constants = 0,
+    .constants = constants_of_row<S, Effect, where>,
     .reported = false,
-    .fill = Row::of_rate ? BoundedLaw<S, Effect, Row>::fill_rate : BoundedLaw<S, Effect, Row>::fill_ends,
-    .error = Row::of_rate ? nullptr : BoundedLaw<S, Effect, Row>::error_ends,
+    .fill = Row::of_rate ? BoundedLaw<S, Effect, Row, where>::fill_rate : BoundedLaw<S, Effect, Row, where>::fill_ends,
+    .error = Row::of_rate ? nullptr : BoundedLaw<S, Effect, Row, where>::error_ends,
     .energy = nullptr,
     .force = nullptr,
-    .guard = Row::of_rate ? BoundedLaw<S, Effect, Row>::guard_rate : BoundedLaw<S, Effect, Row>::guard_ends,
+    .guard =
+        Row::of_rate ? BoundedLaw<S, Effect, Row, where>::guard_rate : BoundedLaw<S, Effect, Row, where>::guard_ends,
     .in_time = Row::in_time,
     .of_spec = true};
 

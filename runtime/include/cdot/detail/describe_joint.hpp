@@ -34,6 +34,10 @@ JointType describe_joint() {
     constexpr bool also_pushes = requires { &Joint::template unstored<double>; };
     type.without_energy = also_pushes || !stores;
   }
+  if constexpr (requires { Joint::coordinate_unit; }) {
+    type.coordinate_unit = Joint::coordinate_unit;
+    type.coordinate_uses.assign(Joint::coordinate_uses.begin(), Joint::coordinate_uses.end());
+  }
   if constexpr (requires { typename Joint::Bounded; }) {
     [&]<class... Rows>(std::type_identity<std::tuple<Rows...>>) {
       type.explicit_time |= (Rows::in_time || ...);

@@ -17,15 +17,29 @@
 
 namespace cdot {
 
-template <class S, class Effect>
+// Where a law finds its parameters: those of its own joint, or the constants of a row on the coordinate of another.
+enum class ParametersAt { joint, row };
+
+template <class S, class Effect, ParametersAt where>
+const auto& parameters_of(const Batch<S>& batch, int slot) {
+  using Numbers = typename Effect::template Parameters<typename S::Scalar>;
+  const auto* const numbers = where == ParametersAt::joint ? batch.parameters.data() : batch.constants.data();
+  return reinterpret_cast<const Numbers*>(numbers)[slot];
+}
+template <class S, class Effect, ParametersAt where>
+inline constexpr int constants_of_row =
+    where == ParametersAt::joint ? 0
+                                 : static_cast<int>(sizeof(typename Effect::template Parameters<typename S::Scalar>) /
+                                                    sizeof(typename S::Scalar));
+
+template <class S, class Effect, ParametersAt where = ParametersAt::joint>
 struct EffectLaw {
   using T = typename S::Scalar;
-  using Parameters = typename Effect::template Parameters<T>;
   static constexpr int rows = Effect::rows;
   using Row = const T (&)[rows];
 
-  static const Parameters& parameters(const Batch<S>& batch, int slot) {
-    return reinterpret_cast<const Parameters*>(batch.parameters.data())[slot];
+  static const auto& parameters(const Batch<S>& batch, int slot) {
+    return parameters_of<S, Effect, where>(batch, slot);
   }
   static Row C(const Batch<S>& batch, int slot) { return reinterpret_cast<Row>(batch.C[slot * rows]); }
 
@@ -96,16 +110,17 @@ struct EffectLaw {
   }
 };
 
-template <class S, class Effect>
-inline constexpr Law<S> effect_law{0,
-                                   false,
-                                   EffectLaw<S, Effect>::fill,
-                                   nullptr,
-                                   EffectLaw<S, Effect>::has_energy ? EffectLaw<S, Effect>::energy : nullptr,
-                                   EffectLaw<S, Effect>::force,
-                                   nullptr,
-                                   EffectLaw<S, Effect>::spring,
-                                   EffectLaw<S, Effect>::unstored,
-                                   Effect::law_in_time};
+template <class S, class Effect, ParametersAt where = ParametersAt::joint>
+inline constexpr Law<S> effect_law{
+    .constants = constants_of_row<S, Effect, where>,
+    .reported = false,
+    .fill = EffectLaw<S, Effect, where>::fill,
+    .error = nullptr,
+    .energy = EffectLaw<S, Effect, where>::has_energy ? EffectLaw<S, Effect, where>::energy : nullptr,
+    .force = EffectLaw<S, Effect, where>::force,
+    .guard = nullptr,
+    .spring = EffectLaw<S, Effect, where>::spring,
+    .unstored = EffectLaw<S, Effect, where>::unstored,
+    .in_time = Effect::law_in_time};
 
 }  // namespace cdot

@@ -1,0 +1,215 @@
+// Effects of specs on the coordinate of any joint: their laws, with the parameters as constants of the row.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include <cdot/detail/bounded_law.hpp>
+#include <cdot/detail/describe_joint.hpp>
+#include <cdot/planar.hpp>
+#include <cdot/planar/registry.hpp>
+#include <cdot/spatial.hpp>
+#include <cdot/spatial/registry.hpp>
+
+#include "runtime/effects/effect.hpp"
+#include "runtime/rows/parameters.hpp"
+#include "runtime/state/probe.hpp"
+
+namespace cdot {
+namespace {
+
+template <class Effect, class... Others>
+constexpr bool has_name_of(std::type_identity<std::tuple<Others...>>) {
+  return ((Effect::name == Others::name) || ...);
+}
+
+// f(std::type_identity<Effect>, std::type_identity<Pose<double>>) for each; of equal names that of the plane.
+template <class F>
+void each_coordinate_effect(F f) {
+  const auto in_space = [&]<class Pose, class Others, class... Effects>(std::type_identity<std::tuple<Effects...>>,
+                                                                        std::type_identity<Others>,
+                                                                        std::type_identity<Pose> pose) {
+    const auto one = [&]<class Effect>(std::type_identity<Effect> effect) {
+      if constexpr (requires { Effect::coordinate_unit; })
+        if constexpr (!has_name_of<Effect>(std::type_identity<Others>{})) f(effect, pose);
+    };
+    (one(std::type_identity<Effects>{}), ...);
+  };
+  using Planar = std::type_identity<planar::Effects>;
+  in_space(Planar{}, std::type_identity<std::tuple<>>{}, std::type_identity<planar::Pose<double>>{});
+  in_space(std::type_identity<spatial::Effects>{}, Planar{}, std::type_identity<spatial::Pose<double>>{});
+}
+
+template <class Effect>
+using RowOf = std::tuple_element_t<0, typename Effect::Bounded>;
+
+template <class S, class Effect>
+constexpr const Law<S>& law_on_coordinate() {
+  if constexpr (requires { typename Effect::Bounded; }) return bounded_law<S, Effect, RowOf<Effect>, ParametersAt::row>;
+  else return effect_law<S, Effect, ParametersAt::row>;
+}
+
+// In the order of coordinate_effects().
+template <class S>
+const std::vector<const Law<S>*>& laws_on_coordinates() {
+  static const std::vector<const Law<S>*> laws = [] {
+    std::vector<const Law<S>*> all;
+    each_coordinate_effect([&]<class Effect, class Pose>(std::type_identity<Effect>, std::type_identity<Pose>) {
+      all.push_back(&law_on_coordinate<S, Effect>());
+    });
+    return all;
+  }();
+  return laws;
+}
+
+// The functions of an effect in doubles.
+struct Functions {
+  void (*default_value)(int index, double* parameters, double time);
+  void (*bounds)(double C, const double* parameters, double time, RowBounds<double>&);  // null: no bounds
+};
+
+template <class Effect, class Pose>
+Functions functions_of() {
+  using Numbers = typename Effect::template Parameters<double>;
+  Functions functions{[](int index, double* parameters, double time) {
+                        const Pose nowhere[Effect::bodies] = {};
+                        Effect::default_value(index, nowhere, *reinterpret_cast<Numbers*>(parameters), time);
+                      },
+                      nullptr};
+  if constexpr (requires { typename Effect::Bounded; })
+    functions.bounds = [](double C, const double* parameters, double time, RowBounds<double>& B) {
+      const double value[1] = {C};
+      RowOf<Effect>::bounds(value, *reinterpret_cast<const Numbers*>(parameters), time, B);
+    };
+  return functions;
+}
+
+const std::vector<Functions>& functions_on_coordinates() {
+  static const std::vector<Functions> functions = [] {
+    std::vector<Functions> all;
+    each_coordinate_effect([&]<class Effect, class Pose>(std::type_identity<Effect>, std::type_identity<Pose>) {
+      all.push_back(functions_of<Effect, Pose>());
+    });
+    return all;
+  }();
+  return functions;
+}
+
+// Its place among coordinate_effects().
+std::size_t index_of(const std::string& name) {
+  if (const JointType* const type = find_coordinate_effect(name))
+    return static_cast<std::size_t>(type - coordinate_effects().data());
+  throw Error(fmt::format("there is no effect `{}` for the coordinate of a joint", name));
+}
+
+void check_bounds(std::size_t index, double C, const std::vector<double>& numbers, double time) {
+  const auto bounds = functions_on_coordinates()[index].bounds;
+  if (!bounds) return;
+  const JointType& type = coordinate_effects()[index];
+  RowBounds<double> B;
+  bounds(C, numbers.data(), time, B);
+  if (!(B.lower <= B.upper) || !std::isfinite(B.rate))
+    throw Error(
+        fmt::format("effect `{}` has bounds from {:.6g} to {:.6g}: the lower one must not lie above the upper "
+                    "one{}",
+                    type.name, B.lower, B.upper, scalars_of(type, numbers)));
+}
+
+// Writes the given parameters into `numbers`. Returns these.
+std::vector<const ParameterInfo*> take_given(const JointType& type, const std::vector<NamedValue>& given,
+                                             std::vector<double>& numbers) {
+  for (std::size_t k = 0; k < type.parameters.size(); ++k)
+    for (const NamedValue& value : given)
+      if (value.name == type.parameters[k].name && type.coordinate_uses[k] == CoordinateUse::none)
+        throw Error(
+            fmt::format("parameter `{}` of effect `{}` has no meaning on the coordinate of a joint: leave it "
+                        "out",
+                        value.name, type.name));
+  return change_parameters(type, given, numbers);
+}
+
+// All numbers of Parameters<double>; C is the value of the coordinate.
+std::vector<double> complete(std::size_t index, const std::vector<NamedValue>& given, double C, double time) {
+  const JointType& type = coordinate_effects()[index];
+  std::vector<double> numbers(static_cast<std::size_t>(type.parameter_size), 0.0);
+  const std::vector<const ParameterInfo*> taken = take_given(type, given, numbers);
+  for (std::size_t k = 0; k < type.parameters.size(); ++k) {
+    const ParameterInfo& info = type.parameters[k];
+    const CoordinateUse use = type.coordinate_uses[k];
+    if (use == CoordinateUse::none || std::ranges::find(taken, &info) != taken.end()) continue;
+    if (use == CoordinateUse::required)
+      throw Error(fmt::format("effect `{}` needs its parameter `{}` (it has no default on a coordinate)", type.name,
+                              info.name));
+    if (use == CoordinateUse::value) numbers[static_cast<std::size_t>(info.offset)] = C;
+    else functions_on_coordinates()[index].default_value(static_cast<int>(k), numbers.data(), time);
+  }
+  check_bounds(index, C, numbers, time);
+  return numbers;
+}
+
+template <class S>
+NamedLaw<S> law_of(std::size_t index) {
+  return {*laws_on_coordinates<S>()[index], coordinate_effects()[index].name.data()};
+}
+
+}  // namespace
+
+#ifndef CDOT_EXTENDED
+std::span<const JointType> coordinate_effects() {
+  static const std::vector<JointType> types = [] {
+    std::vector<JointType> all;
+    each_coordinate_effect([&]<class Effect, class Pose>(std::type_identity<Effect>, std::type_identity<Pose>) {
+      all.push_back(describe_joint<Effect>());
+    });
+    return all;
+  }();
+  return types;
+}
+
+const JointType* find_coordinate_effect(std::string_view name) {
+  const auto types = coordinate_effects();
+  const auto found = std::ranges::find(types, name, &JointType::name);
+  return found == types.end() ? nullptr : &*found;
+}
+
+bool SpecEffect::acts_one_way() const { return coordinate_effects()[index_of(type)].without_energy; }
+#endif
+
+template <class S>
+int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const SpecEffect& effect) {
+  WorldData<S>& data = world.data();
+  check_joint(data, joint);
+  const std::size_t index = index_of(effect.type);
+  const JointType& type = coordinate_effects()[index];
+  const JointType& of_joint = joint_types(S::dimension)[static_cast<std::size_t>(data.joints[joint].type)];
+  const auto place = static_cast<std::size_t>(coordinate_index<S>(data.joints[joint].type, coordinate));
+  const std::string_view unit = of_joint.coordinates[place].unit;
+  if (unit != type.coordinate_unit)
+    throw Error(fmt::format("effect `{}` acts on a coordinate in {}; `{}` of joint `{}` is in {}", type.name,
+                            type.coordinate_unit, coordinate, of_joint.name, unit));
+  const auto constants = complete(index, effect.parameters, world.coordinate(joint, coordinate), data.time);
+  note_change(data);
+  return add_coordinate_row(data, joint, coordinate, &law_of<S>(index).law, constants, type.name);
+}
+
+template <class S>
+void set_effect(BasicWorld<S>& world, int joint, int number, const SpecEffect& effect) {
+  WorldData<S>& data = world.data();
+  const std::size_t index = index_of(effect.type);
+  const NamedLaw<S> named = law_of<S>(index);
+  const Batch<S>* const batch = batch_of_effect(world, joint, number, named);
+  if (!batch) return;
+  const int slot = slot_of(data, data.joints[joint].places[static_cast<std::size_t>(number)]);
+  const auto* const now = batch->constants.data() + slot * named.law.constants;
+  std::vector<double> numbers(now, now + named.law.constants);
+  take_given(coordinate_effects()[index], effect.parameters, numbers);
+  check_bounds(index, double(batch->C[slot]), numbers, data.time);
+  set_constants(world, joint, number, named, numbers);
+}
+
+#define CDOT_INSTANTIATE(S)                                                          \
+  template int add_effect(BasicWorld<S>&, int, std::string_view, const SpecEffect&); \
+  template void set_effect(BasicWorld<S>&, int, int, const SpecEffect&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot
