@@ -11,7 +11,10 @@ std::vector<Chain> law_chains(const Lecture& lecture) {
   };
   if (lecture.joint.law->energy) show("E", lecture.joint.law->energy);
   for (const LawInput& input : lecture.joint.law->inputs)
-    if (input.force) show("F_" + input.name, input.force);
+    if (input.force) {
+      show("F_" + input.name, input.force);
+      if (input.lower) show("min F_" + input.name, input.lower), show("max F_" + input.name, input.upper);
+    }
   return chains;
 }
 

@@ -35,6 +35,7 @@ const std::map<std::string, Signature>& signatures() {
       {"force", {{"C", "rate", "p", "time"}, "T (&F)[ROWS]"}},
       {"unstored", {{"C", "rate", "p", "time"}, "T (&F)[ROWS]"}},
       {"slopes", {{"C", "rate", "p", "time"}, "T (&k)[ROWS][ROWS], T (&d)[ROWS][ROWS]"}},
+      {"limits", {{"C", "p", "time"}, "T (&lower)[ROWS], T (&upper)[ROWS]"}},
       {"bounds", {{"C", "p", "time"}, "RowBounds<T>& B"}}};
   return table;
 }
@@ -130,7 +131,7 @@ void FunctionWriter::name_inputs_of_law(const Joint& joint) {
     for (int k = 0; k < joint.dimension && input.rate->vector; ++k) name(input, std::string("_") + "xyz"[k]);
   }
   printing_.inputs[bounded_value] = "C[0]";
-  for (const char* name : {"B", "E", "k", "d"}) printing_.reserved.insert(name);
+  for (const char* name : {"B", "E", "k", "d", "lower", "upper"}) printing_.reserved.insert(name);
 }
 
 void FunctionWriter::name_inputs_of_body(const Joint& joint, std::size_t b) {

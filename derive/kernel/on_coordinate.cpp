@@ -24,7 +24,7 @@ std::vector<Expr> numbers_of(const EffectLaw& law) {
     if (e) numbers.push_back(e);
   };
   add(law.energy);
-  for (const LawInput& input : law.inputs) add(input.force);
+  for (const LawInput& input : law.inputs) add(input.force), add(input.lower), add(input.upper);
   for (const BoundedRow& row : law.bounded) add(row.lower), add(row.upper), add(row.rate);
   return numbers;
 }

@@ -22,6 +22,16 @@ void plan_law(const Joint& joint, const DerivedLaw& law, std::vector<KernelFunct
   };
   if (law.energy) add("energy", "the energy E(C)", {{"E", of(law.energy)}});
   add("force", "the force along each row", elements("F", law.force));
+  std::vector<NamedExpr> limits;
+  std::size_t row = 0;
+  for (const LawInput& input : joint.law->inputs) {
+    if (input.lower) {
+      limits.push_back({element("lower", row), of(input.lower)});
+      limits.push_back({element("upper", row), of(input.upper)});
+    }
+    row += input.rate->vector ? static_cast<std::size_t>(joint.dimension) : 1;
+  }
+  if (!limits.empty()) add("limits", "the limits of the force", limits);
   const bool works = std::ranges::any_of(law.unstored, [](Expr e) { return !is_zero(e); });
   if (works && law.energy) add("unstored", "the part of the force without an energy", elements("F", law.unstored));
   std::vector<NamedExpr> slopes;

@@ -96,6 +96,7 @@ class Elaborator {
   // elaborate_law.cpp
   void energy(Source& source, const StatementAst& s);
   void force(Source& source, const StatementAst& s);
+  void limit_force(Source& source, const StatementAst& s, std::size_t at);
   Value law_value(Source& source, const StatementAst& s);
   Expr read_by_inputs(const StatementAst& s, Expr e);
   void coordinate_of_effect(Source& source, const StatementAst& s, const Value& value, Unit unit);

@@ -207,6 +207,23 @@ void Elaborator::force(Source& source, const StatementAst& s) {
     return d.error(s.left.where, "this force is in " + spoken(*v.unit) + ", not in " + spoken(joule / input.unit));
   const Expr value = zero_vector_given ? zero_vector(*pool_) : v.e;
   input.force = input.force ? input.force + value : value;
+  if (s.lower) limit_force(source, s, at);
+}
+
+// "," "within" "[" lower "," upper "]", of the sum of all forces on this coordinate.
+void Elaborator::limit_force(Source& source, const StatementAst& s, std::size_t at) {
+  const LawInput input = joint_.law->inputs[at];
+  if (input.rate->vector || !input.value)
+    return source.diagnostics.error(s.lower->where, "limits are for the force on a coordinate",
+                                    "declare a coordinate, and push along it");
+  if (input.lower)
+    return source.diagnostics.error(s.lower->where, "the force on " + quote(input.name) + " has limits already",
+                                    "write them once: they limit the sum");
+  const std::vector<Expr> also = {input.value, time_symbol(*pool_)};
+  const Expr lower = bound_value(source, *s.lower, joule / input.unit, also);
+  const Expr upper = bound_value(source, *s.upper, joule / input.unit, also);
+  joint_.law->inputs[at].lower = lower;
+  joint_.law->inputs[at].upper = upper;
 }
 
 void Elaborator::check_law(Source& spec) {
@@ -216,6 +233,10 @@ void Elaborator::check_law(Source& spec) {
     spec.diagnostics.error(spec.ast.name.where,
                            "the effect has neither an energy nor a force nor a row with bounds: it does nothing",
                            "write energy ..., force on NAME = ..., NAME in [..., ...], or rate(NAME) = ...");
+  const auto limited = [](const LawInput& input) { return static_cast<bool>(input.lower); };
+  if (joint_.law->energy && std::ranges::any_of(joint_.law->inputs, limited))
+    spec.diagnostics.error(spec.ast.name.where, "a force with limits stores no energy, but this effect has one",
+                           "write the slope of the energy into the force");
   drop_idle_inputs();
 }
 

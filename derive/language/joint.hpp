@@ -81,7 +81,8 @@ struct LawInput {
   std::string name;  // of the row
   Expr value, rate;  // leaves; no value: of a torque in space, where a turn is no vector
   Unit unit;
-  Expr force;  // along it, without that of the energy; empty: none
+  Expr force;             // along it, without that of the energy; empty: none
+  Expr lower{}, upper{};  // limits of the force; empty: none
 };
 
 // A row with bounds on a coordinate of the effect: lower <= value <= upper, or a prescribed rate by a force within

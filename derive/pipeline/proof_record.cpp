@@ -106,6 +106,9 @@ std::string statement_of(const Derivation& derivation) {
   add(derivation.rows, text, expressions);
   for (const Block& coordinate : derivation.coordinates) add(coordinate, text, expressions);
   if (derivation.law) add(*derivation.law, text, expressions);
+  if (joint.law)
+    for (const LawInput& input : joint.law->inputs)
+      if (input.lower) expressions.insert(expressions.end(), {input.lower, input.upper});
   for (const DerivedBound& bound : derivation.bounded)
     if (bound.rate) expressions.insert(expressions.end(), {bound.rate, bound.acceleration});
   return hash_of(text + text_of_graph(*joint.pool, expressions));

@@ -209,7 +209,7 @@ class JointParser {
     finish(s);
   }
 
-  // "energy" expression, or ( "force" | "torque" ) "on" NAME "=" expression
+  // "energy" expression, "torque" "on" BODY "=" expression, or "force" "on" NAME "=" expression [ "," "within" range ]
   void law() {
     const std::string word(p_.take().text);
     StatementAst s = begin(word == "energy" ? StatementAst::Kind::energy : StatementAst::Kind::force);
@@ -224,7 +224,16 @@ class JointParser {
     if (!p_.failed() && !p_.accept("=") && word != "energy")
       p_.fail(p_.peek().where, "`=` is missing after " + quote(word + " on " + s.label.text) + ": " + p_.found());
     s.left = p_.expression();
+    if (word == "force" && !p_.failed() && p_.accept(",")) limits(s);
     finish(s);
+  }
+
+  // "within" "[" expression "," expression "]"
+  void limits(StatementAst& s) {
+    if (!p_.at_word("within"))
+      return p_.fail(p_.peek().where, "the limits of the force must follow: " + p_.found(),
+                     "write within [-most, most]");
+    between(s);
   }
 
   // A name and its colon come before a bounded row.
@@ -272,7 +281,7 @@ class JointParser {
   void between(StatementAst& s) {
     if (p_.failed()) return;
     p_.take();
-    if (!p_.expect("[", "after `in`")) return;
+    if (!p_.expect("[", "before the lower bound")) return;
     s.lower = p_.expression();
     if (!p_.expect(",", "between the lower and the upper bound")) return;
     s.upper = p_.expression();

@@ -36,6 +36,7 @@
 #include <cdot/planar/magnetic_field.hpp>
 #include <cdot/planar/max_distance.hpp>
 #include <cdot/planar/motor.hpp>
+#include <cdot/planar/position_drive.hpp>
 #include <cdot/planar/press_fit.hpp>
 #include <cdot/planar/prismatic.hpp>
 #include <cdot/planar/pulley.hpp>
@@ -110,6 +111,7 @@ using Effects = std::tuple<
     lift,
     linear_actuator,
     magnetic_field,
+    position_drive,
     press_fit,
     rotational_drag,
     servo,

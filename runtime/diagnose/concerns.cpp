@@ -70,6 +70,15 @@ void on_rows(const Diagnosis::Island& island, const Names& names, std::vector<Co
          ""});
 }
 
+void on_limited_forces(const Diagnosis::Island& island, const Settings& settings, std::vector<Concern>& concerns) {
+  if (settings.local_error > 0 || settings.integrator == Integrator::euler || !(island.limited > 1)) return;
+  concerns.push_back({true,
+                      fmt::format("the force of an effect with limits is {:.2g} times too stiff for the step: {} "
+                                  "swings between the limits",
+                                  island.limited, name_of(integrators, settings.integrator)),
+                      "integrator = \"euler\", which is implicit up to the limits, or " + own_steps});
+}
+
 void on_stiffness(const Diagnosis::Island& island, const Settings& settings, double h, const Names& names,
                   std::vector<Concern>& concerns) {
   if (settings.local_error > 0 || takes_midpoint(settings) || !(island.stiffest.square > 0)) return;
@@ -140,6 +149,7 @@ std::vector<Concern> concerns_about(const Diagnosis::Island& island, const Setti
                                     const Names& names) {
   std::vector<Concern> concerns;
   on_rows(island, names, concerns);
+  on_limited_forces(island, settings, concerns);
   on_stiffness(island, settings, h, names, concerns);
   on_spin(island, settings, h, names, concerns);
   on_damping(island, settings, h, names, concerns);

@@ -223,6 +223,7 @@ Diagnosis diagnose(BasicWorld<S>& world, double h) {
     measure_rows(world.data(), island, equations, found);
     found.mobility = freedom_of(world.data(), island) - found.rank;
     find_nearly_redundant_rows(world.data(), island, equations, found);
+    found.limited = stiffest_limited_force(world.data(), island, typename S::Scalar(h));
     found.stiffest = stiffest_motion(world.data(), island, equations, typename S::Scalar(h));
   }
   world.restore(before);

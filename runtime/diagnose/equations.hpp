@@ -100,6 +100,11 @@ double spin_of(const typename S::Velocity& velocity) {
   return std::sqrt(square);
 }
 
+// h (d + h k) K of the stiffest row whose force has limits, within these; 0 without such rows. Above about 1 only a
+// step that is implicit up to the limits ends where the force would.
+template <class S>
+double stiffest_limited_force(WorldData<S>& world, const Island<S>& island, typename S::Scalar h);
+
 // The stiffest motion of the island in steps of h: the linearly implicit step reduces its stiffness.
 template <class S>
 Diagnosis::Stiffest stiffest_motion(WorldData<S>& world, Island<S>& island, Equations<S>& equations,

@@ -207,7 +207,29 @@ Diagnosis::Stiffest stiffest_motion(WorldData<S>& world, Island<S>& island, Equa
   return found;
 }
 
-#define CDOT_INSTANTIATE(S) \
+template <class S>
+double stiffest_limited_force(WorldData<S>& world, const Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  double most = 0;
+  for (const auto& [batch, begin, end, whole] : island.segments) {
+    if (!batch->law || !batch->law->within_limits) continue;
+    batch->ops->evaluate(*batch, begin, end, world.bodies, T(world.time));
+    batch->ops->velocity(*batch, begin, end, world.bodies.velocity.data(), batch->rate.data());
+    batch->ops->effective_mass(*batch, begin, end, world.bodies);
+    SpringNumbers<T> springs[most_rows];
+    for (int slot = begin; slot < end; ++slot) {
+      batch->law->within_limits(*batch, slot, springs);
+      for (int r = 0; r < batch->ops->rows; ++r) {
+        const T K = batch->factor[slot * batch->triangle() + r * (r + 1) / 2 + r];
+        most = std::max(most, double(h * (springs[r].d + h * springs[r].k) * K));
+      }
+    }
+  }
+  return most;
+}
+
+#define CDOT_INSTANTIATE(S)                                                           \
+  template double stiffest_limited_force(WorldData<S>&, const Island<S>&, S::Scalar); \
   template Diagnosis::Stiffest stiffest_motion(WorldData<S>&, Island<S>&, Equations<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

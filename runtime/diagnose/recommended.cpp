@@ -46,6 +46,7 @@ struct Traits {
   double radians = 0, turn = 0;       // per substep, of the stiffest oscillation and of the fastest rotation
   int oscillating = -1, turning = -1;
   bool by_tension = false;
+  double limited = 0;  // stiffness of a force with limits, for the step
 };
 
 bool is_stiff(const Traits& t) {
@@ -72,6 +73,11 @@ constexpr struct {
   bool (*applies)(const Traits&);
   std::string (*why)(const Words&);
 } rules[] = {
+    {Integrator::euler,
+     [](const Traits& t) { return t.limited > 1; },
+     [](const Words& w) {
+       return fmt::format("the force of an effect with limits is {:.2g} times too stiff for the step", w.of.limited);
+     }},
     {Integrator::implicit,
      is_stiff,
      [](const Words& w) {
@@ -156,6 +162,7 @@ Traits traits_of(WorldData<S>& world, int index, double h, std::set<Kind>& known
     lawful |= segment.batch->law != nullptr;
     traits.bounded |= segment.batch->law && segment.batch->law->guard && segment.begin < segment.end;
   }
+  traits.limited = stiffest_limited_force(world, island, typename S::Scalar(h));
   for (int body : island.bodies) {
     const double turn = h * spin_of<S>(world.bodies.velocity[body]);
     if (turn > traits.turn) traits.turn = turn, traits.turning = body;

@@ -49,6 +49,7 @@ struct Diagnosis {
     std::vector<NearlyRedundant> nearly_redundant;
     int mobility = 0;  // velocities that the rows leave free
     Stiffest stiffest;
+    double limited = 0;                 // stiffness for the step of the stiffest force with limits; stiff above 1
     double lightest = 0, heaviest = 0;  // [kg]
     double fastest_spin = 0;            // [rad/s]
     int spinning = -1;                  // body with that spin

@@ -252,6 +252,40 @@ double error_of_detent(Integrator integrator, double h) {
 
 TEST(BoundedEffects, AKnobSwingsInItsNotch) { expect_orders("detent", 0.01, 0.2, error_of_detent, {.floor = 1e-8}); }
 
+// Beyond most/k from its target the torque is `most`; from there the turn swings as on a spring.
+double error_of_drive(Integrator integrator, double h) {
+  constexpr double I = 0.5, k = 5, most = 2, start = 1, band = most / k, a = most / I;
+  World<double> world(with(integrator));
+  const int rotor = wheel(world, I, -start);
+  world.add_joint({"position_drive", {rotor, world.ground()}, {{"target", {0}}, {"k", {k}}, {"most", {most}}}, {}});
+  const double W = std::sqrt(k / I), meets = std::sqrt(2 * (start - band) / a), end = meets + 0.2;
+  const long steps = std::lround(end / h);
+  for (long n = 0; n < steps; ++n) EXPECT_TRUE(world.step(end / static_cast<double>(steps)));
+  const double right = -band * std::cos(W * 0.2) + a * meets / W * std::sin(W * 0.2);
+  return std::abs(world.pose(rotor).angle - right);
+}
+
+TEST(BoundedEffects, ADriveKeepsItsLimit) { expect_close("position_drive", 0.005, {0.02, 1e-5}, error_of_drive); }
+
+// Euler's step is implicit up to the limit: it ends at the target, however stiff the drive.
+TEST(BoundedEffects, ADriveArrivesAtAnyStiffness) {
+  for (const double k : {1e3, 1e6, 1e9, 1e12}) {
+    World<double> world(with(Integrator::euler));
+    const int rotor = wheel(world, 0.5, -1);
+    world.add_joint({"position_drive",
+                     {rotor, world.ground()},
+                     {{"target", {0}}, {"k", {k}}, {"d", {0.1 * k}}, {"most", {2}}},
+                     {}});
+    double fastest = 0;
+    for (int n = 0; n < 300; ++n) {
+      ASSERT_TRUE(world.step(1.0 / 60));
+      fastest = std::max(fastest, std::abs(world.velocity(rotor).w));
+    }
+    EXPECT_NEAR(world.pose(rotor).angle, 0, 1e-9) << k;
+    EXPECT_LT(fastest, std::sqrt(2 * 2 / 0.5)) << k;  // sqrt(2 a) over the whole way
+  }
+}
+
 TEST(BoundedEffects, ALowerEndAboveTheUpperOneIsRefused) {
   World<double> world(with(Integrator::euler));
   const int slide = ball(world, 0, 0);

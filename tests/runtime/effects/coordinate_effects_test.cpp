@@ -16,6 +16,7 @@ struct Numbers {
 
 const Numbers of_turns[] = {
     {"servo", {{"target", {0.4}}, {"k", {5}}, {"d", {0.3}}, {"most", {2}}}},
+    {"position_drive", {{"target", {0.4}}, {"k", {5}}, {"d", {0.3}}, {"most", {1}}}},
     {"torsion_spring", {{"k", {5}}, {"d", {0.3}}}},
     {"dc_motor", {{"stall", {2}}, {"idle", {4}}}},
     {"induction_motor", {{"synchronous", {4}}, {"pull_out", {2}}, {"pull_out_slip", {0.2}}}},

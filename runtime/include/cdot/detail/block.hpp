@@ -130,6 +130,8 @@ struct Law {
   // of springs and constant forces, whose dampers are all that is not stored.
   void (*unstored)(const Batch<S>&, int slot, const T* rate, T* force) = nullptr;
   bool in_time = false;  // the force depends on the time: its island never sleeps
+  // Of an effect whose force has limits: stiffness and damping within these. Null: no limits.
+  void (*within_limits)(const Batch<S>&, int slot, SpringNumbers<T>*) = nullptr;
   bool of_spec = false;  // of a bounded row: its bounds may change with C and with the time
 
   bool is_of_effect() const { return unstored != nullptr; }

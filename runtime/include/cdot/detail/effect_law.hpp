@@ -5,6 +5,7 @@
 //   E::force    (C, rate, p, t, F)   the force along each row                                   [rows]
 //   E::unstored (C, rate, p, t, F)   its part without an energy; missing: all of it, or nothing beside an energy
 //   E::slopes   (C, rate, p, t, k, d)   k = -dF/dC, d = -dF/d(rate)                            [rows][rows]
+//   E::limits   (C, p, t, lower, upper)   of the force, on some rows; missing: none           [rows]
 //   E::acts     false for rows that only tell where a direction points                         [rows]
 //   E::law_in_time   the force depends on the time
 #pragma once
@@ -43,9 +44,29 @@ struct EffectLaw {
   }
   static Row C(const Batch<S>& batch, int slot) { return reinterpret_cast<Row>(batch.C[slot * rows]); }
 
-  static void force(const Batch<S>& batch, int slot, const T* rate, T* force) {
+  static void force_without_limits(const Batch<S>& batch, int slot, const T* rate, T* force) {
     Effect::force(C(batch, slot), reinterpret_cast<Row>(*rate), parameters(batch, slot), batch.time,
                   reinterpret_cast<T(&)[rows]>(*force));
+  }
+
+  static constexpr bool has_limits = requires { &Effect::template limits<T>; };
+  struct Limits {
+    T lower[rows], upper[rows];
+  };
+  static Limits limits(const Batch<S>& batch, int slot) {
+    Limits limits;
+    std::fill_n(limits.lower, rows, T(-unbounded)), std::fill_n(limits.upper, rows, T(unbounded));
+    if constexpr (has_limits)
+      Effect::limits(C(batch, slot), parameters(batch, slot), batch.time, limits.lower, limits.upper);
+    return limits;
+  }
+
+  static void force(const Batch<S>& batch, int slot, const T* rate, T* force) {
+    force_without_limits(batch, slot, rate, force);
+    if constexpr (has_limits) {
+      const Limits most = limits(batch, slot);
+      for (int r = 0; r < rows; ++r) force[r] = std::max(most.lower[r], std::min(force[r], most.upper[r]));
+    }
   }
 
   static void unstored(const Batch<S>& batch, int slot, const T* rate, T* force) {
@@ -81,32 +102,54 @@ struct EffectLaw {
     }
   }
 
+  // A force at a limit has no slope.
+  static void bounds_within_limits(const Batch<S>& batch, int slot, const T (&rate)[rows],
+                                   SpringNumbers<T> (&bound)[rows]) {
+    bounds(batch, slot, rate, bound);
+    if constexpr (has_limits) {
+      T F[rows];
+      force_without_limits(batch, slot, rate, F);
+      const Limits most = limits(batch, slot);
+      for (int r = 0; r < rows; ++r)
+        if (!(most.lower[r] < F[r] && F[r] < most.upper[r])) bound[r] = {T(0), T(0)};
+    }
+  }
+
   // A step of h that is implicit as far as k and d say: with F at the start and D = d + h k,
   //   lambda = h (F + d (rate - rate') - h k rate')   gives   rate' = (F + d rate) / D - lambda / (h D).
+  // Limits of the force are bounds of lambda.
   static void fill(Batch<S>& batch, int begin, int end, T h, const Settings&) {
     for (int slot = begin; slot < end; ++slot) {
       T rate[rows], F[rows];
       SpringNumbers<T> bound[rows];
       rate_of(batch, slot, rate);
-      force(batch, slot, rate, F);
+      force_without_limits(batch, slot, rate, F);
       bounds(batch, slot, rate, bound);
+      const Limits most = limits(batch, slot);
       for (int r = 0; r < rows; ++r) {
         const int i = slot * rows + r;
         const T D = bound[r].d + h * bound[r].k, K = batch.factor[slot * batch.triangle() + r * (r + 1) / 2 + r];
         const bool soft = h * D * K > std::numeric_limits<T>::epsilon();
         batch.softness[i] = soft ? T(1) / (h * D) : T(0);
-        batch.lower[i] = soft ? -std::numeric_limits<T>::infinity() : h * F[r];
-        batch.upper[i] = soft ? std::numeric_limits<T>::infinity() : h * F[r];
+        const T known = h * std::max(most.lower[r], std::min(F[r], most.upper[r]));
+        batch.lower[i] = soft ? h * most.lower[r] : known;
+        batch.upper[i] = soft ? h * most.upper[r] : known;
         if (soft) batch.bias[i] -= (F[r] + bound[r].d * rate[r]) / D;
       }
     }
+  }
+
+  static void within_limits(const Batch<S>& batch, int slot, SpringNumbers<T>* numbers) {
+    T rate[rows];
+    rate_of(batch, slot, rate);
+    bounds(batch, slot, rate, reinterpret_cast<SpringNumbers<T>(&)[rows]>(*numbers));
   }
 
   // Stiffness and damping as bounded.
   static void spring(const Batch<S>& batch, int slot, SpringNumbers<T>* numbers) {
     T rate[rows];
     rate_of(batch, slot, rate);
-    bounds(batch, slot, rate, reinterpret_cast<SpringNumbers<T>(&)[rows]>(*numbers));
+    bounds_within_limits(batch, slot, rate, reinterpret_cast<SpringNumbers<T>(&)[rows]>(*numbers));
   }
 };
 
@@ -121,6 +164,7 @@ inline constexpr Law<S> effect_law{
     .guard = nullptr,
     .spring = EffectLaw<S, Effect, where>::spring,
     .unstored = EffectLaw<S, Effect, where>::unstored,
-    .in_time = Effect::law_in_time};
+    .in_time = Effect::law_in_time,
+    .within_limits = EffectLaw<S, Effect, where>::has_limits ? EffectLaw<S, Effect, where>::within_limits : nullptr};
 
 }  // namespace cdot
