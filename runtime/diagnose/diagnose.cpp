@@ -216,6 +216,7 @@ Diagnosis diagnose(BasicWorld<S>& world, double h) {
   world.prepare();
   const Snapshot before = world.snapshot();
   Diagnosis diagnosis;
+  diagnosis.islands.reserve(world.data().islands.size());
   for (Island<S>& island : world.data().islands) {
     Equations<S> equations(world.data(), island);
     Diagnosis::Island& found = diagnosis.islands.emplace_back();

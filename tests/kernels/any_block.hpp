@@ -31,6 +31,7 @@ enum Function {
   law_force,
   law_unstored,
   law_slopes,  // k, then d
+  law_limits,  // lower, then upper
   // In space only.
   effective_mass_isotropic,
   apply_isotropic,
@@ -43,13 +44,13 @@ enum Function {
 // clang-format off
 inline constexpr std::array<std::string_view, number_of_functions> function_names = {
     "position", "jacobian", "effective_mass", "factor", "solve", "velocity", "apply", "dense", "inverse_mass_jacobian",
-    "gamma", "time_derivative", "stiffness", "energy", "force", "unstored", "slopes", "effective_mass_isotropic",
+    "gamma", "time_derivative", "stiffness", "energy", "force", "unstored", "slopes", "limits", "effective_mass_isotropic",
     "apply_isotropic", "inverse_mass_jacobian_isotropic", "local_jacobian", "euler_jacobian"};
 // clang-format on
 
 // True for functions that a variant inherits from its block.
 constexpr bool inherited_by_variants(Function f) {
-  return (f >= gamma && f <= law_slopes) || f == local_jacobian || f == euler_jacobian;
+  return (f >= gamma && f <= law_limits) || f == local_jacobian || f == euler_jacobian;
 }
 
 // The inputs of a block's functions, laid out as in the contract: x y c s angle of each body, ... or, in space, x y z

@@ -129,6 +129,11 @@ void evaluate_law(const T (&C)[Block::rows], const T (&rate)[Block::rows], const
   if constexpr (requires { Block::unstored(C, rate, p, time, F); })
     Block::unstored(C, rate, p, time, F), keep<T>(out, law_unstored, F);
   Block::slopes(C, rate, p, time, slopes.k, slopes.d), keep<T>(out, law_slopes, slopes);
+  struct {
+    T lower[Block::rows], upper[Block::rows];
+  } limits;
+  if constexpr (requires { Block::limits(C, p, time, limits.lower, limits.upper); })
+    Block::limits(C, p, time, limits.lower, limits.upper), keep<T>(out, law_limits, limits);
 }
 
 // A row block with a law: not the coordinates of an effect.

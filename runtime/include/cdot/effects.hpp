@@ -68,10 +68,10 @@ struct CoordinateEffects {
   void each(F f) const {
     if (limit) f(*limit);
     if (motor) f(*motor);
+    for (const SpecEffect& spec : specs) f(spec);  // before springs, so that sweeps end with these
     for (const CoordinateSpring& spring : springs) f(spring);
     if (friction) f(*friction);
     if (load) f(*load);
-    for (const SpecEffect& spec : specs) f(spec);
   }
 };
 
