@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "derive/syntax/parse_law.hpp"
 #include "derive/syntax/parser.hpp"
 
 namespace cdot::derive {
@@ -50,7 +51,7 @@ class JointParser {
     if (p_.at_word("coordinate") && declares) return coordinate();
     if (joint_.effect && (p_.at_word("energy") || p_.at_word("force") || p_.at_word("torque")) && !p_.at_symbol(":", 1))
       return law();
-    if (joint_.effect && at_bound()) return bound();
+    if (joint_.effect && at_bounded_row(p_)) return bound();
     if (p_.at_word("keep"))
       return p_.fail(p_.peek().where, "`keep` stands at the end of the row that it is about",
                      "write cross(f.x, u) = 0 keep 2, in one line");
@@ -209,83 +210,16 @@ class JointParser {
     finish(s);
   }
 
-  // "energy" expression, "torque" "on" BODY "=" expression, or "force" "on" NAME "=" expression [ "," "within" range ]
   void law() {
-    const std::string word(p_.take().text);
-    StatementAst s = begin(word == "energy" ? StatementAst::Kind::energy : StatementAst::Kind::force);
-    s.torque = word == "torque";
-    if (word != "energy") {
-      if (!p_.at_word("on"))
-        p_.fail(p_.peek().where, "`on` is missing after " + quote(word) + ": " + p_.found(),
-                s.torque ? "write torque on a = ..." : "write force on NAME = ..., with a coordinate or a point");
-      else p_.take();
-      s.label = p_.name(s.torque ? "the body" : "the coordinate or the point");
-    }
-    if (!p_.failed() && !p_.accept("=") && word != "energy")
-      p_.fail(p_.peek().where, "`=` is missing after " + quote(word + " on " + s.label.text) + ": " + p_.found());
-    s.left = p_.expression();
-    if (word == "force" && !p_.failed() && p_.accept(",")) limits(s);
+    StatementAst s = begin(p_.at_word("energy") ? StatementAst::Kind::energy : StatementAst::Kind::force);
+    parse_law(p_, s);
     finish(s);
   }
 
-  // "within" "[" expression "," expression "]"
-  void limits(StatementAst& s) {
-    if (!p_.at_word("within"))
-      return p_.fail(p_.peek().where, "the limits of the force must follow: " + p_.found(),
-                     "write within [-most, most]");
-    between(s);
-  }
-
-  // A name and its colon come before a bounded row.
-  bool at_bound() const {
-    const int first = p_.at_name() && p_.at_symbol(":", 1) ? 2 : 0;
-    if (p_.at_word("rate", first) && p_.at_symbol("(", first + 1)) return true;
-    const auto then = [&](std::string_view symbol) { return p_.at_symbol(symbol, first + 1); };
-    return p_.at_name(first) && (then(">=") || then("<=") || p_.at_word("in", first + 1));
-  }
-
-  // [ NAME ":" ] ( NAME ( ( ">=" | "<=" ) expression | "in" range )
-  //              | "rate" "(" NAME ")" "=" expression [ "," "force" "in" range ] )
   void bound() {
     StatementAst s = begin(StatementAst::Kind::bound);
-    if (p_.at_symbol(":", 1)) {
-      s.label = p_.name("the name of the row");
-      p_.take();
-    }
-    s.relation_where = p_.peek().where;
-    s.of_rate = p_.at_word("rate") && p_.at_symbol("(", 1);
-    if (s.of_rate) p_.take(), p_.take();
-    s.bounded = p_.name("the coordinate");
-    if (s.of_rate) prescribed_rate(s);
-    else if (p_.accept(">=")) s.lower = p_.expression();
-    else if (p_.accept("<=")) s.upper = p_.expression();
-    else between(s);
+    parse_bounded_row(p_, s);
     finish(s);
-  }
-
-  void prescribed_rate(StatementAst& s) {
-    p_.expect(")", "after the coordinate");
-    if (!p_.failed() && !p_.accept("="))
-      return p_.fail(p_.peek().where, "`=` is missing after `rate(" + s.bounded.text + ")`: " + p_.found(),
-                     "write rate(" + s.bounded.text + ") = ..., force in [-most, most]");
-    s.left = p_.expression();
-    if (p_.failed() || !p_.accept(",")) return;
-    if (!p_.at_word("force") || !p_.at_word("in", 1))
-      return p_.fail(p_.peek().where, "the bounds of the force must follow: " + p_.found(),
-                     "write force in [-most, most]");
-    p_.take();
-    between(s);
-  }
-
-  // "in" "[" expression "," expression "]"
-  void between(StatementAst& s) {
-    if (p_.failed()) return;
-    p_.take();
-    if (!p_.expect("[", "before the lower bound")) return;
-    s.lower = p_.expression();
-    if (!p_.expect(",", "between the lower and the upper bound")) return;
-    s.upper = p_.expression();
-    p_.expect("]", "after the upper bound");
   }
 
   // [ NAME ":" ] [ "velocity" ] expression ( "=" | "<=" | ">=" ) expression [ "keep" NUMBER ]

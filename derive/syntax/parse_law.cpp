@@ -1,0 +1,73 @@
+#include "derive/syntax/parse_law.hpp"
+
+namespace cdot::derive {
+namespace {
+
+// "[" expression "," expression "]", after the word before it
+void range(Parser& p, StatementAst& s) {
+  if (p.failed()) return;
+  p.take();
+  if (!p.expect("[", "before the lower bound")) return;
+  s.lower = p.expression();
+  if (!p.expect(",", "between the lower and the upper bound")) return;
+  s.upper = p.expression();
+  p.expect("]", "after the upper bound");
+}
+
+void prescribed_rate(Parser& p, StatementAst& s) {
+  p.expect(")", "after the coordinate");
+  if (!p.failed() && !p.accept("="))
+    return p.fail(p.peek().where, "`=` is missing after `rate(" + s.bounded.text + ")`: " + p.found(),
+                  "write rate(" + s.bounded.text + ") = ..., force in [-most, most]");
+  s.left = p.expression();
+  if (p.failed() || !p.accept(",")) return;
+  if (!p.at_word("force") || !p.at_word("in", 1))
+    return p.fail(p.peek().where, "the bounds of the force must follow: " + p.found(), "write force in [-most, most]");
+  p.take();
+  range(p, s);
+}
+
+}  // namespace
+
+void parse_law(Parser& p, StatementAst& s) {
+  const std::string word(p.take().text);
+  s.torque = word == "torque";
+  if (word != "energy") {
+    if (!p.at_word("on"))
+      p.fail(p.peek().where, "`on` is missing after " + quote(word) + ": " + p.found(),
+             s.torque ? "write torque on a = ..." : "write force on NAME = ..., with a coordinate or a point");
+    else p.take();
+    s.label = p.name(s.torque ? "the body" : "the coordinate or the point");
+  }
+  if (!p.failed() && !p.accept("=") && word != "energy")
+    p.fail(p.peek().where, "`=` is missing after " + quote(word + " on " + s.label.text) + ": " + p.found());
+  s.left = p.expression();
+  if (word != "force" || p.failed() || !p.accept(",")) return;
+  if (p.at_word("within")) return range(p, s);
+  p.fail(p.peek().where, "the limits of the force must follow: " + p.found(), "write within [-most, most]");
+}
+
+// A name and its colon may come first.
+bool at_bounded_row(const Parser& p) {
+  const int first = p.at_name() && p.at_symbol(":", 1) ? 2 : 0;
+  if (p.at_word("rate", first) && p.at_symbol("(", first + 1)) return true;
+  const auto then = [&](std::string_view symbol) { return p.at_symbol(symbol, first + 1); };
+  return p.at_name(first) && (then(">=") || then("<=") || p.at_word("in", first + 1));
+}
+
+void parse_bounded_row(Parser& p, StatementAst& s) {
+  if (p.at_symbol(":", 1)) {
+    s.label = p.name("the name of the row");
+    p.take();
+  }
+  s.relation_where = p.peek().where;
+  s.of_rate = p.at_word("rate") && p.at_symbol("(", 1);
+  if (s.of_rate) p.take(), p.take();
+  s.bounded = p.name("the coordinate");
+  if (s.of_rate) prescribed_rate(p, s);
+  else if (p.accept(">=")) s.lower = p.expression();
+  else if (p.accept("<=")) s.upper = p.expression();
+  else range(p, s);
+}
+
+}  // namespace cdot::derive
