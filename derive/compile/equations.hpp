@@ -1,40 +1,32 @@
 // The equations of a mechanism as programs, a function of the header each.
 #pragma once
 
-#include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "derive/compile/algebra.hpp"
-#include "derive/compile/joint_programs.hpp"
-#include "derive/compile/mechanism.hpp"
+#include "derive/compile/rows/row_blocks.hpp"
 
 namespace cdot::compile {
 
-// Rows of all joints, numbered from joint to joint.
-struct RowOf {
-  std::string name;  // "hinge_pin_x"
-  std::size_t joint = 0, row = 0;
-};
-
 struct Equations {
-  std::vector<RowOf> rows;
+  std::vector<std::string> rows;    // of all joints, numbered from joint to joint: "hinge_pin_x"
   std::vector<std::string> stored;  // the numbers of J and of its factor that `evaluate` writes
   std::set<std::string> turning;    // bodies whose c and s are read
   Constants constants;
   bool driven = false;  // dC/dt at fixed q is not 0
-  Program evaluate;     // q, time -> J: Jacobian, factor of K = J M^-1 J^T
-  Program errors;       // q, time -> C
-  Program rates;        // J, v -> J v + dC/dt
-  Program gamma;        // q, v, time -> -Jdot v - d/dt(dC/dt)
-  Program solve;        // J, b -> lambda with K lambda = b, d = M^-1 J^T lambda
+  // With joints:
+  Program evaluate;  // q, time -> J: Jacobian, factor of K = J M^-1 J^T
+  Program errors;    // q, time -> C
+  Program rates;     // J, v -> J v + dC/dt
+  Program gamma;     // q, v, time -> -Jdot v - d/dt(dC/dt)
+  Program solve;     // J, b -> lambda with K lambda = b, d = M^-1 J^T lambda
+  // Without:
+  Program fall;       // q, v, time -> a: accelerations of bodies without joints
+  Program kick;       // q, v, time, J, h -> next: v after an Euler step with effects; lambda of the joints
+  Program potential;  // q, time -> E of the effects
 };
-
-// `names` are those of bodies and joints in C++; "" for bodies that do not move.
-struct Names {
-  std::vector<std::string> bodies, joints;
-};
+std::vector<const Program*> programs_of_equations(const Equations& equations);
 
 Equations equations_of(const Mechanism& mechanism, const Names& names, const derive::SpecsFolder& specs);
 

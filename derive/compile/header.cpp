@@ -17,15 +17,16 @@ namespace {
 // Names of the header itself, and words of C++ that a scene is likely to use.
 const std::set<std::string>& taken() {
   static const std::set<std::string> names = {
-      "T",      "q",        "v",        "a",       "J",          "C",        "Cdot",     "g",         "b",
-      "d",      "s",        "h",        "i",       "k",          "at",       "x",        "y",         "w",
-      "c",      "time",     "rows",     "bodies",  "pivot",      "select",   "abs",      "sign",      "turn",
-      "close",  "errors",   "evaluate", "rates",   "gamma",      "solve",    "step",     "reset",     "begin",
-      "push",   "fall",     "moved",    "weighed", "project",    "slope",    "State",    "energy",    "Pose",
-      "Slope",  "Body",     "lambda",   "inverse", "accelerate", "Velocity", "Jacobian", "Evaluated", "default_step",
-      "int",    "float",    "double",   "for",     "if",         "do",       "new",      "this",      "and",
-      "or",     "not",      "auto",     "const",   "static",     "struct",   "case",     "switch",    "default",
-      "return", "template", "left",     "largest"};
+      "T",      "q",        "v",        "a",       "J",          "C",        "Cdot",      "g",         "b",
+      "d",      "s",        "h",        "i",       "k",          "at",       "x",         "y",         "w",
+      "c",      "time",     "rows",     "bodies",  "pivot",      "select",   "abs",       "sign",      "turn",
+      "close",  "errors",   "evaluate", "rates",   "gamma",      "solve",    "step",      "reset",     "begin",
+      "push",   "fall",     "moved",    "weighed", "project",    "slope",    "State",     "energy",    "Pose",
+      "Slope",  "Body",     "lambda",   "inverse", "accelerate", "Velocity", "Jacobian",  "Evaluated", "default_step",
+      "int",    "float",    "double",   "for",     "if",         "do",       "new",       "this",      "and",
+      "or",     "not",      "auto",     "const",   "static",     "struct",   "case",      "switch",    "default",
+      "return", "template", "left",     "largest", "next",       "kick",     "potential", "E",         "sum",
+      "free"};
   return names;
 }
 
@@ -50,10 +51,11 @@ class HeaderWriter {
     for (const Body& body : mechanism.bodies) names_.bodies.push_back(unused(identifier(body.name), used_));
     std::set<std::string> joints = used_;
     for (const Joint& joint : mechanism.joints) names_.joints.push_back(unused(identifier(joint.name), joints));
+    for (const Effect& effect : mechanism.effects) names_.effects.push_back(unused(identifier(effect.name), joints));
     equations_ = equations_of(mechanism, names_, specs);
   }
 
-  std::string write() {
+  Header write() {
     write_head();
     write_types();
     write_start();
@@ -62,15 +64,31 @@ class HeaderWriter {
     write_energy();
     write_equations();
     write_corrections();
-    text_ += step_of(mechanism_.method);
+    text_ += step_of(mechanism_.method, has_rows(), has_effects());
     text_ += "};\n\n}  // namespace cdot::scenes\n";
-    return std::move(text_);
+    return {std::move(text_), name_, operations(), state_bytes()};
   }
 
  private:
   bool on_accelerations() const { return mechanism_.method != Method::euler; }
+  bool has_rows() const { return !equations_.rows.empty(); }
+  bool has_effects() const { return !mechanism_.effects.empty(); }
 
   void line(const std::string& line = {}) { text_ += line + "\n"; }
+
+  long operations() const {
+    const Calls calls = calls_of(mechanism_.method, has_effects(), equations_.driven);
+    const auto of = [](int times, const Program& program) { return long{times} * derive::count(program).total(); };
+    return of(calls.evaluate, equations_.evaluate) + of(calls.errors, equations_.errors) +
+           of(calls.rates, equations_.rates) + of(calls.gamma, equations_.gamma) + of(calls.solve, equations_.solve) +
+           of(calls.fall, equations_.fall) + of(calls.kick, equations_.kick);
+  }
+
+  long state_bytes() const {
+    const long bodies = std::ranges::count_if(mechanism_.bodies, &Body::moves);
+    const long of_rows = has_rows() ? long(equations_.rows.size()) + 1 + long(equations_.stored.size()) : 0;
+    return long{sizeof(double)} * (1 + bodies * (on_accelerations() ? 11 : 8) + of_rows);
+  }
 
   // f(body, its name) for those that move.
   template <class F>
@@ -119,21 +137,25 @@ class HeaderWriter {
     friend Velocity operator-(const Velocity& a) { return {-a.x, -a.y, -a.w}; }
     friend Velocity operator*(const T& a, const Velocity& b) { return {a * b.x, a * b.y, a * b.w}; }
   };
-  // The numbers of J, and K = J M^-1 J^T = L D L^T with the rows numbered in the order of elimination.
-  struct Jacobian {
 )";
-    for (const std::string& member : equations_.stored) line("    T " + member + ";");
-    line("  };");
+    if (has_rows()) {
+      line("  // The numbers of J, and K = J M^-1 J^T = L D L^T with the rows numbered in the order of elimination.");
+      line("  struct Jacobian {");
+      for (const std::string& member : equations_.stored) line("    T " + member + ";");
+      line("  };");
+    }
     line("  // What a run is made of: a copy is a snapshot. After a change of poses or velocities call begin().");
     line("  struct State {");
     line("    T time;  // [s]");
     line("    Pose q[bodies];");
     line("    Velocity v[bodies];");
     if (on_accelerations()) line("    Velocity a[bodies];");
-    line(fmt::format("    T lambda[rows];  // {} of the joints",
-                     on_accelerations() ? "forces" : "impulses before the correction"));
-    line("    T residual;      // the largest |C| [m], [rad]");
-    line("    Jacobian J;      // of the poses q");
+    if (has_rows()) {
+      line(fmt::format("    T lambda[rows];  // {} of the joints",
+                       on_accelerations() ? "forces" : "impulses before the correction"));
+      line("    T residual;      // the largest |C| [m], [rad]");
+      line("    Jacobian J;      // of the poses q");
+    }
     line("  };");
     line("  struct Evaluated {  // where J was evaluated");
     line("    T time;");
@@ -154,22 +176,7 @@ class HeaderWriter {
     });
     line("    begin(s);");
     line("  }");
-    text_ += fmt::format(R"(
-  // Makes a State whole after its poses, velocities or time were set.
-  static void begin(State& s) {{
-    turn(s.q);
-    for (T& of_row : s.lambda) of_row = T(0);
-    s.residual = T(1e30);
-    evaluate(s.q, s.time, s.J);
-    Evaluated at;
-    at.time = s.time;
-    for (int i = 0; i < bodies; ++i) at.q[i] = s.q[i];
-    Velocity moves[bodies];
-    close(s, at, T(0.2), moves);
-    evaluate(s.q, s.time, s.J);
-{}  }}
-)",
-                         on_accelerations() ? "    accelerate(s.q, s.v, s.time, s.J, s.lambda, s.a);\n" : "");
+    text_ += begin_of(mechanism_.method, has_rows());
   }
 
   void write_poses() {
@@ -190,20 +197,21 @@ class HeaderWriter {
     return number == 1 ? text : fmt::format("T({}) * {}", number, text);
   }
 
-  void write_masses() {
+  void write_push() {
     line();
-    if (on_accelerations()) line("  // Accelerations without joints.");
-    else line("  // Forces other than the joints' act for h. Drag is implicit: v / (1 + h d).");
-    line(on_accelerations() ? "  static void fall(const Velocity (&v)[bodies], Velocity (&a)[bodies]) {"
-                            : "  static void push(Velocity (&v)[bodies], const T& h) {");
+    line("  // Forces other than the joints' act for h. Drag is implicit: v / (1 + h d).");
+    line("  static void push(Velocity (&v)[bodies], const T& h) {");
     each_body([&](const Body& b, const std::string& name) {
-      write_force(name, "x", b.ax, b.linear_drag);
-      write_force(name, "y", b.ay, b.linear_drag);
+      write_force(name, "x", mechanism_.gravity_x + b.ax, b.linear_drag);
+      write_force(name, "y", mechanism_.gravity_y + b.ay, b.linear_drag);
       write_force(name, "w", b.aw, b.angular_drag);
     });
-    if (on_accelerations()) line("    (void)v;");
-    else line("    (void)v, (void)h;");
+    line("    (void)v, (void)h;");
     line("  }");
+  }
+
+  void write_masses() {
+    if (!on_accelerations() && !has_effects()) write_push();
     line();
     line("  // Twice the kinetic energy.");
     line("  static T weighed(const Velocity (&v)[bodies]) {");
@@ -225,12 +233,20 @@ class HeaderWriter {
     line("  // Kinetic energy and the potential of gravity and constant forces, which is 0 at the start [J].");
     line("  static T energy(const State& s) {");
     line("    T sum = T(0.5) * weighed(s.v);");
+    if (has_effects()) {
+      line("    T E;  // of the effects");
+      line("    potential(s.q, s.time, E);");
+      line("    sum = sum + E;");
+    }
     each_body([&](const Body& b, const std::string& name) {
       const auto add = [&](double force, const std::string& member, double start) {
         if (force == 0) return;
         line(fmt::format("    sum = sum - T({}) * (s.q[{}].{} - T({}));", force, name, member, start));
       };
-      if (b.inv_m > 0) add(b.ax / b.inv_m, "x", b.x), add(b.ay / b.inv_m, "y", b.y);
+      if (b.inv_m > 0) {
+        add((mechanism_.gravity_x + b.ax) / b.inv_m, "x", b.x);
+        add((mechanism_.gravity_y + b.ay) / b.inv_m, "y", b.y);
+      }
       if (b.inv_I > 0) add(b.aw / b.inv_I, "angle", b.angle);
     });
     line("    return sum;");
@@ -239,11 +255,6 @@ class HeaderWriter {
 
   void write_force(const std::string& name, const std::string& member, double a, double drag) {
     const std::string v = fmt::format("v[{}].{}", name, member);
-    if (on_accelerations()) {
-      const std::string slowed = drag == 0 ? "" : fmt::format(" - T({}) * {}", drag, v);
-      line(fmt::format("    a[{}].{} = T({}){};", name, member, a, slowed));
-      return;
-    }
     if (drag != 0) line(fmt::format("    {0} = {0} * (T(1) / (T(1) + h * T({1})));", v, drag));
     if (a != 0) line(fmt::format("    {0} = {0} + h * T({1});", v, a));
   }
@@ -259,7 +270,7 @@ class HeaderWriter {
     write_using(program);
     const std::vector<std::string> lines = derive::print_statements(program, printing);
     for (const std::string& statement : lines) line(statement);
-    for (const char* argument : {"q", "v", "time", "J", "b"}) {
+    for (const char* argument : {"q", "v", "time", "J", "b", "h"}) {
       const bool takes = head.find(fmt::format(" {}", argument)) != std::string::npos ||
                          head.find(fmt::format("(&{})", argument)) != std::string::npos;
       if (takes) line(fmt::format("    (void){};", argument));
@@ -268,7 +279,7 @@ class HeaderWriter {
   }
 
   bool calls_functions() const {
-    for (const Program* program : {&equations_.evaluate, &equations_.errors, &equations_.gamma})
+    for (const Program* program : programs_of_equations(equations_))
       if (!functions_of(*program).empty()) return true;
     return false;
   }
@@ -287,24 +298,42 @@ class HeaderWriter {
   }
 
   void write_equations() {
+    const std::string at = "const Pose (&q)[bodies], const T& time", moving = "const Velocity (&v)[bodies]";
     text_ += guards;
-    write_function("J, and the factor of K", "evaluate(const Pose (&q)[bodies], const T& time, Jacobian& J)",
-                   equations_.evaluate);
-    write_function("C", "errors(const Pose (&q)[bodies], const T& time, T (&C)[rows])", equations_.errors);
-    write_function("J v + dC/dt", "rates(const Jacobian& J, const Velocity (&v)[bodies], T (&Cdot)[rows])",
-                   equations_.rates);
-    write_function("K lambda = b, d = M^-1 J^T lambda",
-                   "solve(const Jacobian& J, const T (&b)[rows], T (&lambda)[rows], Velocity (&d)[bodies])",
-                   equations_.solve);
-    if (!on_accelerations()) return;
-    write_function("-Jdot v - d/dt(dC/dt)",
-                   "gamma(const Pose (&q)[bodies], const Velocity (&v)[bodies], const T& time, T (&g)[rows])",
-                   equations_.gamma);
+    if (has_rows()) {
+      write_function("J, and the factor of K", "evaluate(" + at + ", Jacobian& J)", equations_.evaluate);
+      write_function("C", "errors(" + at + ", T (&C)[rows])", equations_.errors);
+      write_function("J v + dC/dt", "rates(const Jacobian& J, " + moving + ", T (&Cdot)[rows])", equations_.rates);
+      write_function("K lambda = b, d = M^-1 J^T lambda",
+                     "solve(const Jacobian& J, const T (&b)[rows], T (&lambda)[rows], Velocity (&d)[bodies])",
+                     equations_.solve);
+    }
+    if (has_effects())
+      write_function("Potential energy of the effects", "potential(" + at + ", T& E)", equations_.potential);
+    if (on_accelerations()) write_accelerations(at, moving);
+    else if (has_effects())
+      write_function("Velocities after h with the effects, implicit as far as their slopes say",
+                     "kick(" + at + ", " + moving + (has_rows() ? ", const Jacobian& J" : "") +
+                         ", const T& h, Velocity (&next)[bodies]" + (has_rows() ? ", T (&lambda)[rows])" : ")"),
+                     equations_.kick);
+  }
+
+  void write_accelerations(const std::string& at, const std::string& moving) {
+    write_function("Accelerations without joints", "fall(" + at + ", " + moving + ", Velocity (&a)[bodies])",
+                   equations_.fall);
+    if (!has_rows()) {
+      text_ += free_slope;
+      return;
+    }
+    const std::string at_v = "const Pose (&q)[bodies], " + moving + ", const T& time";
+    write_function("-Jdot v - d/dt(dC/dt)", "gamma(" + at_v + ", T (&g)[rows])", equations_.gamma);
     text_ += equations_.driven ? accelerate_driven : accelerate_by_rates;
     text_ += slope;
   }
 
-  void write_corrections() { text_ += fmt::format(corrections, mechanism_.tolerance); }
+  void write_corrections() {
+    if (has_rows()) text_ += fmt::format(corrections, mechanism_.tolerance);
+  }
 
   const Mechanism& mechanism_;
   const Request& request_;
@@ -317,7 +346,7 @@ class HeaderWriter {
 
 }  // namespace
 
-std::string header_of(const Mechanism& mechanism, const Request& request, const derive::SpecsFolder& specs) {
+Header header_of(const Mechanism& mechanism, const Request& request, const derive::SpecsFolder& specs) {
   return HeaderWriter(mechanism, request, specs).write();
 }
 

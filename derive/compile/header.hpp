@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "derive/compile/mechanism.hpp"
+#include "derive/compile/scene/mechanism.hpp"
 #include "derive/language/specs_folder.hpp"
 
 namespace cdot::compile {
@@ -13,6 +13,12 @@ struct Request {
   std::string command;      // that writes the header again
 };
 
-std::string header_of(const Mechanism& mechanism, const Request& request, const derive::SpecsFolder& specs);
+struct Header {
+  std::string text, struct_name;
+  long operations = 0;   // of the equations in a step with one round of Newton
+  long state_bytes = 0;  // of a State in double
+};
+
+Header header_of(const Mechanism& mechanism, const Request& request, const derive::SpecsFolder& specs);
 
 }  // namespace cdot::compile

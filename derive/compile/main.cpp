@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "derive/compile/bill.hpp"
 #include "derive/compile/header.hpp"
 #include "runtime/command_line/command_line.hpp"
 #include "runtime/tool/scene/scene.hpp"
@@ -19,6 +20,7 @@ using command_line::Run;
 struct Options {
   std::string scene, output, specs = "specs", struct_name;
   Wishes wishes;
+  bool bill = false;
 };
 
 // The command that writes the same header.
@@ -32,8 +34,9 @@ std::string command_of(const Options& options) {
 
 int run(const Options& options) {
   const Mechanism mechanism = read_mechanism(options.scene, options.wishes);
-  const std::string text =
-      header_of(mechanism, {options.struct_name, command_of(options)}, derive::SpecsFolder(options.specs));
+  const derive::SpecsFolder specs(options.specs);
+  const std::string text = options.bill ? bill_of(mechanism, specs)
+                                        : header_of(mechanism, {options.struct_name, command_of(options)}, specs).text;
   if (options.output.empty()) {
     std::cout << text;
     return std::cout.flush() ? 0 : command_line::wrong_usage;
@@ -46,13 +49,15 @@ int run(const Options& options) {
 }
 
 void add_options(Line& line, Options& options) {
-  line.add("SCENE", &options.scene, "A planar scene of joints without effects: a TOML file").required();
+  line.add("SCENE", &options.scene, "A planar scene: a TOML file").required();
   line.add("-o,--output", &options.output, "File to write instead of the terminal").shown_as("FILE");
   line.add("--integrator", &options.wishes.integrator,
            "Method of the step; without it that of the scene, or rk4 if the scene names none")
       .one_of({"euler", "rk4", "dop853"});
   line.add("--step", &options.wishes.step, "Its usual length [s]; without it that of the scene, or 0.001").positive();
   line.add("--name", &options.struct_name, "Name of the struct; without it that of the file").shown_as("NAME");
+  line.add("--bill", &options.bill,
+           "Instead of the header: what each joint and effect costs in a step, and what dropping it saves");
   line.add("--specs", &options.specs, "Folder of specs").shown_as("DIR").shows_default();
 }
 

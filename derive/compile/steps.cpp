@@ -7,21 +7,53 @@
 namespace cdot::compile {
 namespace {
 
-constexpr const char* euler = R"(
+constexpr const char* begin = R"(
+  // Makes a State whole after its poses, velocities or time were set.
+  static void begin(State& s) {{
+    turn(s.q);
+    for (T& of_row : s.lambda) of_row = T(0);
+    s.residual = T(1e30);
+    evaluate(s.q, s.time, s.J);
+    Evaluated at;
+    at.time = s.time;
+    for (int i = 0; i < bodies; ++i) at.q[i] = s.q[i];
+    Velocity moves[bodies];
+    close(s, at, T(0.2), moves);
+    evaluate(s.q, s.time, s.J);
+{}  }}
+)";
+
+constexpr const char* euler_begins = R"(
   // Symplectic Euler: velocities with the joints' impulses, then poses, then C = 0 and J v = -dC/dt.
   static T step(State& s, T h = T(default_step)) {
-    push(s.v, h);
+)";
+
+constexpr const char* euler_by_joints = R"(    push(s.v, h);
     T b[rows];
     rates(s.J, s.v, b);
     for (T& of_row : b) of_row = -of_row;
     Velocity d[bodies];
     solve(s.J, b, s.lambda, d);
-    const T left = s.residual;
+    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + d[i];
+)";
+
+constexpr const char* euler_by_kick = R"(    Velocity next[bodies];
+    kick({});
+    for (int i = 0; i < bodies; ++i) s.v[i] = next[i];
+)";
+
+constexpr const char* euler_moves_freely = R"(    for (int i = 0; i < bodies; ++i) s.q[i] = moved(s.q[i], h * s.v[i]);
+    turn(s.q);
+    s.time = s.time + h;
+    return T(0);
+  }
+)";
+
+constexpr const char* euler_moves = R"(    const T left = s.residual;
     Evaluated at;
     at.time = s.time;
     for (int i = 0; i < bodies; ++i) {
       at.q[i] = s.q[i];
-      s.v[i] = s.v[i] + d[i];
       s.q[i] = moved(s.q[i], h * s.v[i]);
     }
     turn(s.q);
@@ -38,13 +70,12 @@ constexpr const char* euler = R"(
 )";
 
 constexpr const char* stages_begin = R"(
-  // {0}, on accelerations; then C = 0 and J v = -dC/dt. The end's accelerations begin the next step.
+  // {0}, on accelerations{2}. The end's accelerations begin the next step.
   static T step(State& s, T h = T(default_step)) {{
     Slope k[{1}][bodies];
     Evaluated at;
     Velocity v[bodies];
-    T forces[rows];
-    for (int i = 0; i < bodies; ++i) k[0][i] = {{s.v[i], s.a[i]}};
+{3}    for (int i = 0; i < bodies; ++i) k[0][i] = {{s.v[i], s.a[i]}};
 )";
 
 constexpr const char* stages_end = R"(    for (int i = 0; i < bodies; ++i) {{
@@ -54,13 +85,19 @@ constexpr const char* stages_end = R"(    for (int i = 0; i < bodies; ++i) {{
     }}
     turn(s.q);
     s.time = s.time + h;
-    Velocity moves[bodies];
+{1}  }}
+)";
+
+constexpr const char* ends_on_joints = R"(    Velocity moves[bodies];
     close(s, at, T(0.5), moves);
     evaluate(s.q, s.time, s.J);
     project(s);
     accelerate(s.q, s.v, s.time, s.J, s.lambda, s.a);
     return s.residual;
-  }}
+)";
+
+constexpr const char* ends_freely = R"(    fall(s.q, s.time, s.v, s.a);
+    return T(0);
 )";
 
 template <class Method>
@@ -76,24 +113,61 @@ std::string combined(const Method& method, int stage) {
 }
 
 template <class Method>
-std::string runge_kutta(const Method& method, const char* title) {
-  std::string text = fmt::format(stages_begin, title, method.stages);
+std::string runge_kutta(const Method& method, const char* title, bool rows) {
+  std::string text = fmt::format(stages_begin, title, method.stages, rows ? "; then C = 0 and J v = -dC/dt" : "",
+                                 rows ? "    T forces[rows];\n" : "");
   for (int stage = 1; stage < method.stages; ++stage) {
     text += "    for (int i = 0; i < bodies; ++i) {\n";
     text += fmt::format("      const Slope now = {};\n", combined(method, stage));
     text += "      at.q[i] = moved(s.q[i], h * now.v);\n      v[i] = s.v[i] + h * now.a;\n    }\n";
     text += fmt::format("    at.time = s.time + T({}) * h;\n", double(method.c[stage]));
-    text += fmt::format("    slope(at, v, s.J, forces, k[{}]);\n", stage);
+    text += fmt::format("    slope(at, v, {}k[{}]);\n", rows ? "s.J, forces, " : "", stage);
   }
-  return text + fmt::format(stages_end, combined(method, method.stages));
+  return text + fmt::format(stages_end, combined(method, method.stages), rows ? ends_on_joints : ends_freely);
 }
+
+std::string euler(bool rows, bool effects) {
+  std::string text = euler_begins;
+  if (effects)
+    text += fmt::format(euler_by_kick, rows ? "s.q, s.time, s.v, s.J, h, next, s.lambda" : "s.q, s.time, s.v, h, next");
+  else text += rows ? euler_by_joints : "    push(s.v, h);\n";
+  return text + (rows ? euler_moves : euler_moves_freely);
+}
+
+constexpr int stages_of(Method method) { return method == Method::rk4 ? rk4<double>.stages : dop853<double>.stages; }
 
 }  // namespace
 
-std::string step_of(Method method) {
-  if (method == Method::euler) return euler;
-  if (method == Method::rk4) return runge_kutta(rk4<double>, "The Runge-Kutta method of order 4");
-  return runge_kutta(dop853<double>, "Dormand and Prince's method of order 8");
+Calls calls_of(Method method, bool has_effects, bool driven) {
+  Calls calls{.evaluate = 1, .errors = 2, .rates = 1, .solve = 2};  // the corrections
+  if (method == Method::euler) {
+    if (has_effects) calls.kick = 1;
+    else ++calls.rates, ++calls.solve;
+    return calls;
+  }
+  const int stages = stages_of(method);
+  calls.evaluate += stages - 1;
+  calls.fall = calls.gamma = stages;
+  calls.solve += stages;
+  calls.rates += driven ? 2 * stages : stages;
+  return calls;
+}
+
+std::string begin_of(Method method, bool has_rows) {
+  const bool accelerates = method != Method::euler;
+  if (has_rows)
+    return fmt::format(begin,
+                       accelerates ? "    project(s);\n    accelerate(s.q, s.v, s.time, s.J, s.lambda, s.a);\n" : "");
+  return fmt::format(
+      "\n  // Makes a State whole after its poses, velocities or time were set.\n  static void begin(State& s) {{\n"
+      "    turn(s.q);\n{}  }}\n",
+      accelerates ? "    fall(s.q, s.time, s.v, s.a);\n" : "");
+}
+
+std::string step_of(Method method, bool has_rows, bool has_effects) {
+  if (method == Method::euler) return euler(has_rows, has_effects);
+  if (method == Method::rk4) return runge_kutta(rk4<double>, "The Runge-Kutta method of order 4", has_rows);
+  return runge_kutta(dop853<double>, "Dormand and Prince's method of order 8", has_rows);
 }
 
 }  // namespace cdot::compile

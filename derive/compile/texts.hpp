@@ -32,7 +32,7 @@ inline constexpr const char* accelerate_by_rates = R"(
   static void accelerate(const Pose (&q)[bodies], const Velocity (&v)[bodies], const T& time, const Jacobian& J,
                          T (&lambda)[rows], Velocity (&a)[bodies]) {
     T g[rows], Ja[rows];
-    fall(v, a);
+    fall(q, time, v, a);
     gamma(q, v, time, g);
     rates(J, a, Ja);
     for (int i = 0; i < rows; ++i) g[i] = g[i] - Ja[i];
@@ -47,7 +47,7 @@ inline constexpr const char* accelerate_driven = R"(
   static void accelerate(const Pose (&q)[bodies], const Velocity (&v)[bodies], const T& time, const Jacobian& J,
                          T (&lambda)[rows], Velocity (&a)[bodies]) {
     T g[rows], Ja[rows], C_t[rows];
-    fall(v, a);
+    fall(q, time, v, a);
     gamma(q, v, time, g);
     rates(J, a, Ja);
     Velocity none[bodies];
@@ -67,6 +67,17 @@ inline constexpr const char* slope = R"(
     evaluate(at.q, at.time, J);
     Velocity a[bodies];
     accelerate(at.q, v, at.time, J, forces, a);
+    for (int i = 0; i < bodies; ++i) k[i] = {v[i], a[i]};
+  }
+)";
+
+// Without joints.
+inline constexpr const char* free_slope = R"(
+  // The rates of change at a stage of a Runge-Kutta method.
+  static void slope(Evaluated& at, const Velocity (&v)[bodies], Slope (&k)[bodies]) {
+    turn(at.q);
+    Velocity a[bodies];
+    fall(at.q, at.time, v, a);
     for (int i = 0; i < bodies; ++i) k[i] = {v[i], a[i]};
   }
 )";

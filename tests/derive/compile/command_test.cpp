@@ -1,35 +1,15 @@
 // `cdot compile` as a command: its bytes, its refusals, and that its header needs nothing but a compiler.
-#include <cstdio>
-#include <cstdlib>
+#include "tests/derive/compile/command.hpp"
+
 #include <filesystem>
-#include <fmt/format.h>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <sstream>
-#include <string>
-#include <sys/wait.h>
 
 namespace {
 
-struct Outcome {
-  int status = 0;
-  std::string text;  // of both streams
-};
-
-Outcome run(const std::string& command) {
-  Outcome outcome;
-  FILE* const pipe = popen((command + " 2>&1").c_str(), "r");
-  char part[4096];
-  for (std::size_t n; (n = fread(part, 1, sizeof part, pipe)) > 0;) outcome.text.append(part, n);
-  outcome.status = WEXITSTATUS(pclose(pipe));
-  return outcome;
-}
+using cdot::compile, cdot::Outcome, cdot::run;
 
 const std::string source = CDOT_SOURCE_DIR;
-
-Outcome compile(const std::string& arguments) {
-  return run(fmt::format("cd {} && {} compile {}", source, CDOT, arguments));
-}
 
 TEST(CompileCommand, WritesTheSameBytesOnEveryRun) {
   const Outcome first = compile("specs/scenes/slider_crank.toml --integrator rk4");
@@ -43,7 +23,7 @@ TEST(CompileCommand, WritesTheSameBytesOnEveryRun) {
 TEST(CompileCommand, RefusesPartsThatItDoesNotKnowWithTheirLines) {
   const Outcome effects = compile("specs/scenes/machine.toml");
   EXPECT_EQ(effects.status, 2);
-  EXPECT_NE(effects.text.find("specs/scenes/machine.toml:58:1: error: axle: cdot compile knows no effects"),
+  EXPECT_NE(effects.text.find("specs/scenes/machine.toml:58:1: error: axle: cdot compile does not know angle.motor"),
             std::string::npos)
       << effects.text;
   const Outcome space = compile("specs/scenes/spatial/gyroscope.toml");

@@ -1,4 +1,4 @@
-#include "derive/compile/algebra.hpp"
+#include "derive/compile/rows/algebra.hpp"
 
 #include <cmath>
 #include <fmt/format.h>

@@ -1,19 +1,18 @@
 // The scene reader and a World resolve all names, parameters, masses and places.
-#include "derive/compile/mechanism.hpp"
+#include "derive/compile/scene/mechanism.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
 
 #include <cdot/world.hpp>
 
+#include "derive/compile/scene/effects.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/tool/scene/extent.hpp"
 #include "runtime/tool/scene/scene.hpp"
 
 namespace cdot::compile {
 namespace {
-
-using Planar = cdot::Planar<double>;
 
 // Collects what cannot be compiled.
 class Refusals {
@@ -38,9 +37,7 @@ void refuse_joint(const SceneJoint& joint, Refusals& refusals) {
   const auto refuse = [&](const std::string& part) {
     refusals.add(joint.where, fmt::format("{}: cdot compile knows no {}", name, part), "leave it to cdot-run");
   };
-  if (!joint.effects.empty()) refuse("effects on coordinates: limit, motor, spring, friction");
   if (joint.breaking) refuse("joints that break");
-  if (joint.definition.soft) refuse("soft joints");
   const JointType* type = find_joint_type(Dimension::planar, joint.definition.type);
   if (type && std::ranges::find(type->row_kinds, RowKind::inequality) != type->row_kinds.end())
     refuse(fmt::format("inequality, as {} has: it would end the fixed pattern of the equations", type->name));
@@ -55,7 +52,6 @@ void refuse_parts(const Scene& scene) {
   refuse(scene.dimension != Dimension::planar, "cdot compile knows planar scenes only", "leave it to cdot-run");
   if (scene.dimension == Dimension::planar)
     for (const SceneJoint& joint : scene.joints) refuse_joint(joint, refusals);
-  refuse(!scene.springs.empty(), "cdot compile knows no [[spring]]", "leave it to cdot-run");
   refuse(s.solver != Solver::direct, "a compiled step solves all rows at once", "write solver = \"direct\"");
   refuse(s.drift != Drift::projection, "a compiled step projects its end", "write drift = \"projection\"");
   refuse(s.local_error > 0, "a compiled step has a fixed length", "give --step in place of local_error");
@@ -91,28 +87,26 @@ void settle_method(Scene& scene, const Wishes& wishes) {
   settle_drift(scene);
 }
 
-Body body_of(const Scene& scene, const BasicWorld<Planar>& world, int index) {
+Body body_of(const Scene& scene, const BasicWorld<Space>& world, int index) {
   const SceneBody& source = scene.bodies[static_cast<std::size_t>(index)];
   const BodyDefinition& d = source.definition;
   const auto pose = world.place(index);
   const auto velocity = world.velocity(index);
   const auto mass = world.inverse_mass(index);
   Body body;
-  body.name = source.name, body.moves = !Planar::immovable(mass);
+  body.name = source.name, body.moves = !Space::immovable(mass);
   body.x = pose.x, body.y = pose.y, body.angle = pose.angle;
   body.vx = velocity.x, body.vy = velocity.y, body.w = velocity.w;
   body.inv_m = mass.m, body.inv_I = mass.I;
-  body.ax = scene.settings.gravity_x + mass.m * d.force_x;
-  body.ay = scene.settings.gravity_y + mass.m * d.force_y;
+  body.ax = mass.m * d.force_x, body.ay = mass.m * d.force_y;
   body.aw = mass.I * d.torque;
   body.linear_drag = d.linear_damping, body.angular_drag = d.angular_damping;
   return body;
 }
 
-Joint joint_of(const Scene& scene, const BasicWorld<Planar>& world, int index) {
+Joint joint_of(const Scene& scene, const BasicWorld<Space>& world, int index) {
   const SceneJoint& source = scene.joints[static_cast<std::size_t>(index)];
-  Joint joint{source.name, source.definition.type, {}, world.joint_parameters(index), false};
-  joint.explicit_time = world.joint_type(index).explicit_time;
+  Joint joint{source.name, source.definition.type, {}, world.joint_parameters(index)};
   const int ground = static_cast<int>(scene.bodies.size());
   for (const int body : source.definition.bodies) joint.bodies.push_back(body == world_body ? ground : body);
   return joint;
@@ -124,6 +118,16 @@ double tolerance_of(const Scene& scene) {
   for (const double extent : extents_of(scene).of_body)
     if (extent > 0) scale = std::min(scale, 10 * extent);
   return converged<double> * scale;
+}
+
+void add_effects(const Scene& scene, BasicWorld<Space>& world, Mechanism& mechanism) {
+  Refusals refusals(scene);
+  const auto refuse = [&](const SceneJoint* joint, const std::string& what) {
+    refusals.add(joint->where, fmt::format("{}: cdot compile does not know {}", joint->name, what),
+                 "leave it to cdot-run");
+  };
+  read_effects(scene, world, refuse, mechanism);
+  refusals.throw_any();
 }
 
 }  // namespace
@@ -138,12 +142,16 @@ Mechanism read_mechanism(const std::string& file, const Wishes& wishes) {
   mechanism.method = method_of(scene);
   mechanism.step = scene.step;
   mechanism.tolerance = tolerance_of(scene);
-  BasicWorld<Planar> world = build_world<double>(scene);
+  mechanism.gravity_x = scene.settings.gravity_x, mechanism.gravity_y = scene.settings.gravity_y;
+  BasicWorld<Space> world = build_world<double>(scene);
   if (scene.project) world.project(1e-12);
   for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) mechanism.bodies.push_back(body_of(scene, world, i));
   mechanism.bodies.emplace_back();
   mechanism.bodies.back().name = "world", mechanism.bodies.back().moves = false;
-  for (int i = 0; i < static_cast<int>(scene.joints.size()); ++i) mechanism.joints.push_back(joint_of(scene, world, i));
+  for (int i = 0; i < static_cast<int>(scene.joints.size()); ++i)
+    if (!world.joint_type(i).is_effect && !scene.joints[static_cast<std::size_t>(i)].definition.soft)
+      mechanism.joints.push_back(joint_of(scene, world, i));
+  add_effects(scene, world, mechanism);
   return mechanism;
 }
 

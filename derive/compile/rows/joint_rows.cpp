@@ -1,0 +1,70 @@
+#include "derive/compile/rows/joint_rows.hpp"
+
+#include "derive/kernel/factor.hpp"
+
+namespace cdot::compile {
+namespace {
+
+std::vector<RowBlock> joints_of(const RowBlocks& rows) {
+  std::vector<RowBlock> blocks;
+  for (std::size_t j = 0; j < rows.mechanism().joints.size(); ++j) blocks.push_back(rows.joint(j));
+  return blocks;
+}
+
+}  // namespace
+
+JointRows::JointRows(const RowBlocks& blocks)
+    : blocks_(blocks), system_(blocks, joints_of(blocks)), J_(system_.blocks().size()) {}
+
+int JointRows::read(Algebra& algebra, const Stored& stored) {
+  return stored.constant ? algebra.value(*stored.constant) : algebra.input("J." + stored.member);
+}
+
+Program JointRows::evaluate(Constants& constants, std::vector<std::string>& stored) {
+  Algebra algebra(constants);
+  const auto store = [&](const std::string& member, int op) {
+    const std::optional<double> constant = algebra.constant(op);
+    if (!constant) algebra.output("J." + member, op), stored.push_back(member);
+    return Stored{constant, member};
+  };
+  for (std::size_t k = 0; k < J_.size(); ++k) {
+    const RowBlock& joint = system_.blocks()[k];
+    Values in = blocks_.inputs(algebra, joint);
+    const Values J = blocks_.call(algebra, joint, "jacobian", in);
+    for (const std::string& field : joint.rows->fields) {
+      in["J." + field] = J.at("J." + field);
+      J_[k][field] = store(joint.name + "_" + field, in["J." + field]);
+    }
+    const Values C_t = joint.rows->has_rates ? blocks_.call(algebra, joint, "time_derivative", in) : Values{};
+    for (std::size_t r = 0, row = system_.first_row(k); r < joint.rows->count() && !C_t.empty(); ++r, ++row)
+      rates_[row] = store(system_.names()[row] + "_rate", C_t.at(derive::element("C_t", r)));
+    system_.add_block(algebra, k, in);
+  }
+  system_.couple(algebra);
+  system_.factor(algebra, [&](const std::string& name, int op) { factor_[name] = store(name, op); });
+  return algebra.finish();
+}
+
+Values JointRows::inputs(Algebra& algebra, std::size_t block) const {
+  Values in = blocks_.inputs(algebra, system_.blocks()[block]);
+  for (const auto& [field, stored] : J_[block]) in["J." + field] = read(algebra, stored);
+  return in;
+}
+
+std::vector<int> JointRows::rates(Algebra& algebra, const Values& velocities) const {
+  std::vector<int> rates;
+  for (std::size_t k = 0; k < J_.size(); ++k) {
+    const RowBlock& joint = system_.blocks()[k];
+    Values in = inputs(algebra, k);
+    blocks_.replace_velocities(in, joint, velocities);
+    const Values Jv = blocks_.call(algebra, joint, "velocity", in);
+    for (std::size_t r = 0; r < joint.rows->count(); ++r) {
+      Summands terms{{Jv.at(derive::element("Jv", r))}, {1}};
+      if (const auto C_t = rates_.find(rates.size()); C_t != rates_.end()) terms.add(1, read(algebra, C_t->second));
+      rates.push_back(algebra.sum(terms));
+    }
+  }
+  return rates;
+}
+
+}  // namespace cdot::compile

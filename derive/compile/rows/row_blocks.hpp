@@ -1,0 +1,70 @@
+// The rows of a mechanism as blocks: a kernel with its bodies and parameters in this scene, to be inlined.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "derive/compile/rows/algebra.hpp"
+#include "derive/compile/rows/spec_programs.hpp"
+#include "derive/compile/scene/mechanism.hpp"
+
+namespace cdot::compile {
+
+using Values = std::map<std::string, int>;  // operations by the names of a kernel's inputs or outputs
+
+// `names` are those of bodies, joints and effects in C++; "" for bodies that do not move.
+struct Names {
+  std::vector<std::string> bodies, joints, effects;
+};
+
+struct RowBlock {
+  std::string name;  // before the names of what it computes
+  const SpecPrograms* spec = nullptr;
+  const RowPrograms* rows = nullptr;
+  const std::vector<int>* bodies = nullptr;
+  const std::vector<double>* parameters = nullptr;
+};
+
+// Forces by body and column: x, y, angle.
+using Forces = std::map<std::pair<int, std::size_t>, Summands>;
+
+// Of a parameter of a kernel, "p.pa_x" or "phi", in the header.
+std::string constant_name(const RowBlock& block, const std::string& parameter);
+
+class RowBlocks {
+ public:
+  RowBlocks(const Mechanism& mechanism, const Names& names, const derive::SpecsFolder& specs);
+
+  const Mechanism& mechanism() const { return mechanism_; }
+  const RowBlock& joint(std::size_t j) const { return joints_[j]; }
+  const RowBlock& effect(std::size_t e) const { return effects_[e]; }
+  // The spec whose law the effect has.
+  const SpecPrograms& law(std::size_t e) const { return types_.at(mechanism_.effects[e].law_type); }
+  const std::string& body_name(int index) const { return names_.bodies[static_cast<std::size_t>(index)]; }
+
+  // What the kernel reads, in this scene: places and velocities of its bodies, masses, parameters.
+  Values inputs(Algebra& algebra, const RowBlock& block) const;
+  // Puts these in place of v in the inputs; by the names of components, "rod.x"; empty: leaves v.
+  void replace_velocities(Values& in, const RowBlock& block, const Values& velocities) const;
+  // One of its functions.
+  Values call(Algebra& algebra, const RowBlock& block, const std::string& function, const Values& in) const;
+  // The column is 0, 1 for x and y, 2 for the angle.
+  int inverse_mass(Algebra& algebra, int body, std::size_t column) const;
+  // forces += J^T lambda, with J among `in`.
+  void add_forces(Algebra& algebra, const RowBlock& block, Values in, const std::vector<int>& lambda,
+                  Forces& forces) const;
+
+ private:
+  RowBlock block_of(const std::string& name, const std::string& type, const std::string& coordinate,
+                    const std::vector<int>& bodies, const std::vector<double>& parameters) const;
+  void add_body(Algebra& algebra, Values& in, const std::string& L, int index) const;
+
+  const Mechanism& mechanism_;
+  const Names& names_;
+  std::map<std::string, SpecPrograms> types_;
+  std::vector<RowBlock> joints_, effects_;
+};
+
+}  // namespace cdot::compile

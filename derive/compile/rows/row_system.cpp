@@ -1,0 +1,152 @@
+#include "derive/compile/rows/row_system.hpp"
+
+#include <fmt/format.h>
+
+#include "derive/kernel/factor.hpp"
+#include "runtime/direct/elimination_order.hpp"
+
+namespace cdot::compile {
+
+using derive::element;
+using derive::triangle_element;
+
+RowSystem::RowSystem(const RowBlocks& rows, std::vector<RowBlock> blocks) : rows_(rows) {
+  for (RowBlock& block : blocks) {
+    if (block.rows->count() == 0) continue;
+    first_.push_back(names_.size());
+    for (const std::string& row : block.rows->names) names_.push_back(block.name + "_" + row);
+    blocks_.push_back(std::move(block));
+  }
+  dense_.resize(blocks_.size());
+  K_.assign(size(), std::vector<int>(size(), -1));
+  L_.assign(size(), std::vector<bool>(size(), false));
+  order_rows();
+}
+
+void RowSystem::order_rows() {
+  std::vector<int> rows;
+  for (const RowBlock& block : blocks_) rows.push_back(static_cast<int>(block.rows->count()));
+  std::vector<std::vector<int>> neighbours(blocks_.size());
+  for (std::size_t i = 0; i < blocks_.size(); ++i)
+    for (std::size_t k = 0; k < blocks_.size(); ++k)
+      if (i != k && share_a_body(i, k)) neighbours[i].push_back(static_cast<int>(k));
+  for (const Elimination& one : minimum_degree_order(rows, neighbours, 1))
+    for (const int taken : one.blocks) {
+      const auto block = static_cast<std::size_t>(taken);
+      for (std::size_t r = 0; r < blocks_[block].rows->count(); ++r) order_.push_back(first_[block] + r);
+    }
+}
+
+bool RowSystem::share_a_body(std::size_t i, std::size_t k) const {
+  for (const int a : *blocks_[i].bodies)
+    for (const int b : *blocks_[k].bodies)
+      if (a == b && rows_.mechanism().bodies[static_cast<std::size_t>(a)].moves) return true;
+  return false;
+}
+
+void RowSystem::add_block(Algebra& algebra, std::size_t block, const Values& in) {
+  const RowBlock& rows = blocks_[block];
+  const std::size_t first = first_[block];
+  const Values K = rows_.call(algebra, rows, "effective_mass", in);
+  for (std::size_t r = 0; r < rows.rows->count(); ++r)
+    for (std::size_t c = 0; c <= r; ++c) K_[first + r][first + c] = K.at(triangle_element("K", r, c));
+  dense_[block] = rows_.call(algebra, rows, "dense", in);
+}
+
+void RowSystem::couple(Algebra& algebra) {
+  for (std::size_t i = 0; i < blocks_.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (share_a_body(i, k)) couple(algebra, i, k);
+}
+
+// K_ik = sum over columns of J_i M^-1 J_k.
+void RowSystem::couple(Algebra& algebra, std::size_t i, std::size_t k) {
+  const std::vector<int>&of_i = *blocks_[i].bodies, &of_k = *blocks_[k].bodies;
+  for (std::size_t r = 0; r < blocks_[i].rows->count(); ++r) {
+    for (std::size_t s = 0; s < blocks_[k].rows->count(); ++s) {
+      Summands terms;
+      for (std::size_t a = 0; a < of_i.size(); ++a)
+        for (std::size_t b = 0; b < of_k.size(); ++b)
+          for (std::size_t c = 0; of_i[a] == of_k[b] && c < 3; ++c) {
+            const int x = dense_[i].at(element(element("D", r), 3 * a + c));
+            const int y = dense_[k].at(element(element("D", s), 3 * b + c));
+            terms.add(1, algebra.product({rows_.inverse_mass(algebra, of_i[a], c), x, y}, {1, 1, 1}));
+          }
+      const int K = algebra.sum(terms);
+      if (!algebra.is_zero(K)) K_[first_[i] + r][first_[k] + s] = K;
+    }
+  }
+}
+
+void RowSystem::soften(Algebra& algebra, std::size_t row, int by) {
+  for (std::size_t i = 0; i < size(); ++i) {
+    int& entry = K_[std::max(i, row)][std::min(i, row)];
+    if (entry < 0) continue;
+    if (i != row) entry = algebra.times(entry, by);
+    else entry = algebra.sum({{algebra.product({entry, by}, {1, 2}), algebra.value(1)}, {1, 1}});
+  }
+}
+
+void RowSystem::factor(Algebra& algebra, const Store& store) {
+  const std::size_t n = order_.size();
+  std::vector<std::vector<int>> U(n, std::vector<int>(n, -1)), L(U);
+  for (std::size_t j = 0; j < n; ++j) {
+    const std::string at = std::to_string(j);
+    int inverse = -1;
+    for (std::size_t i = j; i < n; ++i) {
+      Summands terms;
+      if (const int k = K(order_[i], order_[j]); k >= 0) terms.add(1, k);
+      for (std::size_t k = 0; k < j; ++k)
+        if (U[i][k] >= 0 && L[j][k] >= 0) terms.add(-1, algebra.times(U[i][k], L[j][k]));
+      if (terms.args.empty()) continue;
+      const std::string place = i == j ? at : fmt::format("{}_{}", i, j);
+      const int entry = algebra.sum(terms, (i == j ? "D_" : "U_") + place);
+      if (i == j) {
+        inverse = algebra.function(Fn::pivot, {entry, K(order_[j], order_[j])}, "inv_D_" + at);
+        store("inv_D_" + at, inverse);
+        continue;
+      }
+      if (algebra.is_zero(entry)) continue;
+      U[i][j] = entry;
+      L[i][j] = algebra.times(entry, inverse, "L_" + place);
+      L_[i][j] = true;
+      store("L_" + place, L[i][j]);
+    }
+  }
+}
+
+std::vector<int> RowSystem::solve(Algebra& algebra, const std::vector<int>& b, const Read& read) const {
+  const std::size_t n = order_.size();
+  const auto L = [&](std::size_t i, std::size_t j) { return read(fmt::format("L_{}_{}", i, j)); };
+  std::vector<int> y(n), x(n), lambda(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    Summands terms{{b[order_[i]]}, {1}};
+    for (std::size_t k = 0; k < i; ++k)
+      if (L_[i][k]) terms.add(-1, algebra.times(L(i, k), y[k]));
+    y[i] = algebra.sum(terms, "y_" + std::to_string(i));
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    Summands terms{{algebra.times(read("inv_D_" + std::to_string(i)), y[i])}, {1}};
+    for (std::size_t k = i + 1; k < n; ++k)
+      if (L_[k][i]) terms.add(-1, algebra.times(L(k, i), x[k]));
+    lambda[order_[i]] = x[i] = algebra.sum(terms, "lambda_" + names_[order_[i]]);
+  }
+  return lambda;
+}
+
+void RowSystem::write_changes(Algebra& algebra, const std::vector<int>& lambda,
+                              const std::function<Values(std::size_t)>& inputs) const {
+  Forces forces;
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    const auto first = lambda.begin() + static_cast<std::ptrdiff_t>(first_[k]);
+    rows_.add_forces(algebra, blocks_[k], inputs(k),
+                     {first, first + static_cast<std::ptrdiff_t>(blocks_[k].rows->count())}, forces);
+  }
+  const std::vector<Body>& bodies = rows_.mechanism().bodies;
+  for (int b = 0; b < static_cast<int>(bodies.size()); ++b)
+    for (std::size_t c = 0; bodies[static_cast<std::size_t>(b)].moves && c < 3; ++c)
+      algebra.output(fmt::format("d[{}].{}", rows_.body_name(b), "xyw"[c]),
+                     algebra.times(rows_.inverse_mass(algebra, b, c), algebra.sum(forces[{b, c}])));
+}
+
+}  // namespace cdot::compile

@@ -1,0 +1,61 @@
+// K = J M^-1 J^T of several row blocks as operations: assembled, factored and solved in a fixed order of elimination.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "derive/compile/rows/row_blocks.hpp"
+
+namespace cdot::compile {
+
+class RowSystem {
+ public:
+  // Blocks without rows take no part.
+  RowSystem(const RowBlocks& rows, std::vector<RowBlock> blocks);
+
+  std::size_t size() const { return names_.size(); }
+  const std::vector<RowBlock>& blocks() const { return blocks_; }
+  std::size_t first_row(std::size_t block) const { return first_[block]; }
+  const std::vector<std::string>& names() const { return names_; }  // "hinge_pin_x"
+
+  // --- in the Algebra of the factor ---
+
+  // The part of K of one block; J is among `in`.
+  void add_block(Algebra& algebra, std::size_t block, const Values& in);
+  // The rows of blocks that share bodies.
+  void couple(Algebra& algebra);
+  // Row and column times `by`, and 1 on the diagonal.
+  void soften(Algebra& algebra, std::size_t row, int by);
+  // K = L D L^T, U = L D. The numbers in names are places in the order. store("L_5_4", operation) gives what solve()
+  // reads.
+  using Store = std::function<void(const std::string& name, int op)>;
+  void factor(Algebra& algebra, const Store& store);
+
+  // --- in that Algebra or another one ---
+
+  // lambda from b, both by rows. read("L_5_4") is the operation that was stored.
+  using Read = std::function<int(const std::string& name)>;
+  std::vector<int> solve(Algebra& algebra, const std::vector<int>& b, const Read& read) const;
+  // d = M^-1 J^T lambda as outputs "d[rod].x"; `inputs` gives those of a block, with J.
+  void write_changes(Algebra& algebra, const std::vector<int>& lambda,
+                     const std::function<Values(std::size_t block)>& inputs) const;
+  const std::vector<std::size_t>& order() const { return order_; }
+
+ private:
+  void order_rows();
+  bool share_a_body(std::size_t i, std::size_t k) const;
+  void couple(Algebra& algebra, std::size_t i, std::size_t k);
+  int K(std::size_t i, std::size_t j) const { return K_[std::max(i, j)][std::min(i, j)]; }
+
+  const RowBlocks& rows_;
+  std::vector<RowBlock> blocks_;
+  std::vector<std::size_t> first_;
+  std::vector<std::string> names_;
+  std::vector<std::size_t> order_;    // of elimination
+  std::vector<Values> dense_;         // by block
+  std::vector<std::vector<int>> K_;   // lower triangle; -1: zero
+  std::vector<std::vector<bool>> L_;  // which entries are not zero
+};
+
+}  // namespace cdot::compile

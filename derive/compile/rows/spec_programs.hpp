@@ -1,0 +1,38 @@
+// The kernel of a spec as programs, by the pipeline that writes generated/.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "derive/language/specs_folder.hpp"
+#include "derive/program/program.hpp"
+
+namespace cdot::compile {
+
+// Rows of a joint or of an effect, or the one row of a coordinate.
+struct RowPrograms {
+  std::vector<std::string> names;
+  std::vector<std::string> fields;                   // of Jacobian<T>
+  bool has_rates = false;                            // dC/dt at fixed q is not 0
+  std::map<std::string, derive::Program> functions;  // by the names of the kernel contract; of an effect with its law
+
+  const derive::Program& function(const std::string& name) const { return functions.at(name); }
+  bool has(const std::string& function) const { return functions.contains(function); }
+  std::size_t count() const { return names.size(); }
+};
+
+struct SpecPrograms {
+  std::vector<std::string> bodies;      // "a", "b", ...
+  std::vector<std::string> parameters;  // what the programs read, in the order of Parameters<T>: "p.pa_x", "phi"
+  RowPrograms rows;
+  std::map<std::string, RowPrograms> coordinates;
+  std::map<std::string, std::string> leaves;  // of an effect's law: "turn_rate" -> "rate[0]"
+};
+
+// With these of its coordinates.
+SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& spec,
+                         const std::set<std::string>& coordinates);
+
+}  // namespace cdot::compile

@@ -1,0 +1,21 @@
+// The effects of a scene as numbers: the World has completed them.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <cdot/world.hpp>
+
+#include "derive/compile/scene/mechanism.hpp"
+#include "runtime/tool/scene/scene.hpp"
+
+namespace cdot::compile {
+
+using Space = Planar<double>;
+
+// refuse(joint of the scene, or null for a spring; what it is): for effects that cannot be compiled.
+using RefuseEffect = std::function<void(const SceneJoint*, const std::string&)>;
+
+void read_effects(const Scene& scene, BasicWorld<Space>& world, const RefuseEffect& refuse, Mechanism& mechanism);
+
+}  // namespace cdot::compile

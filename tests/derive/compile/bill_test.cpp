@@ -1,0 +1,100 @@
+// `cdot compile --bill`: an effect costs what its bill says, and one that a scene does not call for costs nothing.
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <sstream>
+
+#include "chain_10_euler.hpp"
+#include "chain_10_rk4.hpp"
+#include "effects_euler.hpp"
+#include "effects_rk4.hpp"
+#include "tests/derive/compile/command.hpp"
+#include "thrown_rk4.hpp"
+
+namespace {
+
+// operations and bytes alone; operations, bytes, bytes of code and instructions that dropping saves.
+using Line = std::array<long, 6>;
+
+// Of the part in a bill; -1 for "-".
+Line line_of(const std::string& bill, const std::string& part) {
+  Line numbers{};
+  std::istringstream lines(bill);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with(part + " ")) continue;
+    std::istringstream words(line.substr(part.size()));
+    std::string word;
+    for (long& number : numbers) words >> word, number = word == "-" ? -1 : std::stol(word);
+    return numbers;
+  }
+  ADD_FAILURE() << "no line " << part << " in\n" << bill;
+  return numbers;
+}
+
+std::string text_of(const std::string& file) {
+  std::ifstream in(std::string(CDOT_SOURCE_DIR) + "/" + file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// The scene without the block that begins with these words, as a file of its own.
+std::string without_block(const std::string& scene, const std::string& block) {
+  std::string text = text_of(scene);
+  const std::size_t begin = text.find(block);
+  EXPECT_NE(begin, std::string::npos);
+  text.erase(begin, text.find("[[", begin + 2) - begin);
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / fmt::format("cdot_bill_{}.toml", getpid());
+  std::ofstream(file) << text;
+  return file.string();
+}
+
+// Stones without joints take the same way through the code at every state, so all numbers are exact.
+TEST(Bill, AnEffectNotCalledForCostsNoInstructionAndNoByte) {
+  const std::string scene = "tests/derive/compile/scenes/thrown.toml";
+  const std::string copy = without_block(scene, "[[joint]]\nname   = \"air\"");
+  for (const std::string method : {"euler", "rk4"}) {
+    const cdot::Outcome with = cdot::compile("--bill " + scene + " --integrator " + method);
+    const cdot::Outcome never = cdot::compile("--bill " + copy + " --integrator " + method);
+    ASSERT_EQ(with.status, 0) << with.text;
+    ASSERT_EQ(never.status, 0) << never.text;
+    const Line whole = line_of(with.text, "whole step"), saved = line_of(with.text, "effect air");
+    const Line rest = line_of(never.text, "whole step");
+    for (std::size_t k = 2; k < whole.size(); ++k)
+      EXPECT_EQ(whole[k] - saved[k], rest[k]) << method << ", column " << k;
+    EXPECT_GT(saved[2], 10) << "operations";
+    EXPECT_GT(saved[4], 10) << "bytes of code";
+    EXPECT_GT(saved[5], 10) << "instructions";
+    EXPECT_EQ(never.text.find("air"), std::string::npos);
+  }
+  std::filesystem::remove(copy);
+}
+
+TEST(Bill, BytesOfStateAreThoseOfTheStruct) {
+  const auto bytes = [](const std::string& scene, const char* method) {
+    return line_of(cdot::compile("--bill " + scene + " --integrator " + method, "CXX=no_compiler").text,
+                   "whole step")[3];
+  };
+  using namespace cdot::scenes;
+  const std::string effects = "tests/derive/compile/scenes/effects.toml", chain = "specs/scenes/chain_10.toml";
+  EXPECT_EQ(bytes(chain, "euler"), long{sizeof(chain_10_euler<double>::State)});
+  EXPECT_EQ(bytes(chain, "rk4"), long{sizeof(chain_10_rk4<double>::State)});
+  EXPECT_EQ(bytes(effects, "euler"), long{sizeof(effects_euler<double>::State)});
+  EXPECT_EQ(bytes(effects, "rk4"), long{sizeof(effects_rk4<double>::State)});
+  EXPECT_EQ(bytes("tests/derive/compile/scenes/thrown.toml", "rk4"), long{sizeof(thrown_rk4<double>::State)});
+}
+
+TEST(Bill, SaysWhatItCannotMeasure) {
+  const cdot::Outcome bill = cdot::compile("--bill specs/scenes/tailgate.toml", "CXX=no_compiler");
+  EXPECT_EQ(bill.status, 0);
+  EXPECT_NE(bill.text.find("there is no compiler no_compiler. Fix: install g++, or set CXX"), std::string::npos)
+      << bill.text;
+  const Line brake = line_of(bill.text, "effect brake");
+  EXPECT_GT(brake[0], 0);
+  EXPECT_EQ(brake[4], -1);
+  EXPECT_EQ(brake[5], -1);
+}
+
+}  // namespace
