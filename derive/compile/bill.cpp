@@ -16,6 +16,7 @@ Mechanism bare(Mechanism mechanism) {
   mechanism.gravity_x = mechanism.gravity_y = 0;
   mechanism.joints.clear();
   mechanism.effects.clear();
+  mechanism.bounded.clear();
   for (Body& b : mechanism.bodies) b.ax = b.ay = b.aw = b.linear_drag = b.angular_drag = 0;
   return mechanism;
 }
@@ -33,6 +34,8 @@ class Parts {
       add_of(fmt::format("joint {} ({})", all_.joints[j].name, all_.joints[j].type), &Mechanism::joints, j);
     for (std::size_t e = 0; e < all_.effects.size(); ++e)
       add_of("effect " + all_.effects[e].name, &Mechanism::effects, e);
+    for (std::size_t b = 0; b < all_.bounded.size(); ++b)
+      add_of("effect " + all_.bounded[b].name, &Mechanism::bounded, b);
     return std::move(parts_);
   }
 

@@ -1,6 +1,8 @@
 #include "derive/compile/equations.hpp"
 
+#include "derive/compile/rows/bounds.hpp"
 #include "derive/compile/rows/joint_rows.hpp"
+#include "derive/compile/rows/kick.hpp"
 #include "derive/compile/rows/motion.hpp"
 #include "derive/kernel/factor.hpp"
 #include "derive/program/print.hpp"
@@ -27,8 +29,11 @@ class EquationWriter {
       write_solve();
     }
     if (mechanism_.method != Method::euler) out_.fall = fall_of(blocks_, out_.constants);
-    else if (!mechanism_.effects.empty()) out_.kick = kick_of(blocks_, joints_, out_.constants);
-    if (!mechanism_.effects.empty()) out_.potential = potential_of(blocks_, out_.constants);
+    else if (!mechanism_.effects.empty() || !mechanism_.bounded.empty())
+      out_.kick = kick_of(blocks_, joints_, out_.constants);
+    if (!mechanism_.effects.empty() || !mechanism_.bounded.empty())
+      out_.potential = potential_of(blocks_, out_.constants);
+    write_bounded();
     drop_unread();
     return std::move(out_);
   }
@@ -67,6 +72,17 @@ class EquationWriter {
     out_.solve = algebra.finish();
   }
 
+  void write_bounded() {
+    for (std::size_t b = 0; b < mechanism_.bounded.size(); ++b) {
+      out_.is_rate += std::string(b == 0 ? "" : ", ") + (prescribes_rate(blocks_, b) ? "true" : "false");
+      out_.has_ends |= has_ends(blocks_, b);
+    }
+    if (!out_.has_ends) return;
+    out_.reach = reach_of(blocks_, joints_, out_.constants);
+    out_.past = past_of(blocks_, out_.constants);
+    out_.along = along_of(blocks_, out_.constants);
+  }
+
   // Numbers that nobody reads are not stored, and c and s of no body that nobody reads.
   void drop_unread() {
     std::set<std::string> read;
@@ -89,7 +105,8 @@ class EquationWriter {
 }  // namespace
 
 std::vector<const Program*> programs_of_equations(const Equations& e) {
-  return {&e.evaluate, &e.errors, &e.rates, &e.gamma, &e.solve, &e.fall, &e.kick, &e.potential};
+  return {&e.evaluate, &e.errors,    &e.rates, &e.gamma, &e.solve, &e.fall,
+          &e.kick,     &e.potential, &e.reach, &e.past,  &e.along};
 }
 
 Equations equations_of(const Mechanism& mechanism, const Names& names, const derive::SpecsFolder& specs) {

@@ -25,6 +25,12 @@ struct Equations {
   Program fall;       // q, v, time -> a: accelerations of bodies without joints
   Program kick;       // q, v, time, J, h -> next: v after an Euler step with effects; lambda of the joints
   Program potential;  // q, time -> E of the effects
+  // Of rows with bounds:
+  std::string is_rate;  // "true, false", by row
+  bool has_ends = false;
+  Program reach;  // q, time, J -> B: their part in a projection
+  Program past;   // q, time -> past: errors
+  Program along;  // q, v, time -> along: J v
 };
 std::vector<const Program*> programs_of_equations(const Equations& equations);
 

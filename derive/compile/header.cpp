@@ -16,17 +16,40 @@ namespace {
 
 // Names of the header itself, and words of C++ that a scene is likely to use.
 const std::set<std::string>& taken() {
-  static const std::set<std::string> names = {
-      "T",      "q",        "v",        "a",       "J",          "C",        "Cdot",      "g",         "b",
-      "d",      "s",        "h",        "i",       "k",          "at",       "x",         "y",         "w",
-      "c",      "time",     "rows",     "bodies",  "pivot",      "select",   "abs",       "sign",      "turn",
-      "close",  "errors",   "evaluate", "rates",   "gamma",      "solve",    "step",      "reset",     "begin",
-      "push",   "fall",     "moved",    "weighed", "project",    "slope",    "State",     "energy",    "Pose",
-      "Slope",  "Body",     "lambda",   "inverse", "accelerate", "Velocity", "Jacobian",  "Evaluated", "default_step",
-      "int",    "float",    "double",   "for",     "if",         "do",       "new",       "this",      "and",
-      "or",     "not",      "auto",     "const",   "static",     "struct",   "case",      "switch",    "default",
-      "return", "template", "left",     "largest", "next",       "kick",     "potential", "E",         "sum",
-      "free"};
+  static const std::set<std::string> names = {"T",         "q",           "v",
+                                              "a",         "J",           "C",
+                                              "Cdot",      "g",           "b",
+                                              "d",         "s",           "h",
+                                              "i",         "k",           "at",
+                                              "x",         "y",           "w",
+                                              "c",         "time",        "rows",
+                                              "bodies",    "pivot",       "select",
+                                              "abs",       "sign",        "turn",
+                                              "close",     "errors",      "evaluate",
+                                              "rates",     "gamma",       "solve",
+                                              "step",      "reset",       "begin",
+                                              "push",      "fall",        "moved",
+                                              "weighed",   "project",     "slope",
+                                              "State",     "energy",      "Pose",
+                                              "Slope",     "Body",        "lambda",
+                                              "inverse",   "accelerate",  "Velocity",
+                                              "Jacobian",  "Evaluated",   "default_step",
+                                              "int",       "float",       "double",
+                                              "for",       "if",          "do",
+                                              "new",       "this",        "and",
+                                              "or",        "not",         "auto",
+                                              "const",     "static",      "struct",
+                                              "case",      "switch",      "default",
+                                              "return",    "template",    "left",
+                                              "largest",   "next",        "kick",
+                                              "potential", "E",           "sum",
+                                              "free",      "B",           "Bounded",
+                                              "Bound",     "bounded",     "Mask",
+                                              "entry",     "divide",      "settle",
+                                              "part",      "find_active", "find_contradiction",
+                                              "is_rate",   "reach",       "past",
+                                              "along",     "hold",        "mu",
+                                              "residual",  "error",       "moves"};
   return names;
 }
 
@@ -52,6 +75,7 @@ class HeaderWriter {
     std::set<std::string> joints = used_;
     for (const Joint& joint : mechanism.joints) names_.joints.push_back(unused(identifier(joint.name), joints));
     for (const Effect& effect : mechanism.effects) names_.effects.push_back(unused(identifier(effect.name), joints));
+    for (const Effect& effect : mechanism.bounded) names_.bounded.push_back(unused(identifier(effect.name), joints));
     equations_ = equations_of(mechanism, names_, specs);
   }
 
@@ -64,30 +88,34 @@ class HeaderWriter {
     write_energy();
     write_equations();
     write_corrections();
-    text_ += step_of(mechanism_.method, has_rows(), has_effects());
+    text_ += step_of(mechanism_.method, has());
     text_ += "};\n\n}  // namespace cdot::scenes\n";
     return {std::move(text_), name_, operations(), state_bytes()};
   }
 
  private:
   bool on_accelerations() const { return mechanism_.method != Method::euler; }
-  bool has_rows() const { return !equations_.rows.empty(); }
-  bool has_effects() const { return !mechanism_.effects.empty(); }
+  Contents has() const {
+    return {!equations_.rows.empty(), !mechanism_.effects.empty(), !mechanism_.bounded.empty(), equations_.has_ends};
+  }
+  bool has_rows() const { return has().rows; }
+  bool has_effects() const { return has().effects || has().bounded; }
 
   void line(const std::string& line = {}) { text_ += line + "\n"; }
 
   long operations() const {
-    const Calls calls = calls_of(mechanism_.method, has_effects(), equations_.driven);
+    const Calls calls = calls_of(mechanism_.method, has(), equations_.driven);
     const auto of = [](int times, const Program& program) { return long{times} * derive::count(program).total(); };
     return of(calls.evaluate, equations_.evaluate) + of(calls.errors, equations_.errors) +
            of(calls.rates, equations_.rates) + of(calls.gamma, equations_.gamma) + of(calls.solve, equations_.solve) +
-           of(calls.fall, equations_.fall) + of(calls.kick, equations_.kick);
+           of(calls.fall, equations_.fall) + of(calls.kick, equations_.kick) + of(calls.past, equations_.past);
   }
 
   long state_bytes() const {
     const long bodies = std::ranges::count_if(mechanism_.bodies, &Body::moves);
-    const long of_rows = has_rows() ? long(equations_.rows.size()) + 1 + long(equations_.stored.size()) : 0;
-    return long{sizeof(double)} * (1 + bodies * (on_accelerations() ? 11 : 8) + of_rows);
+    const long of_rows = long(equations_.rows.size()) + long(equations_.stored.size()) + (has().closes() ? 1 : 0);
+    return long{sizeof(double)} *
+           (1 + bodies * (on_accelerations() ? 11 : 8) + of_rows + long(mechanism_.bounded.size()));
   }
 
   // f(body, its name) for those that move.
@@ -122,6 +150,11 @@ class HeaderWriter {
     each_body([&](const Body&, const std::string& name) { bodies += name + ", "; });
     for (const std::string& wrapped : derive::wrapped("  enum Body { " + bodies + "bodies };")) line(wrapped);
     line(fmt::format("  static constexpr int rows = {};", equations_.rows.size()));
+    if (has().bounded) {
+      std::string rows;
+      for (const std::string& name : names_.bounded) rows += name + ", ";
+      for (const std::string& wrapped : derive::wrapped("  enum Bound { " + rows + "bounded };")) line(wrapped);
+    }
     line(fmt::format("  static constexpr double default_step = {};  // [s]", mechanism_.step));
     for (const auto& [name, value] : equations_.constants)
       line(fmt::format("  static constexpr double {} = {};", name, value));
@@ -150,12 +183,13 @@ class HeaderWriter {
     line("    Pose q[bodies];");
     line("    Velocity v[bodies];");
     if (on_accelerations()) line("    Velocity a[bodies];");
-    if (has_rows()) {
+    if (has_rows())
       line(fmt::format("    T lambda[rows];  // {} of the joints",
                        on_accelerations() ? "forces" : "impulses before the correction"));
-      line("    T residual;      // the largest |C| [m], [rad]");
-      line("    Jacobian J;      // of the poses q");
-    }
+    if (has().bounded)
+      line("    T hold[bounded];  // of the rows with bounds: -1 at the lower one, 1 at the upper one, 0 between");
+    if (has().closes()) line("    T residual;      // the largest |C| [m], [rad]");
+    if (has_rows()) line("    Jacobian J;      // of the poses q");
     line("  };");
     line("  struct Evaluated {  // where J was evaluated");
     line("    T time;");
@@ -176,7 +210,7 @@ class HeaderWriter {
     });
     line("    begin(s);");
     line("  }");
-    text_ += begin_of(mechanism_.method, has_rows());
+    text_ += begin_of(mechanism_.method, has());
   }
 
   void write_poses() {
@@ -300,6 +334,7 @@ class HeaderWriter {
   void write_equations() {
     const std::string at = "const Pose (&q)[bodies], const T& time", moving = "const Velocity (&v)[bodies]";
     text_ += guards;
+    text_ += bounded_of(equations_.is_rate, has());
     if (has_rows()) {
       write_function("J, and the factor of K", "evaluate(" + at + ", Jacobian& J)", equations_.evaluate);
       write_function("C", "errors(" + at + ", T (&C)[rows])", equations_.errors);
@@ -314,8 +349,18 @@ class HeaderWriter {
     else if (has_effects())
       write_function("Velocities after h with the effects, implicit as far as their slopes say",
                      "kick(" + at + ", " + moving + (has_rows() ? ", const Jacobian& J" : "") +
-                         ", const T& h, Velocity (&next)[bodies]" + (has_rows() ? ", T (&lambda)[rows])" : ")"),
+                         ", const T& h, Velocity (&next)[bodies]" + (has_rows() ? ", T (&lambda)[rows]" : "") +
+                         (has().bounded ? ", Bounded& B)" : ")"),
                      equations_.kick);
+    if (has().ends) write_ends(at, moving);
+  }
+
+  void write_ends(const std::string& at, const std::string& moving) {
+    write_function("The part of rows with ends in a projection",
+                   "reach(" + at + (has_rows() ? ", const Jacobian& J" : "") + ", Bounded& B)", equations_.reach);
+    write_function("Errors of rows with ends", "past(" + at + ", T (&past)[bounded])", equations_.past);
+    write_function("J v of rows with bounds", "along(" + at + ", " + moving + ", T (&along)[bounded])",
+                   equations_.along);
   }
 
   void write_accelerations(const std::string& at, const std::string& moving) {
@@ -331,9 +376,7 @@ class HeaderWriter {
     text_ += slope;
   }
 
-  void write_corrections() {
-    if (has_rows()) text_ += fmt::format(corrections, mechanism_.tolerance);
-  }
+  void write_corrections() { text_ += corrections_of(mechanism_.tolerance, has()); }
 
   const Mechanism& mechanism_;
   const Request& request_;

@@ -7,20 +7,13 @@
 namespace cdot::compile {
 namespace {
 
-constexpr const char* begin = R"(
-  // Makes a State whole after its poses, velocities or time were set.
-  static void begin(State& s) {{
-    turn(s.q);
-    for (T& of_row : s.lambda) of_row = T(0);
-    s.residual = T(1e30);
-    evaluate(s.q, s.time, s.J);
-    Evaluated at;
+constexpr const char* evaluates = "    evaluate(s.q, s.time, s.J);\n";
+constexpr const char* closes = R"(    Velocity moves[bodies];
+    close(s, at, T({}), moves);
+)";
+constexpr const char* notes_poses = R"(    Evaluated at;
     at.time = s.time;
     for (int i = 0; i < bodies; ++i) at.q[i] = s.q[i];
-    Velocity moves[bodies];
-    close(s, at, T(0.2), moves);
-    evaluate(s.q, s.time, s.J);
-{}  }}
 )";
 
 constexpr const char* euler_begins = R"(
@@ -38,35 +31,31 @@ constexpr const char* euler_by_joints = R"(    push(s.v, h);
 )";
 
 constexpr const char* euler_by_kick = R"(    Velocity next[bodies];
-    kick({});
-    for (int i = 0; i < bodies; ++i) s.v[i] = next[i];
+{}    for (int i = 0; i < bodies; ++i) s.v[i] = next[i];
 )";
 
-constexpr const char* euler_moves_freely = R"(    for (int i = 0; i < bodies; ++i) s.q[i] = moved(s.q[i], h * s.v[i]);
-    turn(s.q);
-    s.time = s.time + h;
-    return T(0);
-  }
+constexpr const char* kick_with_bounds = R"(    Bounded B;
+    T mu[bounded];
+    kick({0}, B);
+    settle(B, s.hold, mu);
+    for (int e = 0; e < bounded; ++e)
+      for (int i = 0; i < bodies; ++i) next[i] = next[i] + mu[e] * B.g[e][i];
+{1})";
+
+constexpr const char* adds_impulses = R"(    for (int e = 0; e < bounded; ++e)
+      for (int i = 0; i < rows; ++i) s.lambda[i] = s.lambda[i] + mu[e] * B.l[e][i];
 )";
 
-constexpr const char* euler_moves = R"(    const T left = s.residual;
-    Evaluated at;
-    at.time = s.time;
-    for (int i = 0; i < bodies; ++i) {
-      at.q[i] = s.q[i];
-      s.q[i] = moved(s.q[i], h * s.v[i]);
-    }
+constexpr const char* euler_moves = R"(    for (int i = 0; i < bodies; ++i) s.q[i] = moved(s.q[i], h * s.v[i]);
     turn(s.q);
     s.time = s.time + h;
-    Velocity moves[bodies];
+)";
+
+constexpr const char* euler_corrects = R"(    Velocity moves[bodies];
     const T error = close(s, at, T(0.2), moves);
     // A displacement beyond the motion of the step, or of an error older than it, would add energy.
     const auto keep = left <= T(0.1) * error && T(4) * weighed(moves) <= h * h * weighed(s.v);
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + select(keep, T(1) / h, T(0)) * moves[i];
-    evaluate(s.q, s.time, s.J);
-    project(s);
-    return s.residual;
-  }
 )";
 
 constexpr const char* stages_begin = R"(
@@ -126,22 +115,32 @@ std::string runge_kutta(const Method& method, const char* title, bool rows) {
   return text + fmt::format(stages_end, combined(method, method.stages), rows ? ends_on_joints : ends_freely);
 }
 
-std::string euler(bool rows, bool effects) {
+std::string euler(const Contents& has) {
   std::string text = euler_begins;
-  if (effects)
-    text += fmt::format(euler_by_kick, rows ? "s.q, s.time, s.v, s.J, h, next, s.lambda" : "s.q, s.time, s.v, h, next");
-  else text += rows ? euler_by_joints : "    push(s.v, h);\n";
-  return text + (rows ? euler_moves : euler_moves_freely);
+  if (has.effects || has.bounded) {
+    const std::string arguments = has.rows ? "s.q, s.time, s.v, s.J, h, next, s.lambda" : "s.q, s.time, s.v, h, next";
+    text +=
+        fmt::format(euler_by_kick, has.bounded ? fmt::format(kick_with_bounds, arguments, has.rows ? adds_impulses : "")
+                                               : fmt::format("    kick({});\n", arguments));
+  } else {
+    text += has.rows ? euler_by_joints : "    push(s.v, h);\n";
+  }
+  if (has.closes()) text += "    const T left = s.residual;\n" + std::string(notes_poses);
+  text += euler_moves;
+  if (has.closes()) text += euler_corrects;
+  if (has.rows) text += std::string(evaluates) + "    project(s);\n";
+  return text + fmt::format("    return {};\n  }}\n", has.closes() ? "s.residual" : "T(0)");
 }
 
 constexpr int stages_of(Method method) { return method == Method::rk4 ? rk4<double>.stages : dop853<double>.stages; }
 
 }  // namespace
 
-Calls calls_of(Method method, bool has_effects, bool driven) {
+Calls calls_of(Method method, const Contents& has, bool driven) {
   Calls calls{.evaluate = 1, .errors = 2, .rates = 1, .solve = 2};  // the corrections
+  if (has.ends) calls.past = 2;
   if (method == Method::euler) {
-    if (has_effects) calls.kick = 1;
+    if (has.effects || has.bounded) calls.kick = 1;
     else ++calls.rates, ++calls.solve;
     return calls;
   }
@@ -153,21 +152,26 @@ Calls calls_of(Method method, bool has_effects, bool driven) {
   return calls;
 }
 
-std::string begin_of(Method method, bool has_rows) {
+std::string begin_of(Method method, const Contents& has) {
   const bool accelerates = method != Method::euler;
-  if (has_rows)
-    return fmt::format(begin,
-                       accelerates ? "    project(s);\n    accelerate(s.q, s.v, s.time, s.J, s.lambda, s.a);\n" : "");
-  return fmt::format(
-      "\n  // Makes a State whole after its poses, velocities or time were set.\n  static void begin(State& s) {{\n"
-      "    turn(s.q);\n{}  }}\n",
-      accelerates ? "    fall(s.q, s.time, s.v, s.a);\n" : "");
+  std::string text =
+      "\n  // Makes a State whole after its poses, velocities or time were set.\n  static void begin(State& s) {\n"
+      "    turn(s.q);\n";
+  if (has.bounded) text += "    for (T& of_row : s.hold) of_row = T(0);\n";
+  if (has.rows) text += "    for (T& of_row : s.lambda) of_row = T(0);\n";
+  if (has.closes()) text += "    s.residual = T(1e30);\n";
+  if (has.rows) text += evaluates;
+  if (has.closes()) text += notes_poses + fmt::format(closes, 0.2);
+  if (has.rows) text += evaluates;
+  if (accelerates && has.rows) text += "    project(s);\n    accelerate(s.q, s.v, s.time, s.J, s.lambda, s.a);\n";
+  else if (accelerates) text += "    fall(s.q, s.time, s.v, s.a);\n";
+  return text + "  }\n";
 }
 
-std::string step_of(Method method, bool has_rows, bool has_effects) {
-  if (method == Method::euler) return euler(has_rows, has_effects);
-  if (method == Method::rk4) return runge_kutta(rk4<double>, "The Runge-Kutta method of order 4", has_rows);
-  return runge_kutta(dop853<double>, "Dormand and Prince's method of order 8", has_rows);
+std::string step_of(Method method, const Contents& has) {
+  if (method == Method::euler) return euler(has);
+  if (method == Method::rk4) return runge_kutta(rk4<double>, "The Runge-Kutta method of order 4", has.rows);
+  return runge_kutta(dop853<double>, "Dormand and Prince's method of order 8", has.rows);
 }
 
 }  // namespace cdot::compile

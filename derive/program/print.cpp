@@ -64,23 +64,33 @@ class StatementPrinter {
 
   bool is_zero(int op) const { return at(op).kind == OpKind::number && at(op).value.is_zero(); }
 
+  // "d[arm].x", "B.g[0][arm].x"
+  static bool has_name_in_brackets(const std::string& output) {
+    for (std::size_t open = 0; (open = output.find('[', open)) != std::string::npos; ++open)
+      if (output.find_first_not_of("0123456789", open + 1) != output.find(']', open)) return true;
+    return false;
+  }
+
   // The stem for names of nameless quantities of an output: "K21" for "K[1]", "wb" for "J.wb", "g1" for "g[0]",
   // "d_arm_x" for "d[arm].x".
   static std::string plain(const std::string& output) {
-    const std::size_t open = output.find('[');
-    if (open != std::string::npos && output.find_first_not_of("0123456789", open + 1) != output.find(']')) {
+    if (has_name_in_brackets(output)) {
       std::string stem;
-      for (const char c : output) stem += std::string_view(letters).find(c) == std::string_view::npos ? '_' : c;
-      return stem.replace(stem.find("__"), 2, "_");
+      for (const char c : output) {
+        const bool letter = std::string_view(letters).find(c) != std::string_view::npos;
+        if (letter || !stem.ends_with('_')) stem += letter ? c : '_';
+      }
+      return stem;
     }
-    for (const char* object : {"J.", "p.", "B."})
-      if (output.starts_with(object)) return output.substr(2);
-    if (open == std::string::npos) return output;
-    const int i = std::stoi(output.substr(open + 1));
-    if (output[0] != 'K' && output[0] != 'F') return output.substr(0, open) + std::to_string(i + 1);
+    const bool of_object = output.starts_with("J.") || output.starts_with("p.") || output.starts_with("B.");
+    const std::string name = output.substr(of_object ? 2 : 0);
+    const std::size_t open = name.find('[');
+    if (open == std::string::npos) return name;
+    const int i = std::stoi(name.substr(open + 1));
+    if (name[0] != 'K' && name[0] != 'F') return name.substr(0, open) + std::to_string(i + 1);
     int row = 0;
     while ((row + 1) * (row + 2) / 2 <= i) ++row;
-    return fmt::format("{}{}{}", output[0], row + 1, i - row * (row + 1) / 2 + 1);
+    return fmt::format("{}{}{}", name[0], row + 1, i - row * (row + 1) / 2 + 1);
   }
 
   // ia_ra_x_t for I_a^-1 (ra x t): products with an inverse mass or inertia are named after both factors.

@@ -51,6 +51,11 @@ Values JointRows::inputs(Algebra& algebra, std::size_t block) const {
   return in;
 }
 
+int JointRows::drift(Algebra& algebra, std::size_t row) const {
+  const auto C_t = rates_.find(row);
+  return C_t == rates_.end() ? algebra.value(0) : read(algebra, C_t->second);
+}
+
 std::vector<int> JointRows::rates(Algebra& algebra, const Values& velocities) const {
   std::vector<int> rates;
   for (std::size_t k = 0; k < J_.size(); ++k) {
@@ -59,9 +64,7 @@ std::vector<int> JointRows::rates(Algebra& algebra, const Values& velocities) co
     blocks_.replace_velocities(in, joint, velocities);
     const Values Jv = blocks_.call(algebra, joint, "velocity", in);
     for (std::size_t r = 0; r < joint.rows->count(); ++r) {
-      Summands terms{{Jv.at(derive::element("Jv", r))}, {1}};
-      if (const auto C_t = rates_.find(rates.size()); C_t != rates_.end()) terms.add(1, read(algebra, C_t->second));
-      rates.push_back(algebra.sum(terms));
+      rates.push_back(algebra.sum({{Jv.at(derive::element("Jv", r)), drift(algebra, rates.size())}, {1, 1}}));
     }
   }
   return rates;

@@ -25,6 +25,8 @@ class JointRows {
   Values inputs(Algebra& algebra, std::size_t block) const;
   // J v + dC/dt of all rows, with these velocities in place of v, if there are any.
   std::vector<int> rates(Algebra& algebra, const Values& velocities) const;
+  // dC/dt of a row; 0 for most.
+  int drift(Algebra& algebra, std::size_t row) const;
   int factor(Algebra& algebra, const std::string& name) const { return read(algebra, factor_.at(name)); }
 
  private:

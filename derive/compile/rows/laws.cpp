@@ -17,22 +17,22 @@ std::vector<int> elements(const Values& values, const std::string& array, std::s
 
 }  // namespace
 
-LawWriter::LawWriter(const RowBlocks& rows, Algebra& algebra, std::size_t effect, const Values& in)
-    : rows_(rows), algebra_(algebra), number_(effect), block_(rows.effect(effect)), in_(in) {
+LawWriter::LawWriter(const RowBlocks& rows, Algebra& algebra, const Effect& effect, const RowBlock& block,
+                     const Values& in)
+    : rows_(rows), algebra_(algebra), effect_(effect), block_(block), in_(in) {
   const std::size_t count = block_.rows->count();
   C_ = elements(rows.call(algebra, block_, "position", in), "C", count);
   rate_ = elements(rows.call(algebra, block_, "velocity", in), "Jv", count);
-  if (!block_.rows->has_rates) return;
-  const std::vector<int> C_t = elements(rows.call(algebra, block_, "time_derivative", in), "C_t", count);
-  for (std::size_t r = 0; r < count; ++r) rate_[r] = algebra.sum({{rate_[r], C_t[r]}, {1, 1}});
+  drift_ = elements(rows.call(algebra, block_, "time_derivative", in), "C_t", count);
+  for (std::size_t r = 0; r < count; ++r) rate_[r] = algebra.sum({{rate_[r], drift_[r]}, {1, 1}});
 }
 
 // Leaves of a law are C, rates, its parameters and the time.
-Values LawWriter::call_law(const std::string& function) const {
-  const SpecPrograms& law = rows_.law(number_);
+Values LawWriter::call(const Program& function) const {
+  const SpecPrograms& law = spec();
   Values in;
   for (std::size_t p = 0; p < law.parameters.size(); ++p)
-    in[law.parameters[p]] = algebra_.value(effect().numbers[p], constant_name(block_, law.parameters[p]));
+    in[law.parameters[p]] = algebra_.value(effect_.numbers[p], constant_name(block_, law.parameters[p]));
   in["pi"] = algebra_.value(std::numbers::pi);
   in["time"] = algebra_.input("time");
   for (const auto& [leaf, place] : law.leaves) {
@@ -40,35 +40,38 @@ Values LawWriter::call_law(const std::string& function) const {
     in[leaf] = of[static_cast<std::size_t>(std::stoi(place.substr(place.find('[') + 1)))];
   }
   return algebra_.inlined(
-      law.rows.function(function), [&](const std::string& text) { return in.at(text); }, block_.name);
+      function, [&](const std::string& text) { return in.at(text); }, block_.name);
 }
-
-int LawWriter::magnitude(int a) const { return algebra_.function(Fn::abs, {a}); }
 
 int LawWriter::least(int a, int b) const {
   return algebra_.function(Fn::select, {algebra_.sum({{b, a}, {1, -1}}), a, b});
 }
 
+int LawWriter::most(int a, int b) const {
+  return algebra_.function(Fn::select, {algebra_.sum({{a, b}, {1, -1}}), a, b});
+}
+
+std::vector<int> LawWriter::force_without_limits() const {
+  if (effect_.law == Effect::spring) return spring_force();
+  if (effect_.law == Effect::load)
+    return std::vector<int>(C_.size(), algebra_.value(effect_.numbers[0], block_.name + "_F"));
+  return elements(call(spec().rows.function("force")), "F", C_.size());
+}
+
 std::vector<int> LawWriter::force() const {
-  const std::size_t rows = C_.size();
-  if (effect().law == Effect::spring) return spring_force();
-  if (effect().law == Effect::load)
-    return std::vector<int>(rows, algebra_.value(effect().numbers[0], block_.name + "_F"));
-  std::vector<int> F = elements(call_law("force"), "F", rows);
-  if (!rows_.law(number_).rows.has("limits")) return F;
-  const Values limits = call_law("limits");
-  const auto negative = [&](int a) { return algebra_.sum({{a}, {-1}}); };
-  for (std::size_t r = 0; r < rows; ++r) {
+  std::vector<int> F = force_without_limits();
+  if (effect_.law_type.empty() || !spec().rows.has("limits")) return F;
+  const Values limits = call(spec().rows.function("limits"));
+  for (std::size_t r = 0; r < F.size(); ++r) {
     const auto lower = limits.find(derive::element("lower", r)), upper = limits.find(derive::element("upper", r));
-    if (lower == limits.end()) continue;
-    F[r] = negative(least(negative(least(F[r], upper->second)), negative(lower->second)));
+    if (lower != limits.end()) F[r] = most(lower->second, least(F[r], upper->second));
   }
   return F;
 }
 
 // By its frequency f and damping ratio z: k = (2 pi f)^2 / K, d = 2 z 2 pi f / K.
 LawWriter::Slopes LawWriter::spring_slopes() const {
-  const std::vector<double>& n = effect().numbers;
+  const std::vector<double>& n = effect_.numbers;
   Slopes slopes;
   const double w = 2 * std::numbers::pi * n[1];
   const Values K = n[0] == 0 ? Values{} : rows_.call(algebra_, block_, "effective_mass", in_);
@@ -87,7 +90,7 @@ LawWriter::Slopes LawWriter::spring_slopes() const {
 
 std::vector<int> LawWriter::spring_force() const {
   const Slopes slopes = spring_slopes();
-  const int rest = algebra_.value(effect().numbers[3], block_.name + "_rest");
+  const int rest = algebra_.value(effect_.numbers[3], block_.name + "_rest");
   std::vector<int> F;
   for (std::size_t r = 0; r < C_.size(); ++r) {
     const int stretch = algebra_.sum({{C_[r], rest}, {1, -1}});
@@ -98,18 +101,18 @@ std::vector<int> LawWriter::spring_force() const {
 }
 
 LawWriter::Slopes LawWriter::slopes() const {
-  if (effect().law == Effect::spring) return spring_slopes();
-  if (effect().law == Effect::load) {
+  if (effect_.law == Effect::spring) return spring_slopes();
+  if (effect_.law == Effect::load) {
     const std::vector<int> none(C_.size(), algebra_.value(0));
     return {none, none};
   }
-  const Values slopes = call_law("slopes");
+  const Values slopes = call(spec().rows.function("slopes"));
   return {bound(slopes, "k"), bound(slopes, "d")};
 }
 
 // False for a row that only tells where a direction points.
 bool LawWriter::acts(std::size_t row) const {
-  const Program& force = rows_.law(number_).rows.function("force");
+  const Program& force = spec().rows.function("force");
   const auto output = std::ranges::find(force.outputs, derive::element("F", row), &derive::Output::name);
   const Operation& op = force.at(output->op);
   return op.kind != OpKind::number || !op.value.is_zero();
@@ -121,7 +124,7 @@ std::vector<int> LawWriter::bound(const Values& slopes, const std::string& lette
     Summands terms;
     for (std::size_t c = 0; c < C_.size(); ++c) {
       const int slope = slopes.at(derive::element(derive::element(letter, r), c));
-      if (c == r || acts(c)) terms.add(1, c == r ? slope : magnitude(slope));
+      if (c == r || acts(c)) terms.add(1, c == r ? slope : algebra_.function(Fn::abs, {slope}));
     }
     const int sum = algebra_.sum(terms), zero = algebra_.value(0);
     bounds.push_back(algebra_.function(Fn::select, {sum, sum, zero}));
@@ -130,13 +133,11 @@ std::vector<int> LawWriter::bound(const Values& slopes, const std::string& lette
 }
 
 int LawWriter::energy() const {
-  if (effect().law == Effect::load) {
-    return algebra_.times(algebra_.value(-effect().numbers[0]), C_[0]);
-  }
-  if (effect().law == Effect::of_spec)
-    return rows_.law(number_).rows.has("energy") ? call_law("energy").at("E") : algebra_.value(0);
+  if (effect_.law == Effect::load) return algebra_.times(algebra_.value(-effect_.numbers[0]), C_[0]);
+  if (effect_.law != Effect::spring)
+    return spec().rows.has("energy") ? call(spec().rows.function("energy")).at("E") : algebra_.value(0);
   const Slopes slopes = spring_slopes();
-  const int rest = algebra_.value(effect().numbers[3], block_.name + "_rest");
+  const int rest = algebra_.value(effect_.numbers[3], block_.name + "_rest");
   Summands terms;
   for (std::size_t r = 0; r < C_.size(); ++r) {
     const int stretch = algebra_.sum({{C_[r], rest}, {1, -1}});

@@ -10,12 +10,21 @@ namespace cdot::compile {
 // Of one effect, by row; `in` are the inputs of its rows with their J.
 class LawWriter {
  public:
-  LawWriter(const RowBlocks& rows, Algebra& algebra, std::size_t effect, const Values& in);
+  LawWriter(const RowBlocks& rows, Algebra& algebra, const Effect& effect, const RowBlock& block, const Values& in);
 
+  const std::vector<int>& C() const { return C_; }
+
+  const std::vector<int>& drift() const { return drift_; }  // dC/dt
   // J v + dC/dt at the velocities of `in`.
   const std::vector<int>& rate() const { return rate_; }
+  std::vector<int> force_without_limits() const;
   // Within its limits, if it has any.
   std::vector<int> force() const;
+  // A function of the law of a spec.
+  Values call(const derive::Program& function) const;
+  const SpecPrograms& spec() const { return rows_.law(effect_); }
+  int least(int a, int b) const;
+  int most(int a, int b) const;
   // Stiffness and damping by row, such that the diagonal matrices of these are at least as stiff as the whole ones:
   // k_rr + sum |k_rc|. Never negative.
   struct Slopes {
@@ -26,21 +35,17 @@ class LawWriter {
   int energy() const;
 
  private:
-  const Effect& effect() const { return rows_.mechanism().effects[number_]; }
-  Values call_law(const std::string& function) const;
   std::vector<int> spring_force() const;
   Slopes spring_slopes() const;
   std::vector<int> bound(const Values& slopes, const std::string& letter) const;
   bool acts(std::size_t row) const;
-  int least(int a, int b) const;
-  int magnitude(int a) const;
 
   const RowBlocks& rows_;
   Algebra& algebra_;
-  std::size_t number_;
+  const Effect& effect_;
   const RowBlock& block_;
   const Values& in_;
-  std::vector<int> C_, rate_;
+  std::vector<int> C_, drift_, rate_;
 };
 
 }  // namespace cdot::compile

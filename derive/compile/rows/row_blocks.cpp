@@ -17,26 +17,31 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
     : mechanism_(mechanism), names_(names) {
   std::map<std::string, std::set<std::string>> coordinates;
   for (const Joint& joint : mechanism.joints) coordinates[joint.type];
-  for (const Effect& effect : mechanism.effects) {
-    std::set<std::string>& of_type = coordinates[effect.type];
-    if (!effect.coordinate.empty()) of_type.insert(effect.coordinate);
-    if (!effect.law_type.empty()) coordinates[effect.law_type];
-  }
+  for (const std::vector<Effect>* list : {&mechanism.effects, &mechanism.bounded})
+    for (const Effect& effect : *list) {
+      std::set<std::string>& of_type = coordinates[effect.type];
+      if (!effect.coordinate.empty()) of_type.insert(effect.coordinate);
+      if (!effect.law_type.empty()) coordinates[effect.law_type];
+    }
   for (const auto& [type, of_type] : coordinates) types_[type] = programs_of(specs, type, of_type);
   for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
     const Joint& joint = mechanism.joints[j];
-    joints_.push_back(block_of(names.joints[j], joint.type, "", joint.bodies, joint.parameters));
+    const SpecPrograms& spec = types_.at(joint.type);
+    joints_.push_back({names.joints[j], &spec, &spec.rows, &joint.bodies, &joint.parameters});
   }
-  for (std::size_t e = 0; e < mechanism.effects.size(); ++e) {
-    const Effect& effect = mechanism.effects[e];
-    effects_.push_back(block_of(names.effects[e], effect.type, effect.coordinate, effect.bodies, effect.parameters));
-  }
+  for (std::size_t e = 0; e < mechanism.effects.size(); ++e)
+    effects_.push_back(block_of(names.effects[e], mechanism.effects[e]));
+  for (std::size_t b = 0; b < mechanism.bounded.size(); ++b)
+    bounded_.push_back(block_of(names.bounded[b], mechanism.bounded[b]));
 }
 
-RowBlock RowBlocks::block_of(const std::string& name, const std::string& type, const std::string& coordinate,
-                             const std::vector<int>& bodies, const std::vector<double>& parameters) const {
-  const SpecPrograms& spec = types_.at(type);
-  return {name, &spec, coordinate.empty() ? &spec.rows : &spec.coordinates.at(coordinate), &bodies, &parameters};
+// A row with bounds of an effect between bodies is on a coordinate of that effect.
+RowBlock RowBlocks::block_of(const std::string& name, const Effect& effect) const {
+  const SpecPrograms& spec = types_.at(effect.type);
+  const bool own = effect.coordinate.empty() && effect.law == Effect::bound;
+  const std::string& coordinate = own ? spec.bounded[effect.row].coordinate : effect.coordinate;
+  return {name, &spec, coordinate.empty() ? &spec.rows : &spec.coordinates.at(coordinate), &effect.bodies,
+          &effect.parameters};
 }
 
 Values RowBlocks::inputs(Algebra& algebra, const RowBlock& block) const {
@@ -49,6 +54,13 @@ Values RowBlocks::inputs(Algebra& algebra, const RowBlock& block) const {
   }
   in["pi"] = algebra.value(3.14159265358979323846);
   in["time"] = algebra.input("time");
+  return in;
+}
+
+Values RowBlocks::inputs_with_jacobian(Algebra& algebra, const RowBlock& block) const {
+  Values in = inputs(algebra, block);
+  for (const auto& [name, op] : call(algebra, block, "jacobian", in))
+    if (name.starts_with("J.")) in[name] = op;
   return in;
 }
 

@@ -16,7 +16,7 @@ using Values = std::map<std::string, int>;  // operations by the names of a kern
 
 // `names` are those of bodies, joints and effects in C++; "" for bodies that do not move.
 struct Names {
-  std::vector<std::string> bodies, joints, effects;
+  std::vector<std::string> bodies, joints, effects, bounded;
 };
 
 struct RowBlock {
@@ -40,12 +40,15 @@ class RowBlocks {
   const Mechanism& mechanism() const { return mechanism_; }
   const RowBlock& joint(std::size_t j) const { return joints_[j]; }
   const RowBlock& effect(std::size_t e) const { return effects_[e]; }
+  const RowBlock& bounded(std::size_t b) const { return bounded_[b]; }
   // The spec whose law the effect has.
-  const SpecPrograms& law(std::size_t e) const { return types_.at(mechanism_.effects[e].law_type); }
+  const SpecPrograms& law(const Effect& effect) const { return types_.at(effect.law_type); }
   const std::string& body_name(int index) const { return names_.bodies[static_cast<std::size_t>(index)]; }
 
   // What the kernel reads, in this scene: places and velocities of its bodies, masses, parameters.
   Values inputs(Algebra& algebra, const RowBlock& block) const;
+  // The same with its J.
+  Values inputs_with_jacobian(Algebra& algebra, const RowBlock& block) const;
   // Puts these in place of v in the inputs; by the names of components, "rod.x"; empty: leaves v.
   void replace_velocities(Values& in, const RowBlock& block, const Values& velocities) const;
   // One of its functions.
@@ -57,14 +60,13 @@ class RowBlocks {
                   Forces& forces) const;
 
  private:
-  RowBlock block_of(const std::string& name, const std::string& type, const std::string& coordinate,
-                    const std::vector<int>& bodies, const std::vector<double>& parameters) const;
+  RowBlock block_of(const std::string& name, const Effect& effect) const;
   void add_body(Algebra& algebra, Values& in, const std::string& L, int index) const;
 
   const Mechanism& mechanism_;
   const Names& names_;
   std::map<std::string, SpecPrograms> types_;
-  std::vector<RowBlock> joints_, effects_;
+  std::vector<RowBlock> joints_, effects_, bounded_;
 };
 
 }  // namespace cdot::compile

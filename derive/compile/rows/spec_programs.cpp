@@ -31,7 +31,7 @@ RowPrograms rows_of(derive::KernelBlock& block) {
   for (const derive::ScalarRow& row : block.block->rows) rows.names.push_back(row.name);
   for (const derive::Field& field : block.fields) rows.fields.push_back(field.name);
   for (derive::KernelFunction& f : block.functions) rows.functions[f.name] = std::move(f.program);
-  rows.has_rates = !is_zero(rows.function("time_derivative"));
+  rows.has_rates = rows.count() > 0 && !is_zero(rows.function("time_derivative"));
   return rows;
 }
 
@@ -46,6 +46,7 @@ std::map<std::string, std::string> leaves_of_law(const derive::Joint& joint) {
     if (!input.rate->vector) name(input, "");
     for (int k = 0; k < joint.dimension && input.rate->vector; ++k) name(input, std::string("_") + "xyz"[k]);
   }
+  leaves[derive::bounded_value] = "C[0]";
   return leaves;
 }
 
@@ -58,9 +59,12 @@ SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& sp
   const derive::Derivation derivation = derive::derive(*read.joint);
   derive::Kernel kernel = derive::plan(derivation);
   keep_needed(kernel.rows);
-  std::erase_if(kernel.coordinates, [&](const derive::KernelBlock& c) { return !coordinates.contains(c.name); });
+  const auto has_bounds = [&](const std::string& coordinate) {
+    return std::ranges::any_of(kernel.bounded, [&](const auto& bound) { return bound.row->coordinate == coordinate; });
+  };
+  std::erase_if(kernel.coordinates,
+                [&](const derive::KernelBlock& c) { return !coordinates.contains(c.name) && !has_bounds(c.name); });
   for (derive::KernelBlock& coordinate : kernel.coordinates) keep_needed(coordinate);
-  kernel.bounded.clear();
   kernel.defaults.clear();
   kernel = derive::simplified(std::move(kernel));
   SpecPrograms programs;
@@ -72,6 +76,8 @@ SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& sp
   for (derive::KernelBlock& coordinate : kernel.coordinates)
     programs.coordinates[coordinate.name] = rows_of(coordinate);
   if (derivation.joint.law) programs.leaves = leaves_of_law(derivation.joint);
+  for (derive::KernelBound& bound : kernel.bounded)
+    programs.bounded.push_back({bound.row->coordinate, bound.row->of_rate, std::move(bound.function.program)});
   return programs;
 }
 

@@ -23,15 +23,23 @@ struct RowPrograms {
   std::size_t count() const { return names.size(); }
 };
 
+// A row with bounds of an effect.
+struct BoundPrograms {
+  std::string coordinate;
+  bool of_rate = false;    // else its ends
+  derive::Program bounds;  // of C and the time: B.lower, B.upper, B.rate
+};
+
 struct SpecPrograms {
   std::vector<std::string> bodies;      // "a", "b", ...
   std::vector<std::string> parameters;  // what the programs read, in the order of Parameters<T>: "p.pa_x", "phi"
   RowPrograms rows;
   std::map<std::string, RowPrograms> coordinates;
   std::map<std::string, std::string> leaves;  // of an effect's law: "turn_rate" -> "rate[0]"
+  std::vector<BoundPrograms> bounded;
 };
 
-// With these of its coordinates.
+// With these of its coordinates, and those of its rows with bounds.
 SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& spec,
                          const std::set<std::string>& coordinates);
 

@@ -1,7 +1,6 @@
 #include "derive/compile/scene/effects.hpp"
 
 #include <fmt/format.h>
-#include <type_traits>
 
 #include <cdot/effects.hpp>
 
@@ -49,23 +48,37 @@ class EffectReader {
 
   // An effect that acts along the rows of the World's joint.
   Effect along(const std::string& name, int joint) {
-    Effect effect{name, std::string(world_.joint_type(joint).name), {}, record(joint).bodies, {}, {}, {}, {}};
+    Effect effect;
+    effect.name = name, effect.type = world_.joint_type(joint).name, effect.bodies = record(joint).bodies;
     const int ground = static_cast<int>(scene_.bodies.size());
     for (int& body : effect.bodies) body = body == world_.ground() ? ground : body;
     effect.parameters = world_.joint_parameters(joint);
     return effect;
   }
 
+  // Places: its own rows, then those with bounds.
   void add_of_joint(const SceneJoint& source, int joint) {
     Effect effect = along(source.name, joint);
-    const std::vector<Place>& places = record(joint).places;
-    for (const Place& place : places)
-      if (is_bounded(place)) return refuse_(&source, fmt::format("{}: a row with bounds", effect.type));
-    if (has_limits(places[0]) && mechanism_.method == Method::euler)
-      return refuse_(&source, fmt::format("{} by Euler's method: a force with limits", effect.type));
     effect.law_type = effect.type;
     effect.numbers = effect.parameters;
-    mechanism_.effects.push_back(std::move(effect));
+    const std::vector<Place>& places = record(joint).places;
+    const auto rows = world_.joint_type(joint).row_names.size();
+    if (rows > 0 && has_limits(places[0]) && mechanism_.method == Method::euler) {
+      if (rows > 1) return refuse_(&source, fmt::format("{}: several forces with limits", effect.type));
+      effect.law = Effect::limited;
+      mechanism_.bounded.push_back(effect);
+    } else if (rows > 0) {
+      mechanism_.effects.push_back(effect);
+    }
+    effect.law = Effect::bound;
+    for (std::size_t k = 1; k < places.size() && is_bounded(places[k]); ++k, ++effect.row) add_bounded(source, effect);
+  }
+
+  void add_bounded(const SceneJoint& source, const Effect& effect) {
+    if (mechanism_.method == Method::euler) mechanism_.bounded.push_back(effect);
+    else
+      refuse_(&source, fmt::format("{} by {}, which has to find when it begins to slip, to hold or to touch",
+                                   effect.name, mechanism_.method_name));
   }
 
   void add_soft(const std::string& name, int joint) {
@@ -91,19 +104,41 @@ class EffectReader {
     Effect effect = along(source.name + "." + coordinate, joint);
     effect.coordinate = coordinate;
     effect.numbers = constants_of(place);
-    std::string what = "row with bounds";
-    if constexpr (std::is_same_v<Kind, SpecEffect>) what = effect.law_type = kind.type;
-    else if constexpr (std::is_same_v<Kind, CoordinateSpring>)
-      effect.law = Effect::spring, what = is_damper(kind) ? "damper" : "spring";
-    else if constexpr (std::is_same_v<Kind, Load>) effect.law = Effect::load, what = "load";
-    else if constexpr (std::is_same_v<Kind, Motor>) what = "motor";
-    else if constexpr (std::is_same_v<Kind, Limit>) what = "limit";
-    else if constexpr (std::is_same_v<Kind, DryFriction>) what = "friction";
+    const std::string what = name_law(kind, effect);
     effect.name += "." + what;
-    if (is_bounded(place)) return refuse_(&source, fmt::format("{}.{}: a row with bounds", coordinate, what));
-    if (has_limits(place) && mechanism_.method == Method::euler)
-      return refuse_(&source, fmt::format("{}.{} by Euler's method: a force with limits", coordinate, what));
-    mechanism_.effects.push_back(std::move(effect));
+    if (is_bounded(place)) return add_bounded(source, effect);
+    if (has_limits(place) && mechanism_.method == Method::euler) {
+      effect.law = Effect::limited;
+      mechanism_.bounded.push_back(std::move(effect));
+    } else {
+      mechanism_.effects.push_back(std::move(effect));
+    }
+  }
+
+  std::string name_law(const SpecEffect& kind, Effect& effect) {
+    const JointType& type = *find_coordinate_effect(kind.type);
+    effect.law = type.row_names.empty() ? Effect::bound : Effect::of_spec;
+    return effect.law_type = kind.type;
+  }
+  static std::string name_law(const CoordinateSpring& kind, Effect& effect) {
+    effect.law = Effect::spring;
+    return is_damper(kind) ? "damper" : "spring";
+  }
+  static std::string name_law(const Load&, Effect& effect) {
+    effect.law = Effect::load;
+    return "load";
+  }
+  static std::string name_law(const Motor&, Effect& effect) {
+    effect.law = Effect::motor;
+    return "motor";
+  }
+  static std::string name_law(const DryFriction&, Effect& effect) {
+    effect.law = Effect::motor;
+    return "friction";
+  }
+  static std::string name_law(const Limit& kind, Effect& effect) {
+    effect.law = kind.lower == kind.upper ? Effect::lock : Effect::limit;
+    return "limit";
   }
 
   const Scene& scene_;

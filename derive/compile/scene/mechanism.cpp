@@ -124,7 +124,8 @@ void add_effects(const Scene& scene, BasicWorld<Space>& world, Mechanism& mechan
   Refusals refusals(scene);
   const auto refuse = [&](const SceneJoint* joint, const std::string& what) {
     refusals.add(joint->where, fmt::format("{}: cdot compile does not know {}", joint->name, what),
-                 "leave it to cdot-run");
+                 mechanism.method == Method::euler ? "leave it to cdot-run"
+                                                   : "give --integrator euler, or leave it to cdot-run");
   };
   read_effects(scene, world, refuse, mechanism);
   refusals.throw_any();

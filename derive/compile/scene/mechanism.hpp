@@ -22,7 +22,7 @@ struct Joint {
   std::vector<double> parameters;  // laid out as Parameters<T> of the kernel
 };
 
-// A force along each row of a spec, or along one of its coordinates.
+// A force along each row of a spec, or along one of its coordinates; a row with bounds on a coordinate.
 struct Effect {
   std::string name;                // "hinge.angle.servo"
   std::string type;                // the spec that has the rows
@@ -32,9 +32,16 @@ struct Effect {
   enum Law {
     of_spec,  // that of a spec; `numbers` are its Parameters<T>
     spring,   // -k C - d dC/dt; numbers: 1 by frequency, frequency or k, damping ratio or d, rest
-    load      // numbers: F
+    load,     // numbers: F
+    // Rows with bounds:
+    limited,  // of_spec, a force within limits
+    bound,    // of_spec, its bounded row number `row`
+    motor,    // numbers: rate, largest force
+    limit,    // numbers: lower, upper end
+    lock      // numbers: the value held
   } law = of_spec;
-  std::string law_type;  // of_spec
+  std::string law_type;  // of_spec, limited, bound
+  std::size_t row = 0;
   std::vector<double> numbers;
 };
 
@@ -48,7 +55,8 @@ struct Mechanism {
   double gravity_x = 0, gravity_y = 0;  // [m/s^2]
   std::vector<Body> bodies;             // the last one is the world
   std::vector<Joint> joints;
-  std::vector<Effect> effects;
+  std::vector<Effect> effects;  // by forces
+  std::vector<Effect> bounded;  // rows with bounds
 };
 
 // What the command line asks for in place of the scene; empty and 0: as the scene has it.

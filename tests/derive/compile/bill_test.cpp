@@ -7,6 +7,7 @@
 #include <iterator>
 #include <sstream>
 
+#include "bounds_euler.hpp"
 #include "chain_10_euler.hpp"
 #include "chain_10_rk4.hpp"
 #include "effects_euler.hpp"
@@ -83,6 +84,7 @@ TEST(Bill, BytesOfStateAreThoseOfTheStruct) {
   EXPECT_EQ(bytes(chain, "rk4"), long{sizeof(chain_10_rk4<double>::State)});
   EXPECT_EQ(bytes(effects, "euler"), long{sizeof(effects_euler<double>::State)});
   EXPECT_EQ(bytes(effects, "rk4"), long{sizeof(effects_rk4<double>::State)});
+  EXPECT_EQ(bytes("tests/derive/compile/scenes/bounds.toml", "euler"), long{sizeof(bounds_euler<double>::State)});
   EXPECT_EQ(bytes("tests/derive/compile/scenes/thrown.toml", "rk4"), long{sizeof(thrown_rk4<double>::State)});
 }
 

@@ -23,7 +23,8 @@ TEST(CompileCommand, WritesTheSameBytesOnEveryRun) {
 TEST(CompileCommand, RefusesPartsThatItDoesNotKnowWithTheirLines) {
   const Outcome effects = compile("specs/scenes/machine.toml");
   EXPECT_EQ(effects.status, 2);
-  EXPECT_NE(effects.text.find("specs/scenes/machine.toml:58:1: error: axle: cdot compile does not know angle.motor"),
+  EXPECT_NE(effects.text.find(
+                "specs/scenes/machine.toml:58:1: error: axle: cdot compile does not know axle.angle.motor by rk4"),
             std::string::npos)
       << effects.text;
   const Outcome space = compile("specs/scenes/spatial/gyroscope.toml");

@@ -1,0 +1,281 @@
+#include "derive/compile/corrections.hpp"
+
+#include <fmt/format.h>
+
+namespace cdot::compile {
+namespace {
+
+std::string when(bool condition, const char* text) { return condition ? text : ""; }
+
+constexpr const char* largest_row = R"(
+  template <int n>
+  static T largest(const T (&of_rows)[n]) {
+    T most = T(0);
+    for (const T& of_row : of_rows) most = select(magnitude(of_row) > most, magnitude(of_row), most);
+    return most;
+  }
+)";
+
+// As the World does it: runtime/solve/direct.cpp.
+constexpr const char* close_begins = R"(
+  // Newton on C, with J as it is evaluated: anew where a round leaves more than the share `slow` of the error. Adds up
+  // the moves. Returns the error before. A lane that is done waits for the others unchanged.
+  static T close(State& s, Evaluated& at, const T& slow, Velocity (&moves)[bodies]) {
+    for (int i = 0; i < bodies; ++i) moves[i] = {T(0), T(0), T(0)};
+    const T left = s.residual;
+    T before = T(1e30), error = T(0);
+    auto goes_on = T(0) < T(1), renewed = T(1) < T(0);
+)";
+
+constexpr const char* errors_of_rows = R"(      T C[rows];
+      errors(s.q, s.time, C);
+      const T of_joints = largest(C);
+)";
+
+// Ends that are passed take part from then on.
+constexpr const char* errors_of_ends = R"(      T over[bounded];
+      past(s.q, s.time, over);
+      const T worst = select(largest(over) > of_joints, largest(over), of_joints);
+)";
+
+constexpr const char* ends_join = R"(      auto more = T(1) < T(0);
+      for (int i = 0; i < bounded; ++i) {
+        const auto joins = goes_on && magnitude(over[i]) > T(0) && !active[i];
+        if (!first) more = more || joins;
+        active[i] = active[i] || joins;
+      }
+)";
+
+constexpr const char* round_begins = R"(      s.residual = worst;
+      goes_on = goes_on && worst > T(single ? 1e7 * {0} : {0});
+      const bool first = round == 0;
+      if (first) {{
+        error = worst;
+        goes_on = goes_on && !(magnitude(worst - left) <= T(single ? -1 : 1e-9) * worst);  // contradicting joints
+      }}
+)";
+
+constexpr const char* renews = R"(      const auto is_slow = goes_on && {0}worst > slow * before;
+      goes_on = goes_on && !(is_slow && renewed && worst > T(0.5) * before);
+      if (!any(goes_on) || round == 20) return error;
+      const auto renews = goes_on && is_slow;
+      if (any(renews)) {{
+        at.time = select(renews, s.time, at.time);
+        for (int i = 0; i < bodies; ++i) {{
+          Pose& q = at.q[i];
+          q = {{select(renews, s.q[i].x, q.x), select(renews, s.q[i].y, q.y), select(renews, s.q[i].angle, q.angle),
+               select(renews, s.q[i].c, q.c), select(renews, s.q[i].s, q.s)}};
+        }}
+{1}        renewed = renewed || renews;
+      }}
+      before = worst;
+)";
+
+constexpr const char* moves_of_rows = R"(      T unused[rows];
+      for (T& of_row : C) of_row = -of_row;
+      Velocity d[bodies];
+      solve(s.J, C, unused, d);
+)";
+
+constexpr const char* no_moves = R"(      Velocity d[bodies];
+      for (int i = 0; i < bodies; ++i) d[i] = {T(0), T(0), T(0)};
+)";
+
+constexpr const char* moves_of_ends = R"(      auto passed = T(1) < T(0);
+      for (int i = 0; i < bounded; ++i) passed = passed || active[i];
+      if (any(passed)) {{
+        if (!reached) reach(at.q, at.time, {0}B);
+        reached = true;
+        T along_ends[bounded], c[bounded], mu[bounded];
+        along(at.q, at.time, d, along_ends);
+        for (int i = 0; i < bounded; ++i) c[i] = -over[i] - along_ends[i], mu[i] = T(0);
+        divide(B.S, active, c, mu);
+        for (int e = 0; e < bounded; ++e)
+          for (int i = 0; i < bodies; ++i) d[i] = d[i] + mu[e] * B.g[e][i];
+      }}
+)";
+
+constexpr const char* round_ends = R"(      for (int i = 0; i < bodies; ++i) {
+        d[i] = {select(goes_on, d[i].x, T(0)), select(goes_on, d[i].y, T(0)), select(goes_on, d[i].w, T(0))};
+        moves[i] = moves[i] + d[i];
+        s.q[i] = moved(s.q[i], d[i]);
+      }
+      turn(s.q);
+    }
+  }
+)";
+
+constexpr const char* project = R"(
+  // Velocities onto J v = -dC/dt.
+  static void project(State& s) {
+    T b[rows], unused[rows];
+    rates(s.J, s.v, b);
+    for (T& of_row : b) of_row = -of_row;
+    Velocity d[bodies];
+    solve(s.J, b, unused, d);
+    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + d[i];
+  }
+)";
+
+constexpr const char* bounded_type = R"(
+  // Rows with bounds: S mu + softness mu = c, mu between low and high. g and l are the velocities and the impulses of
+  // joints that answer to a unit impulse on a row; K = J M^-1 J^T of the row alone.
+  struct Bounded {{
+    Velocity g[bounded][bodies];
+{0}    T S[bounded * (bounded + 1) / 2], c[bounded], low[bounded], high[bounded], K[bounded];
+  }};
+  static constexpr bool is_rate[bounded] = {{{1}}};
+  using Mask = decltype(T(0) < T(1));
+)";
+
+constexpr const char* solves_bounded = R"(
+  static const T& entry(const T (&S)[bounded * (bounded + 1) / 2], int i, int j) {
+    return i >= j ? S[i * (i + 1) / 2 + j] : S[j * (j + 1) / 2 + i];
+  }
+
+  // S mu = c in the free rows, with mu of the others given. S = L D L^T; a row that depends on others gets 0.
+  static void divide(const T (&S)[bounded * (bounded + 1) / 2], const Mask (&free)[bounded], const T (&c)[bounded],
+                     T (&mu)[bounded]) {
+    T U[bounded][bounded], L[bounded][bounded], inv_D[bounded], x[bounded];
+    for (int j = 0; j < bounded; ++j)
+      for (int i = j; i < bounded; ++i) {
+        T u = entry(S, i, j);
+        for (int k = 0; k < j; ++k) u = u - U[i][k] * L[j][k];
+        if (i == j) inv_D[j] = select(free[j], pivot(u, entry(S, j, j)), T(0));
+        U[i][j] = u;
+        L[i][j] = u * inv_D[j];
+      }
+    for (int i = 0; i < bounded; ++i) {
+      x[i] = c[i];
+      for (int j = 0; j < bounded; ++j) x[i] = x[i] - select(free[j], T(0), entry(S, i, j) * mu[j]);
+      for (int k = 0; k < i; ++k) x[i] = x[i] - L[i][k] * x[k];
+    }
+    for (int i = bounded; i-- > 0;) {
+      x[i] = x[i] * inv_D[i];
+      for (int k = i + 1; k < bounded; ++k) x[i] = x[i] - L[k][i] * x[k];
+      x[i] = select(free[i], x[i], T(0));
+    }
+    for (int i = 0; i < bounded; ++i) mu[i] = select(free[i], x[i], mu[i]);
+  }
+
+  // Rows beyond a bound take it; rows at a bound that they would leave are free again. First all at once, then one by
+  // one (Murty). `hold`: -1 at the lower bound, 1 at the upper one, 0 free; it begins as it was in the last step. A
+  // lane that is done waits for the others unchanged.
+  static void find_active(Bounded& B, Mask busy, T (&hold)[bounded], T (&mu)[bounded], T (&missed)[bounded]) {
+    constexpr int fast = 10, slow = 2 * bounded + 10;
+    const T scale = largest(B.c);
+    for (int round = 0; round < fast + slow && any(busy); ++round) {
+      Mask free[bounded];
+      T now[bounded];
+      for (int i = 0; i < bounded; ++i) free[i] = magnitude(hold[i]) < T(0.5), now[i] = mu[i];
+      divide(B.S, free, B.c, now);
+      for (int i = 0; i < bounded; ++i) mu[i] = select(busy, now[i], mu[i]);
+      for (int i = 0; i < bounded; ++i) {
+        missed[i] = -B.c[i];
+        for (int j = 0; j < bounded; ++j) missed[i] = missed[i] + entry(B.S, i, j) * mu[j];
+      }
+      auto changed = T(1) < T(0);
+      for (int i = bounded; i-- > 0;) {
+        const auto may = round < fast ? busy : busy && !changed;
+        const auto down = may && free[i] && mu[i] < B.low[i], up = may && free[i] && mu[i] > B.high[i];
+        const T tolerance = T(single ? 1e-5 : 1e-12) * scale;
+        const auto leaves = (hold[i] < T(-0.5) && missed[i] < -tolerance) || (hold[i] > T(0.5) && missed[i] > tolerance);
+        const auto out = may && !free[i] && leaves && B.low[i] < B.high[i];
+        hold[i] = select(down, T(-1), select(up, T(1), select(out, T(0), hold[i])));
+        mu[i] = select(down, B.low[i], select(up, B.high[i], mu[i]));
+        changed = changed || down || up || out;
+      }
+      busy = busy && changed;
+    }
+  }
+
+  // The rows that row d depends on, with itself: those by whose impulses it could be replaced.
+  static void find_contradiction(const Bounded& B, int d, const Mask (&free)[bounded], Mask (&rows_of_it)[bounded]) {
+    T c[bounded], x[bounded];
+    Mask others[bounded];
+    for (int i = 0; i < bounded; ++i) {
+      others[i] = i == d ? T(1) < T(0) : free[i];
+      c[i] = entry(B.S, i, d), x[i] = T(0);
+    }
+    divide(B.S, others, c, x);
+    for (int i = 0; i < bounded; ++i)
+      rows_of_it[i] = i == d ? free[d] : free[i] && x[i] * x[i] * B.K[i] > T(single ? 1e-6 : 1e-12) * B.K[d];
+  }
+
+  // Rows that contradict each other: motors among them yield, as soft as their rows; if ends contradict, all yield.
+  static Mask part(Bounded& B, const Mask& busy, const T (&hold)[bounded], const T (&missed)[bounded],
+                   Mask (&yields)[bounded]) {
+    const T slight = T(single ? 1e-4 : 1e-9) * largest(B.c);
+    Mask free[bounded], now[bounded], rows_of_it[bounded];
+    Mask motors = T(1) < T(0), contradicts = motors;
+    for (int i = 0; i < bounded; ++i) free[i] = magnitude(hold[i]) < T(0.5), now[i] = motors;
+    for (int d = 0; d < bounded; ++d) {
+      const Mask unmet = busy && free[d] && magnitude(missed[d]) > slight && !yields[d];
+      if (!any(unmet)) continue;
+      find_contradiction(B, d, free, rows_of_it);
+      contradicts = contradicts || unmet;
+      for (int i = 0; i < bounded; ++i)
+        if (is_rate[i]) now[i] = now[i] || (unmet && rows_of_it[i] && !yields[i]);
+    }
+    for (int i = 0; i < bounded; ++i) motors = motors || now[i];
+    for (int i = 0; i < bounded; ++i) {
+      T& diagonal = B.S[i * (i + 1) / 2 + i];
+      const T slightly = select(contradicts && !motors, T(single ? 1e-4 : 1e-8) * B.K[i], T(0));
+      diagonal = diagonal + select(now[i], B.K[i], slightly);
+      yields[i] = yields[i] || now[i];
+    }
+    return contradicts;
+  }
+
+  static void settle(Bounded& B, T (&hold)[bounded], T (&mu)[bounded]) {
+    T missed[bounded];
+    Mask yields[bounded];
+    for (int i = 0; i < bounded; ++i) {
+      const auto endless = (hold[i] < T(-0.5) && B.low[i] < T(-1e20)) || (hold[i] > T(0.5) && B.high[i] > T(1e20));
+      hold[i] = select(endless, T(0), hold[i]);
+      mu[i] = select(hold[i] < T(-0.5), B.low[i], select(hold[i] > T(0.5), B.high[i], T(0)));
+      yields[i] = T(1) < T(0);
+    }
+    Mask busy = T(0) < T(1);
+    for (int round = 0; any(busy); ++round) {
+      find_active(B, busy, hold, mu, missed);
+      busy = round < 2 ? part(B, busy, hold, missed, yields) : T(1) < T(0);
+    }
+    for (int i = 0; i < bounded; ++i)
+      mu[i] = select(mu[i] < B.low[i], B.low[i], select(mu[i] > B.high[i], B.high[i], mu[i]));
+  }
+)";
+
+}  // namespace
+
+std::string corrections_of(double tolerance, const Contents& has) {
+  std::string text;
+  if (has.closes()) {
+    text += close_begins;
+    text += when(has.ends,
+                 "    Bounded B;\n    bool reached = false;  // B is that of `at`\n    Mask active[bounded];\n"
+                 "    for (Mask& of_row : active) of_row = T(1) < T(0);\n");
+    text += "    for (int round = 0;; ++round) {\n";
+    text += has.rows ? errors_of_rows : "      const T of_joints = T(0);\n";
+    text += has.ends ? errors_of_ends : "      const T worst = of_joints;\n";
+    text += fmt::format(round_begins, tolerance);
+    text += when(has.ends, ends_join);
+    text += fmt::format(
+        renews, has.ends ? "!more && " : "",
+        when(has.rows, "        evaluate(at.q, at.time, s.J);\n") + when(has.ends, "        reached = false;\n"));
+    text += has.rows ? moves_of_rows : no_moves;
+    if (has.ends) text += fmt::format(moves_of_ends, has.rows ? "s.J, " : "");
+    text += round_ends;
+  }
+  if (has.rows) text += project;
+  return text;
+}
+
+std::string bounded_of(const std::string& is_rate, const Contents& has) {
+  std::string text;
+  if (has.closes() || has.bounded) text += largest_row;
+  if (!has.bounded) return text;
+  return text + fmt::format(bounded_type, when(has.rows, "    T l[bounded][rows];\n"), is_rate) + solves_bounded;
+}
+
+}  // namespace cdot::compile

@@ -1,0 +1,47 @@
+// A row with bounds as operations: what it asks for in a step of h, and its error.
+#pragma once
+
+#include "derive/compile/rows/laws.hpp"
+
+namespace cdot::compile {
+
+class BoundWriter {
+ public:
+  BoundWriter(const RowBlocks& blocks, Algebra& algebra, std::size_t bounded);
+
+  const RowBlock& block() const { return block_; }
+  const Values& inputs() const { return in_; }  // with J
+  // J v of these velocities alone, by the names of components.
+  int along(const Values& velocities) const;
+  int drift() const { return law_.drift()[0]; }  // dC/dt
+  // J v' + dC/dt + bias + softness lambda = 0 at the end of a step, lambda within [low, high].
+  struct Kick {
+    int bias, softness, low, high;
+  };
+  Kick kick(int h) const;
+  // The part of C that the projection removes.
+  int past() const;
+
+ private:
+  bool is_rate() const;
+  Kick of_rate(int h) const;
+  Kick of_ends(int h) const;
+  Kick of_force(int h) const;
+  // lower and upper: bounds of the force, or ends.
+  Values bounds() const;
+  int bound(const Values& bounds, const std::string& name, double missing) const;
+
+  const RowBlocks& blocks_;
+  Algebra& algebra_;
+  const Effect& effect_;
+  const RowBlock& block_;
+  Values in_;
+  LawWriter law_;
+};
+
+// True for a row that prescribes a rate: others hold it where they contradict it.
+bool prescribes_rate(const RowBlocks& blocks, std::size_t bounded);
+// True for a row with ends, or one that holds a value.
+bool has_ends(const RowBlocks& blocks, std::size_t bounded);
+
+}  // namespace cdot::compile

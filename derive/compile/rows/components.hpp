@@ -1,0 +1,41 @@
+// The numbers of the bodies' velocities, and what acts on them without joints.
+#pragma once
+
+#include <fmt/format.h>
+#include <string>
+
+#include "derive/compile/rows/row_blocks.hpp"
+
+namespace cdot::compile {
+
+// Of a body's velocity: x, y or w.
+struct Component {
+  int body;
+  std::size_t column;
+  std::string name;                                 // "rod.x"
+  std::string in(const std::string& array) const {  // "v[rod].x"
+    return fmt::format("{}[{}]{}", array, name.substr(0, name.find('.')), name.substr(name.find('.')));
+  }
+};
+
+// f(component, acceleration by gravity and constant forces, drag)
+template <class F>
+void each_component(const RowBlocks& blocks, F f) {
+  const Mechanism& all = blocks.mechanism();
+  for (int b = 0; b < static_cast<int>(all.bodies.size()); ++b) {
+    const Body& body = all.bodies[static_cast<std::size_t>(b)];
+    const double a[] = {all.gravity_x + body.ax, all.gravity_y + body.ay, body.aw};
+    const double drag[] = {body.linear_drag, body.linear_drag, body.angular_drag};
+    for (std::size_t c = 0; body.moves && c < 3; ++c)
+      f(Component{b, c, fmt::format("{}.{}", blocks.body_name(b), "xyw"[c])}, a[c], drag[c]);
+  }
+}
+
+// M^-1 force of one component.
+inline int change_of(const RowBlocks& blocks, Algebra& algebra, const Component& component, const Forces& forces) {
+  const auto force = forces.find({component.body, component.column});
+  if (force == forces.end()) return algebra.value(0);
+  return algebra.times(blocks.inverse_mass(algebra, component.body, component.column), algebra.sum(force->second));
+}
+
+}  // namespace cdot::compile

@@ -1,0 +1,21 @@
+// An Euler step of the velocities as functions of the header.
+#pragma once
+
+#include "derive/compile/rows/joint_rows.hpp"
+
+namespace cdot::compile {
+
+// q, v, time, J, h -> next: v after an Euler step of h with effects, and lambda of the joints. With rows that have
+// bounds, these are without their impulses, and B holds the system that gives them.
+Program kick_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
+
+// q, time, J -> B.g and B.S for rows with ends, without effects: their part in a projection.
+Program reach_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
+
+// q, time -> past: errors of rows with bounds.
+Program past_of(const RowBlocks& blocks, Constants& constants);
+
+// q, v, time -> along: J v of rows with bounds.
+Program along_of(const RowBlocks& blocks, Constants& constants);
+
+}  // namespace cdot::compile

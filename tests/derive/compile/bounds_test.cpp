@@ -1,0 +1,55 @@
+// Compiled scenes with motors, limits, friction, brakes, contacts and drives move by Euler's steps as the World does.
+#include <gtest/gtest.h>
+
+#include "bounds_euler.hpp"
+#include "ends_euler.hpp"
+#include "machine_euler.hpp"
+#include "robot_arm_euler.hpp"
+#include "tests/derive/compile/beside_world.hpp"
+#include "tests/derive/compile/command.hpp"
+
+namespace {
+
+using cdot::Integrator;
+using namespace cdot::scenes;
+
+TEST(CompiledBounds, MoveAsTheWorld) {
+  cdot::runs_as_the_world<machine_euler<double>>("specs/scenes/machine.toml", Integrator::euler);
+  cdot::runs_as_the_world<robot_arm_euler<double>>("specs/scenes/robot_arm.toml", Integrator::euler);
+  cdot::runs_as_the_world<bounds_euler<double>>("tests/derive/compile/scenes/bounds.toml", Integrator::euler, 1e-10, 2);
+}
+
+// An end is passed or not by round-off where a joint's correction pushes a body at an end: by h^2 in a step.
+TEST(CompiledBounds, AreCorrectedAsInTheWorld) {
+  cdot::runs_as_the_world<ends_euler<double>>("tests/derive/compile/scenes/ends.toml", Integrator::euler, 1e-5);
+}
+
+// Every row of the scene is at a bound at some time, and off it at another: else the tests above would miss it. The
+// last one, friction of a rotor that never stops, always slips.
+TEST(CompiledBounds, AreMetInTheTest) {
+  using Scene = bounds_euler<double>;
+  Scene::State state;
+  Scene::reset(state);
+  bool held[Scene::bounded] = {}, free[Scene::bounded] = {};
+  for (int k = 0; k < 2000; ++k) {
+    Scene::step(state);
+    for (int i = 0; i < Scene::bounded; ++i) (state.hold[i] == 0 ? free : held)[i] = true;
+  }
+  for (int i = 0; i < Scene::axle_angle_friction; ++i) EXPECT_TRUE(held[i] && free[i]) << "row " << i;
+}
+
+TEST(CompiledBounds, LanesAreAsAlone) {
+  cdot::lanes_are_as_alone<bounds_euler>();
+  cdot::lanes_are_as_alone<ends_euler>();
+  cdot::lanes_are_as_alone<robot_arm_euler>();
+}
+
+TEST(CompiledBounds, OtherMethodsRefuseThem) {
+  const cdot::Outcome arm = cdot::compile("specs/scenes/robot_arm.toml --integrator rk4");
+  EXPECT_EQ(arm.status, 2);
+  EXPECT_NE(arm.text.find("robot_arm.toml:46:1: error: wrist: cdot compile does not know wrist.angle.brake by rk4"),
+            std::string::npos)
+      << arm.text;
+}
+
+}  // namespace
