@@ -83,7 +83,7 @@ class Search {
       const bool guarded = e->kind == Kind::unit || e->kind == Kind::norm;
       const bool enough = names.size() == most_conditions || poses_.empty() || given_up();
       if (!guarded || enough || !breaks(e)) continue;
-      const std::string name = spec_text(e->args[0], subject_.joint);
+      const std::string name = brief_spec_text(e->args[0], subject_.joint);
       if (std::ranges::find(names, name) == names.end()) names.push_back(name);
     }
     return names;

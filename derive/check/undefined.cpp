@@ -28,7 +28,7 @@ class Undefined {
   }
 
  private:
-  std::string words(Expr e) const { return spec_text(e, subject_.joint); }
+  std::string words(Expr e) const { return brief_spec_text(e, subject_.joint); }
 
   void look_at(Expr e) {
     if (e->kind == Kind::unit) return direction(e->args[0]);

@@ -12,21 +12,36 @@ namespace {
 
 __extension__ using Wide = unsigned __int128;
 
+std::string turn_of(int body) { return "turn of " + std::to_string(body); }
+std::string name_of(const Triad& triad) { return "triad " + triad[0]->symbol; }
+bool is_euler_parameter(const Node& symbol) {
+  return symbol.role == Role::given && symbol.body >= 0 && symbol.symbol.find(".e") != std::string::npos;
+}
+
+// What is drawn for a symbol. In the plane a vector of a body turns with it.
+void add_leaves(const Node& symbol, Draws::Leaves& leaves) {
+  const bool planar = symbol.pool->dimension() == 2, body_axis = symbol.symbol.starts_with("axis_");
+  const bool turns = symbol.role == Role::angle || is_euler_parameter(symbol) || (symbol.vector && body_axis) ||
+                     (planar && symbol.vector && symbol.unit_length);
+  if (turns && symbol.body >= 0) leaves.insert(turn_of(symbol.body));
+  const Pool::Axis axis = symbol.vector && !planar ? symbol.pool->axis_of(Expr(&symbol)) : Pool::Axis{};
+  leaves.insert(axis.triad ? name_of(*axis.triad) : symbol.symbol);
+}
+
 // A generic pose. Angles and scalars are small whole numbers: a sine recognises sums of them in its argument.
 class Pose final : public Arithmetic<Modular> {
  public:
-  explicit Pose(std::uint64_t seed) : point_(seed) {}
+  explicit Pose(const Draws& draws) : draws_(draws), point_(draws.seed()) {}
 
   Modular number(Rational value) override { return Modular(value.num()) * point_.inverse(Modular(value.den())); }
 
   Modular scalar_leaf(const Node& symbol) override {
     if (symbol.role == Role::angle) return Modular(angle_of(symbol.body));
     if (symbol.role == Role::constant) return point_.pi();
-    const std::size_t euler = symbol.symbol.find(".e");
-    if (symbol.role == Role::given && symbol.body >= 0 && euler != std::string::npos) {
+    if (is_euler_parameter(symbol)) {
       return orientation(symbol.body)[static_cast<std::size_t>(symbol.symbol.back() - '0')];
     }
-    return scalars_.try_emplace(symbol.symbol, Modular(point_.small())).first->second;
+    return Modular(drawn(symbol.symbol).small());
   }
 
   Triple<Modular> vector_leaf(const Node& symbol) override {
@@ -35,8 +50,9 @@ class Pose final : public Arithmetic<Modular> {
     if (symbol.role == Role::body_vector && symbol.symbol.starts_with("axis_")) {
       return turned({}, symbol.body);
     }
-    if (symbol.unit_length) return turned(point_.any_rotation(), symbol.body);
-    return {point_.any(), point_.any()};
+    ModularPoint& point = drawn(symbol.symbol);
+    if (symbol.unit_length) return turned(point.any_rotation(), symbol.body);
+    return {point.any(), point.any()};
   }
 
   Modular inverse(const Modular& x) override { return point_.inverse(x); }
@@ -44,7 +60,11 @@ class Pose final : public Arithmetic<Modular> {
   bool holds_for_reals() const { return point_.holds_for_reals(); }
 
  private:
-  std::int64_t angle_of(int body) { return angles_.try_emplace(body, point_.small()).first->second; }
+  ModularPoint& drawn(std::string_view leaf) {
+    point_.draw_by(draws_.seed_of(leaf));
+    return point_;
+  }
+  std::int64_t angle_of(int body) { return drawn(turn_of(body)).small(); }
 
   // Vectors of a body are random; a triad has one random orientation.
   Triple<Modular> vector_in_space(const Node& symbol) {
@@ -57,27 +77,24 @@ class Pose final : public Arithmetic<Modular> {
     if (axis.triad && symbol.symbol.starts_with("axis_")) {
       return axes_of(orientation(symbol.body))[static_cast<std::size_t>(axis.index)];
     }
-    if (axis.triad) {
-      const auto& triad = triads_.try_emplace(axis.triad, any_triad()).first->second;
-      return triad[static_cast<std::size_t>(axis.index)];
-    }
+    ModularPoint& point = drawn(axis.triad ? name_of(*axis.triad) : symbol.symbol);
+    if (axis.triad) return any_triad()[static_cast<std::size_t>(axis.index)];
     if (symbol.unit_length) return any_triad()[0];
-    return {point_.any(), point_.any(), point_.any()};
+    return {point.any(), point.any(), point.any()};
   }
 
   // Euler parameters of length 1. Half of all quadruples have a square for their squared length.
-  const EulerParameters<Modular>& orientation(int body) {
-    const auto found = orientations_.find(body);
-    if (found != orientations_.end()) return found->second;
+  EulerParameters<Modular> orientation(int body) {
+    ModularPoint& point = drawn(turn_of(body));
     EulerParameters<Modular> e;
     Modular square;
     do {
-      e = {point_.any(), point_.any(), point_.any(), point_.any()};
+      e = {point.any(), point.any(), point.any(), point.any()};
       square = e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3];
     } while (square.is_zero() || !square.is_square());
-    const Modular scale = inverse(point_.root(square));
+    const Modular scale = inverse(point.root(square));
     for (Modular& component : e) component = component * scale;
-    return orientations_.emplace(body, e).first->second;
+    return e;
   }
 
   std::array<Triple<Modular>, 3> any_triad() {
@@ -95,27 +112,64 @@ class Pose final : public Arithmetic<Modular> {
     return {r.c, r.s};
   }
 
+  const Draws& draws_;
   ModularPoint point_;
-  std::map<int, std::int64_t> angles_;
-  std::map<int, EulerParameters<Modular>> orientations_;
-  std::map<const Triad*, std::array<Triple<Modular>, 3>> triads_;
-  std::map<std::string, Modular> scalars_;
+};
+
+bool has_root(Expr e) { return e->kind == Kind::norm || e->kind == Kind::unit || e->kind == Kind::function; }
+
+Draws::Leaves drawn_for(std::span<const Expr> expressions) {
+  Draws::Leaves leaves;
+  for (const Expr e : leaves_of(expressions))
+    if (e->role != Role::constant && !is_world_axis(e)) add_leaves(*e, leaves);
+  return leaves;
+}
+
+// Expressions at random poses, operands first.
+class AtPoses {
+ public:
+  explicit AtPoses(std::span<const Expr> expressions) {
+    for (const Expr e : topological(expressions))
+      if (e->kind != Kind::symbol) parts_.push_back(e);
+  }
+
+  // The answer of `read(values, pose)`. If a part has no value, none, and a leaf of that part is drawn again.
+  template <class Read>
+  auto at(Draws& draws, Read read) const
+      -> std::optional<decltype(read(std::declval<Evaluation<Modular>&>(), std::declval<Pose&>()))> {
+    Pose pose(draws);
+    Evaluation<Modular> values(pose);
+    std::vector<Expr> roots;
+    for (const Expr part : parts_) {
+      try {
+        if (part->vector) values.vector(part);
+        else values.scalar(part);
+      } catch (const UndefinedHere&) {
+        draw_again(draws, part, roots);
+        return std::nullopt;
+      }
+      if (has_root(part)) roots.push_back(part);
+    }
+    return read(values, pose);
+  }
+
+ private:
+  static void draw_again(Draws& draws, Expr part, std::span<const Expr> roots) {
+    const Draws::Leaves leaves = drawn_for(std::span(&part, 1));
+    if (!has_root(part) || leaves.empty()) draws.give_up();
+    else draws.again(draws.choice(leaves, drawn_for(roots)));
+  }
+
+  std::vector<Expr> parts_;
 };
 
 using Rows = std::vector<std::vector<Modular>>;
 
-std::optional<Rows> jacobian_at(std::span<const std::vector<Expr>> rows, std::uint64_t seed) {
-  Pose pose(seed);
-  Evaluation<Modular> values(pose);
+Rows rows_of(std::span<const std::vector<Expr>> rows, Evaluation<Modular>& values) {
   Rows J;
-  try {
-    for (const std::vector<Expr>& row : rows) {
-      std::vector<Modular> entries;
-      for (const Expr entry : row) entries.push_back(values.scalar(entry));
-      J.push_back(std::move(entries));
-    }
-  } catch (const UndefinedHere&) {
-    return std::nullopt;
+  for (const std::vector<Expr>& row : rows) {
+    J.emplace_back();
+    for (const Expr entry : row) J.back().push_back(values.scalar(entry));
   }
   return J;
 }
@@ -186,18 +240,27 @@ Modular Modular::of_bits(std::uint64_t bits) {
   return m;
 }
 
+Modular Modular::of_twice(std::uint64_t below_2p) {
+  Modular m;
+  m.value_ = below_2p < prime ? below_2p : below_2p - prime;
+  return m;
+}
+
 bool Modular::is_square() const { return pow(*this, (prime - 1) / 2) == Modular(1); }
 
 std::int64_t Modular::centred() const {
   return value_ > prime / 2 ? -static_cast<std::int64_t>(prime - value_) : static_cast<std::int64_t>(value_);
 }
 
-Modular operator+(Modular a, Modular b) { return Modular::of_bits(a.value_ + b.value_); }
-Modular operator-(Modular a, Modular b) { return Modular::of_bits(a.value_ + Modular::prime - b.value_); }
+Modular operator+(Modular a, Modular b) { return Modular::of_twice(a.value_ + b.value_); }
+Modular operator-(Modular a, Modular b) { return Modular::of_twice(a.value_ + Modular::prime - b.value_); }
+// 2^61 is below_power modulo p; twice put in, that leaves less than 2 p.
 Modular operator*(Modular a, Modular b) {
+  constexpr std::uint64_t low = (std::uint64_t{1} << Modular::bits) - 1;
   const Wide product = Wide(a.value_) * b.value_;
-  return Modular::of_bits(static_cast<std::uint64_t>(product & Modular::prime) +
-                          static_cast<std::uint64_t>(product >> 61));
+  const Wide once = (product & low) + (product >> Modular::bits) * Modular::below_power;
+  return Modular::of_twice(static_cast<std::uint64_t>(once & low) +
+                           static_cast<std::uint64_t>(once >> Modular::bits) * Modular::below_power);
 }
 
 Modular pow(Modular base, std::uint64_t exponent) {
@@ -211,24 +274,30 @@ Modular pow(Modular base, std::uint64_t exponent) {
 Modular inverse(Modular x) { return pow(x, Modular::prime - 2); }
 
 Nullity difference_modulo_prime(Expr a, Expr b) {
-  return nullity([&](std::uint64_t seed) -> std::optional<std::pair<Modular, bool>> {
-    Pose pose(seed);
-    Evaluation<Modular> values(pose);
-    try {
+  const std::array both = {a, b};
+  const AtPoses poses(both);
+  std::vector<Draws> points = points_for_zero_test();
+  return nullity(std::span(points), [&](Draws& draws) {
+    return poses.at(draws, [&](Evaluation<Modular>& values, const Pose& pose) {
       const Modular difference = values.scalar(a) - values.scalar(b);
       return std::pair(difference, pose.holds_for_reals());
-    } catch (const UndefinedHere&) {
-      return std::nullopt;
-    }
+    });
   });
 }
 
 GenericRank generic_rank(std::span<const std::vector<Expr>> rows) {
-  constexpr int wanted = 4, attempts = 8192;  // with n roots, one pose in 2^n serves
+  constexpr int wanted = 4;
+  constexpr std::uint64_t hopeless = attempts_at_poses / 64;
+  std::vector<Expr> entries;
+  for (const std::vector<Expr>& row : rows) entries.insert(entries.end(), row.begin(), row.end());
+  const AtPoses poses(entries);
   GenericRank result;
   std::vector<std::vector<Combination>> per_pose;
-  for (std::uint64_t seed = 1; seed <= attempts && result.poses < wanted; ++seed) {
-    const std::optional<Rows> J = jacobian_at(rows, seed);
+  Draws draws(1);
+  for (std::uint64_t attempt = 0; attempt < attempts_at_poses && result.poses < wanted; ++attempt) {
+    const auto J = poses.at(draws, [&](Evaluation<Modular>& values, const Pose&) { return rows_of(rows, values); });
+    if (draws.given_up()) attempt += hopeless;
+    if (J || draws.given_up()) draws = Draws(draws.seed() + 1);
     if (!J) continue;
     ++result.poses;
     std::vector<Combination> found = combinations(*J);

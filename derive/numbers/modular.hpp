@@ -1,6 +1,7 @@
-// Exact arithmetic at random poses modulo the prime p = 2^61 - 1: ranks and the zero-test. Full rank modulo p is full
-// rank over the rationals. Modulo this p, -1 is no square and half of all numbers are squares. So roots and signs can
-// be chosen as among the reals (the root that is itself a square), and the rotations form a group in which angles add.
+// Exact arithmetic at random poses modulo a prime p: ranks and the zero-test. Full rank modulo p is full rank over the
+// rationals. Modulo this p, -1 is no square, half of all numbers are squares, and all primes up to 59 are. So roots and
+// signs can be chosen as among the reals (the root that is itself a square), small positive fractions are positive, and
+// the rotations form a group in which angles add.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +13,11 @@
 
 namespace cdot::derive {
 
-// A number modulo 2^61 - 1.
+// A number modulo the largest prime below 2^61 with these properties.
 class Modular {
  public:
-  static constexpr std::uint64_t prime = (std::uint64_t{1} << 61) - 1;
+  static constexpr int bits = 61;
+  static constexpr std::uint64_t below_power = 636873, prime = (std::uint64_t{1} << bits) - below_power;
 
   Modular() = default;
   explicit Modular(std::int64_t whole);
@@ -33,6 +35,8 @@ class Modular {
   friend bool operator==(Modular a, Modular b) = default;
 
  private:
+  static Modular of_twice(std::uint64_t below_2p);
+
   std::uint64_t value_ = 0;
 };
 Modular pow(Modular base, std::uint64_t exponent);

@@ -1,5 +1,8 @@
 #include "derive/numbers/modular_point.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace cdot::derive {
 namespace {
 
@@ -9,7 +12,34 @@ Rotation rotation_of(Modular t) {
   return {(Modular(1) - t * t) * inv, (t + t) * inv};
 }
 
+// (p+1)/4 halves the exponent: the root of a square that is a square itself.
+Modular root_of_square(Modular x) { return pow(x, (Modular::prime + 1) / 4); }
+
+// (sqrt(6) + sqrt(2))/4, (sqrt(6) - sqrt(2))/4
+Rotation turn_by_twelfth_of_pi() {
+  const Modular root_2 = root_of_square(Modular(2)), root_6 = root_of_square(Modular(6));
+  const Modular quarter = inverse(Modular(4));
+  return {(root_6 + root_2) * quarter, (root_6 - root_2) * quarter};
+}
+
 }  // namespace
+
+std::uint64_t Draws::seed_of(std::string_view leaf) const {
+  const auto found = draws_.find(leaf);
+  std::uint64_t mixed = Random(seed_ ^ (found == draws_.end() ? 0 : found->second << 32)).bits();
+  for (const char letter : leaf) mixed = (mixed ^ static_cast<unsigned char>(letter)) * 0x100000001B3u;  // FNV-1a
+  return mixed;
+}
+
+const std::string& Draws::choice(const Leaves& of_root, const Leaves& of_others) const {
+  Leaves free;
+  std::ranges::set_difference(of_root, of_others, std::inserter(free, free.end()));
+  const Leaves& leaves = free.empty() ? of_root : free;
+  std::uint64_t round = 0;
+  for (const auto& [leaf, times] : draws_) round += times;
+  const auto place = static_cast<std::ptrdiff_t>(Random(seed_ ^ round).bits() % leaves.size());
+  return *of_root.find(*std::next(leaves.begin(), place));
+}
 
 Rotation operator*(Rotation a, Rotation b) { return {a.c * b.c - a.s * b.s, a.s * b.c + a.c * b.s}; }
 
@@ -25,9 +55,6 @@ Rotation pow(Rotation r, std::int64_t exponent) {
 ModularPoint::ModularPoint(std::uint64_t seed) : random_(seed), salt_(random_.bits()) {
   unit_turn_ = any_rotation();
   base_ = any();
-  // A turn by pi/4: of order 8 in the group of rotations, which has 2^61 elements.
-  eighth_turn_ = any_rotation();
-  for (int i = 0; i < 58; ++i) eighth_turn_ = eighth_turn_ * eighth_turn_;
   pi_ = any();
 }
 
@@ -69,7 +96,7 @@ Modular ModularPoint::sign(Modular x) const {
 
 Modular ModularPoint::root(Modular x) const {
   if (!x.is_square()) throw UndefinedHere{};
-  return pow(x, std::uint64_t{1} << 59);  // x^((p+1)/4), a square itself
+  return root_of_square(x);
 }
 
 Modular ModularPoint::any_for(int kind, Modular x, Modular y) const {
@@ -78,11 +105,13 @@ Modular ModularPoint::any_for(int kind, Modular x, Modular y) const {
 }
 
 Rotation ModularPoint::turn(Modular x) {
-  for (int eighths = -16; eighths <= 16; ++eighths) {
-    const Modular rest = x - Modular(eighths) * pi_ * derive::inverse(Modular(4));
-    if (std::abs(rest.centred()) < small_bound) {
-      return turn_by(rest.centred()) * pow(eighth_turn_, eighths);
-    }
+  constexpr int most = 48;
+  static const Modular one_twelfth = derive::inverse(Modular(12));
+  static const Rotation by_twelfth = turn_by_twelfth_of_pi();
+  const Modular twelfth = pi_ * one_twelfth;
+  Modular rest = x + Modular(most) * twelfth;
+  for (int twelfths = -most; twelfths <= most; ++twelfths, rest = rest - twelfth) {
+    if (std::abs(rest.centred()) < small_bound) return turn_by(rest.centred()) * pow(by_twelfth, twelfths);
   }
   return rotation_of(arbitrary(3, x, x));
 }

@@ -46,6 +46,8 @@ ex Algebra::leaf(const std::string& name, const ex& rate) {
   const auto found = leaves_.find(name);
   if (found != leaves_.end()) return found->second.symbol;
   const ex symbol = leaves_.emplace(name, Leaf{fresh_symbol(name), rate}).first->second.symbol;
+  drawn_with_.emplace(symbol, name);
+  drawn_together_[name] = {symbol};
   return symbol;
 }
 
@@ -116,12 +118,18 @@ ex Algebra::derivative_at_points(const ex& e, const ex& symbol) {
   return found->second;
 }
 
+void Algebra::add_unit(std::vector<ex> components) {
+  for (const ex& component : components) drawn_with_[component] = drawn_with_.at(components[0]);
+  drawn_together_[drawn_with_.at(components[0])] = components;
+  units_.push_back(std::move(components));
+}
+
 EulerParameters<ex> Algebra::orientation(const std::string& name, int body) {
   const bool fresh = !leaves_.contains(name + "0");
   EulerParameters<ex> e;
   for (std::size_t k = 0; k < 4; ++k) e[k] = leaf(name + std::to_string(k), 0);
   if (!fresh) return e;
-  units_.push_back({e.begin(), e.end()});
+  add_unit({e.begin(), e.end()});
   // e0^2 = 1 - e1^2 - e2^2 - e3^2
   relate(Atom::Kind::square, e[0], 1 - e[1] * e[1] - e[2] * e[2] - e[3] * e[3]);
   if (!moves(body)) return e;
@@ -180,7 +188,7 @@ Triple<ex> Algebra::free_vector(const Node& symbol) {
     }
   }
   if (symbol.unit_length) {
-    units_.emplace_back(u.begin(), u.begin() + joint_.dimension);
+    add_unit({u.begin(), u.begin() + joint_.dimension});
     ex square = 1;
     for (int k = 0; k + 1 < joint_.dimension; ++k) {
       square -= u[static_cast<std::size_t>(k)] * u[static_cast<std::size_t>(k)];

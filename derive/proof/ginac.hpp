@@ -88,6 +88,7 @@ class Algebra final : public Arithmetic<ex> {
   Expr with_short_numbers(Expr e);
   ex derivative_at_points(const ex& e, const ex& symbol);
   ex leaf(const std::string& name, const ex& rate);
+  void add_unit(std::vector<ex> components);
   Triple<ex> free_vector(const Node& symbol);
   Triple<ex> vector_of_body(const Node& symbol);
   // Independent Euler parameters; those of `body` rotate with it.
@@ -105,6 +106,21 @@ class Algebra final : public Arithmetic<ex> {
   ex symbol_for(const ex& compound);
   void relate(Atom::Kind kind, const ex& symbol, const ex& operand);
   std::string difference_at(const ex& e, std::span<const std::size_t> parts, std::uint64_t seed);
+  // A point, and what is known there.
+  struct Point : Draws {
+    using Draws::Draws;
+    std::optional<PointValues> values;
+    PointValues::KnownValues known;
+    std::pair<Modular, bool> value_at(std::size_t place) const {
+      return {known.values[place].value, known.values[place].holds_for_reals};
+    }
+  };
+  // What is drawn for the part at this place.
+  const Draws::Leaves& leaves_at(std::size_t place);
+  void put(const Draws& draws, const ex& symbol, PointValues& values) const;
+  std::vector<std::vector<std::size_t>> order_of_trial(const std::vector<std::size_t>& parts) const;
+  void draw_again(Point& point, std::span<const std::size_t> roots, std::span<const std::size_t> without_value);
+  std::vector<std::size_t> related(std::vector<std::size_t> without_value, std::span<const std::size_t> roots);
   Nullity nullity_of(const std::vector<std::size_t>& parts);
 
   // Budgets of one test and of all tests together, in factors of multiplied terms. A test that exceeds its budget
@@ -113,7 +129,7 @@ class Algebra final : public Arithmetic<ex> {
   static constexpr std::int64_t most_work_in_all = 6 * most_work;
   // Steps at points of all tests together, a hundred times what the catalogue takes. Later tests give up earlier.
   static constexpr std::int64_t most_work_at_points = 200000000;
-  static constexpr std::uint64_t least_attempts = attempts_at_points / 256;
+  static constexpr std::uint64_t attempts_at_points = 1 << 18, least_attempts = 64;
   struct TooLong : std::runtime_error {
     TooLong() : std::runtime_error("too much to multiply out") {}
   };
@@ -155,10 +171,12 @@ class Algebra final : public Arithmetic<ex> {
   std::int64_t allowance_ = most_work, left_for_test_ = most_work, left_in_all_ = most_work_in_all;
   PointValues prints_{1, PointValues::Roots::of_all};  // of every symbol, by when it came up
   Steps steps_;                                        // of all expressions tested so far
-  std::vector<Modular> values_of_steps_;               // at the last point
-  // By the place of a root, quotient or function: the seeds of points at which it has no value.
-  std::unordered_map<std::size_t, std::vector<bool>> without_value_;
-  std::size_t symbols_of_points_ = 0;
+  std::vector<Point> points_ = points_for_zero_test<Point>();
+  // The leaf with which a symbol is drawn: its own, or the first of its direction.
+  std::unordered_map<ex, std::string, std::hash<ex>, SameExpression> drawn_with_;
+  std::map<std::string, std::vector<ex>> drawn_together_;  // by leaf
+  std::unordered_map<std::size_t, Draws::Leaves> leaves_of_parts_;    // by place
+  std::vector<std::vector<std::size_t>> never_together_;              // roots for which no point was found
   std::int64_t left_for_points_ = most_work_at_points;
   std::unordered_map<const Node*, double> bits_;  // of the numbers in an expression, at most
   Evaluation<ex> evaluation_;

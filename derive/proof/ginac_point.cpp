@@ -95,11 +95,16 @@ std::size_t Steps::place_of(const ex& e) {
 std::size_t Steps::add(Kind kind, std::span<const std::size_t> operands, const ex& e) {
   const std::size_t begin = operands_.size();
   operands_.insert(operands_.end(), operands.begin(), operands.end());
-  steps_.push_back({kind, e, function_in(e), begin, operands_.size()});
+  std::size_t level = 0;
+  for (const std::size_t operand : operands) level = std::max(level, steps_[operand].level);
+  const bool root = kind == Kind::power && !ex_to<numeric>(e.op(1)).is_integer() &&
+                    (2 * ex_to<numeric>(e.op(1))).is_integer();
+  steps_.push_back({kind, e, function_in(e), begin, operands_.size(), root, level + (root ? 1 : 0)});
   return steps_.size() - 1;
 }
 
-std::vector<std::size_t> Steps::parts_of(std::size_t last) {
+std::vector<std::size_t> Steps::parts_of(std::size_t last, const std::function<bool(std::size_t)>& known) {
+  if (known && known(last)) return {};
   visits_.resize(steps_.size());
   ++visit_;
   std::vector<std::size_t> parts{last};
@@ -107,8 +112,9 @@ std::vector<std::size_t> Steps::parts_of(std::size_t last) {
   for (std::size_t next = 0; next < parts.size(); ++next) {
     const Step& step = steps_[parts[next]];
     for (std::size_t i = step.begin; i < step.end; ++i) {
-      if (visits_[operands_[i]] != visit_) parts.push_back(operands_[i]);
+      if (visits_[operands_[i]] == visit_) continue;
       visits_[operands_[i]] = visit_;
+      if (!known || !known(operands_[i])) parts.push_back(operands_[i]);
     }
   }
   std::ranges::sort(parts);
@@ -146,20 +152,34 @@ numeric Steps::in_decimals(const Step& step, const std::vector<numeric>& values,
   return ex_to<numeric>(value);
 }
 
-Modular PointValues::of(const Steps& all, std::span<const std::size_t> parts, std::vector<Modular>& values) {
-  values.resize(all.size());
+PointValues::Undefined PointValues::evaluate(const Steps& all, std::span<const std::size_t> parts, KnownValues& known,
+                                             const Source& source) {
+  known.values.resize(all.size());
+  known.last = known.generation;
+  Undefined undefined;
   for (const std::size_t place : parts) {
+    const auto operands = all.operands(place);
+    const Steps::Step& step = all.steps_[place];
+    if (step.kind == Steps::Kind::leaf && is_a<GiNaC::symbol>(step.e) && !values_.contains(step.e)) source(step.e);
+    if (!std::ranges::all_of(operands, [&](std::size_t operand) { return known.has(operand); })) continue;
+    point_.begin_anew();
+    if (all.is_root(place) && !known.values[operands[0]].value.is_square()) {
+      (known.values[operands[0]].value.is_zero() ? undefined.never : undefined.roots).push_back(place);
+      continue;
+    }
     try {
-      values[place] = of_step(all, all.steps_[place], values);
+      const Modular value = of_step(all, step, known);
+      const bool real = std::ranges::all_of(operands, [&](std::size_t i) { return known.values[i].holds_for_reals; });
+      known.values[place] = {value, known.generation, real && point_.holds_for_reals()};
     } catch (const UndefinedHere&) {
-      throw NoValue{place};
+      undefined.never.push_back(place);
     }
   }
-  return values[parts.back()];
+  return undefined;
 }
 
-Modular PointValues::of_step(const Steps& all, const Steps::Step& step, const std::vector<Modular>& values) {
-  const auto operand = [&](std::size_t i) { return values[all.operands_[i]]; };
+Modular PointValues::of_step(const Steps& all, const Steps::Step& step, const KnownValues& known) {
+  const auto operand = [&](std::size_t i) { return known.values[all.operands_[i]].value; };
   using Kind = Steps::Kind;
   if (step.kind == Kind::leaf) return of(step.e);
   if (step.kind == Kind::power) return power(operand(step.begin), ex_to<numeric>(step.e.op(1)));

@@ -103,6 +103,12 @@ ex Algebra::inverse_of(const ex& base) {
   const ex operand = reduced(base);
   if (operand.is_zero()) throw std::domain_error("division by zero");
   if (is_a<numeric>(operand)) return 1 / operand;
+  if (is_a<GiNaC::mul>(operand)) {
+    ex result = 1;
+    for (const ex& factor : ordered(operand)) result *= inverse_of(factor);
+    return result;
+  }
+  if (is_a<GiNaC::power>(operand)) return pow(inverse_of(operand.op(0)), operand.op(1));
   if (fingerprint(operand).centred() < 0) return -inverse_of(-operand);
   const auto found = inverses_.find(operand);
   if (found != inverses_.end()) return found->second;
@@ -111,12 +117,6 @@ ex Algebra::inverse_of(const ex& base) {
       return operand * inverse_of(atom.operand);
     }
   }
-  if (is_a<GiNaC::mul>(operand)) {
-    ex result = 1;
-    for (const ex& factor : ordered(operand)) result *= inverse_of(factor);
-    return result;
-  }
-  if (is_a<GiNaC::power>(operand)) return pow(inverse_of(operand.op(0)), operand.op(1));
   const GiNaC::realsymbol symbol = fresh_symbol();
   relate(Atom::Kind::inverse, symbol, operand);
   inverses_.emplace(operand, symbol);
@@ -273,34 +273,6 @@ std::string Algebra::witness(const ex& e) {
   }
   GiNaC::Digits = before;
   return witness;
-}
-
-// A part without a value at a point has none there in later tests: with n roots, one point in 2^n has all values. New
-// symbols change the points.
-Nullity Algebra::nullity_of(const std::vector<std::size_t>& parts) {
-  if (symbols_of_points_ != leaves_.size()) without_value_.clear();
-  symbols_of_points_ = leaves_.size();
-  std::vector<std::vector<bool>*> known;  // of the parts that may have no value
-  for (const std::size_t place : parts) {
-    if (!steps_.is_partial(place)) continue;
-    known.push_back(&without_value_[place]);
-    known.back()->resize(attempts_at_points + 1);
-  }
-  const auto value_at = [&](std::uint64_t seed) -> std::optional<std::pair<Modular, bool>> {
-    if (std::ranges::any_of(known, [&](const auto* seeds) { return (*seeds)[seed]; })) return std::nullopt;
-    left_for_points_ -= static_cast<std::int64_t>(parts.size() + 4 * leaves_.size());
-    PointValues values(seed, PointValues::Roots::of_squares);
-    for (const auto& [name, leaf] : leaves_) values.put(leaf.symbol);
-    for (const std::vector<ex>& u : units_) values.put_direction(u);
-    try {
-      const Modular value = values.of(steps_, parts, values_of_steps_);
-      return std::pair(value, values.holds_for_reals());
-    } catch (const PointValues::NoValue& none) {
-      if (steps_.is_partial(none.place)) without_value_.at(none.place)[seed] = true;
-      return std::nullopt;
-    }
-  };
-  return nullity(value_at, left_for_points_ > 0 ? attempts_at_points : least_attempts);
 }
 
 Algebra::Zero Algebra::is_zero(const ex& e) {

@@ -1,6 +1,7 @@
 // The law of momentum, and which terms of a row break it.
 #include <algorithm>
 #include <bit>
+#include <fmt/format.h>
 #include <set>
 
 #include "derive/proof/laws.hpp"
@@ -81,6 +82,7 @@ class Momentum {
   }
   bool only_on_constraint() const { return only_on_constraint_; }
   bool proved() const { return proved_; }
+  bool undecided() const { return undecided_; }
 
   // The fewest terms of a row without which a common motion no longer changes it.
   Guilty breaking_terms(const std::vector<Expr>& terms, const std::vector<Felt>& felt_by_term) {
@@ -111,6 +113,7 @@ class Momentum {
   bool is_zero(const ex& e) {
     const Algebra::Zero zero = names_.is_zero(e);
     proved_ = proved_ && zero != Algebra::Zero::shown;
+    undecided_ = undecided_ || zero == Algebra::Zero::undecided;
     return zero <= Algebra::Zero::shown;
   }
   bool all_vanish(const std::vector<Expr>& scalars) {
@@ -121,7 +124,8 @@ class Momentum {
   Algebra& names_;
   GiNaC::exmap on_constraint_;
   bool only_on_constraint_ = false;
-  bool proved_ = true;  // nothing has been shown by points alone
+  bool proved_ = true;      // nothing has been shown by points alone
+  bool undecided_ = false;  // something is zero to 60 digits, and more is not known
 };
 
 // The terms of a scalar row, each with its sign.
@@ -165,10 +169,10 @@ std::string sentence(const ScalarRow& row, const Felt& felt, bool rotation, cons
   const char* const changes = row.kind == RowKind::velocity ? " gives " : " changes C by ";
   if (rotation) {
     return "angular momentum is not conserved: " + row.name + " resists a common rotation of all bodies, which" +
-           changes + spec_text(felt.rotation, joint) + " per radian";
+           changes + brief_spec_text(felt.rotation, joint) + " per radian";
   }
   return "momentum is not conserved: " + row.name + " resists a common translation of all bodies, which" + changes +
-         spec_text(felt.translation, joint) + " per metre";
+         brief_spec_text(felt.translation, joint) + " per metre";
 }
 
 // A velocity row of one body, as of a sleigh, acts against the ground: the ground has to stand in it.
@@ -193,6 +197,13 @@ std::string relative_directions(const std::vector<Expr>& guilty, const Joint& jo
 }
 
 void fail(Law& law, const Joint& joint, const Block& block, const ScalarRow& row, bool rotation, Momentum& momentum) {
+  if (momentum.undecided()) {
+    law.verdict = Verdict::undecided;
+    law.row = row.row;
+    law.text = fmt::format("{}: a common {} of all bodies changes C by 0 to 60 digits at random poses, but that is not "
+                           "proved", row.name, rotation ? "rotation" : "translation");
+    return;
+  }
   Expr written;
   Span where;
   for (const Coordinate& c : joint.coordinates) {
@@ -210,7 +221,7 @@ void fail(Law& law, const Joint& joint, const Block& block, const ScalarRow& row
   law.row = row.row;
   law.text = sentence(row, guilty.felt, rotation, joint);
   std::vector<std::string> parts;
-  for (const Expr term : guilty.terms) parts.push_back(spec_text(term, joint));
+  for (const Expr term : guilty.terms) parts.push_back(brief_spec_text(term, joint));
   if (terms.size() > 1) law.text += "; the cause is " + listed(parts);
   law.fix = rotation ? relative_directions(guilty.terms, joint) : against_ground(row, joint);
   if (joint.file) law.parts = occurrences(*joint.file, where, spellings(guilty.terms, joint, rotation));

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <fmt/format.h>
 
 #include "derive/derivation/derivation.hpp"
+#include "derive/expression/shared.hpp"
 #include "derive/expression/symbols.hpp"
 
 namespace cdot::derive {
@@ -56,6 +58,18 @@ std::string spec_text(Expr e, const Joint& joint) {
   for (const Expr part : topological(std::span(&e, 1)))
     if (part->kind == Kind::sum && part->vector && part->name.empty()) spell_points(part, joint, spelled);
   return text(substitute(e, spelled));
+}
+
+std::string brief_spec_text(Expr e, const Joint& joint) {
+  constexpr double most_nodes = 1000;
+  constexpr std::size_t most_letters = 90;
+  if (!e->name.empty()) return e->name;
+  const double nodes = written_size(e, [](Expr part) { return !part->name.empty(); });
+  if (nodes > 1e6) return "an expression of over a million parts";
+  if (nodes > most_nodes) return fmt::format("an expression of {:.0f} parts", nodes);
+  std::string text = spec_text(e, joint);
+  if (text.size() <= most_letters) return text;
+  return text.substr(0, text.find_last_of(" *(", most_letters)) + " …";
 }
 
 std::string parallel(Expr u, Expr v, const Joint& joint) {

@@ -13,6 +13,9 @@ namespace cdot::derive {
 // The expression as its author would write it: its name if it has one, else with angle(a) for theta_a, x(a) for x_a.
 std::string spec_text(Expr e, const Joint& joint);
 
+// The same for messages: the beginning of a long one, and only the size of one that is too large to be written.
+std::string brief_spec_text(Expr e, const Joint& joint);
+
 // In space, u parallel to v by two rows: `cross(f.x, v) = 0 keep 2`, if one of them is an axis of a frame, or a
 // direction that may become one (then with the frame to declare). Else empty.
 std::string parallel(Expr u, Expr v, const Joint& joint);

@@ -80,6 +80,26 @@ TEST(Budget, NestedNamesAreVisitedOnce) {
     EXPECT_FALSE(is_broken(law)) << name_of(law.id) << ": " << law.text;
 }
 
+// Fourteen lengths, one point in 2^14 has them all; and directions made of thirds and halves of others, which are a
+// third and a half as long at every point.
+TEST(Budget, RootsAreFoundHoweverMany) {
+  std::string many, row = "  many: norm(u)", nested = "  vector s [m] on a\n  let u0 = u + s\n";
+  for (int i = 1; i <= 14; ++i) {
+    many += fmt::format("  vector s{} [m] on {}\n", i, i % 2 ? "a" : "b");
+    row += fmt::format(" + norm(u + s{})", i);
+  }
+  for (int i = 1; i <= 8; ++i)
+    nested += fmt::format("  let u{0} = (norm(u{1})*unit(u{1}) + 2*u{1})/{2}\n", i, i - 1, i % 2 ? 9 : 5);
+  for (const std::string& text : {many + row + " = l\n", nested + "  nested: norm(u8) = l\n"}) {
+    const Joint joint = joint_with(text);
+    Block block = derive_rows(joint);
+    for (const Law& law : prove(joint, block).laws)
+      EXPECT_FALSE(is_broken(law)) << name_of(law.id) << ": " << law.text << "\n" << text;
+    block.rows[0].J[0].w = Rational(2) * block.rows[0].J[0].w;
+    EXPECT_TRUE(is_broken(prove(joint, block).of(LawId::jacobian)));
+  }
+}
+
 TEST(Budget, ABrokenDerivationIsFoundOut) {
   const Joint joint = joint_with(short_row);
   Block block = derive_rows(joint);
