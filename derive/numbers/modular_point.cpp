@@ -109,16 +109,17 @@ Rotation ModularPoint::turn(Modular x) {
   static const Modular one_twelfth = derive::inverse(Modular(12));
   static const Rotation by_twelfth = turn_by_twelfth_of_pi();
   const Modular twelfth = pi_ * one_twelfth;
-  Modular rest = x + Modular(most) * twelfth;
-  for (int twelfths = -most; twelfths <= most; ++twelfths, rest = rest - twelfth) {
-    if (std::abs(rest.centred()) < small_bound) return turn_by(rest.centred()) * pow(by_twelfth, twelfths);
+  Modular below = x, above = x;  // x less so many twelfths of pi, and more
+  for (int twelfths = 0; twelfths <= most; ++twelfths, below = below - twelfth, above = above + twelfth) {
+    if (is_small(below)) return turn_by(below.centred()) * pow(by_twelfth, twelfths);
+    if (is_small(above)) return turn_by(above.centred()) * pow(by_twelfth, -twelfths);
   }
   return rotation_of(arbitrary(3, x, x));
 }
 
 Modular ModularPoint::exponential(Modular x) {
   const std::int64_t whole = x.centred();
-  if (std::abs(whole) >= small_bound) return arbitrary(4, x, x);
+  if (!is_small(x)) return arbitrary(4, x, x);
   const Modular power = pow(base_, static_cast<std::uint64_t>(std::abs(whole)));
   return whole < 0 ? inverse(power) : power;
 }

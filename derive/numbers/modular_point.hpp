@@ -2,6 +2,7 @@
 // rely. Our own expressions and GiNaC's are both evaluated by it.
 #pragma once
 
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <set>
@@ -57,7 +58,7 @@ class ModularPoint {
   // What is drawn next is the same for the same seed, whatever was drawn before.
   void draw_by(std::uint64_t seed) { random_ = Random(seed); }
   Modular any() { return Modular::of_bits(random_.bits()); }
-  std::int64_t small() { return step * static_cast<std::int64_t>(random_.bits() >> 36); }
+  std::int64_t small() { return step * static_cast<std::int64_t>(random_.bits() >> 48); }
   Modular pi() const { return pi_; }
   Rotation any_rotation();
   Rotation turn_by(std::int64_t angle) const { return pow(unit_turn_, angle); }
@@ -73,8 +74,9 @@ class ModularPoint {
 
  private:
   static constexpr std::int64_t step = 720720;  // divisible by 1..16, so that halves stay whole
-  static constexpr std::int64_t small_bound = std::int64_t{1} << 56;
+  static constexpr std::int64_t small_bound = std::int64_t{1} << 42;  // of sums; so few others pass for small
 
+  static bool is_small(Modular x) { return std::abs(x.centred()) < small_bound; }
   Modular sign(Modular x) const;
   Rotation turn(Modular x);
   Modular exponential(Modular x);
