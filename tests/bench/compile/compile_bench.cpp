@@ -7,9 +7,13 @@
 
 #include "chain_10_euler.hpp"
 #include "chain_10_rk4.hpp"
+#include "machine_euler.hpp"
+#include "robot_arm_euler.hpp"
 #include "runtime/tool/scene/scene.hpp"
 #include "slider_crank_euler.hpp"
 #include "slider_crank_rk4.hpp"
+#include "tailgate_euler.hpp"
+#include "tailgate_rk4.hpp"
 
 namespace {
 
@@ -58,6 +62,10 @@ CDOT_COMPARE(chain_10, euler)
 CDOT_COMPARE(chain_10, rk4)
 CDOT_COMPARE(slider_crank, euler)
 CDOT_COMPARE(slider_crank, rk4)
+CDOT_COMPARE(tailgate, euler)  // a joint and two effects by forces
+CDOT_COMPARE(tailgate, rk4)
+CDOT_COMPARE(robot_arm, euler)  // three joints, two servos, a brake
+CDOT_COMPARE(machine, euler)    // 18 rows of joints, a motor
 
 }  // namespace
 
