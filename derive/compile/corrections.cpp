@@ -28,13 +28,13 @@ constexpr const char* close_begins = R"(
 )";
 
 constexpr const char* errors_of_rows = R"(      T C[rows];
-      errors(s.q, s.time, C);
+      errors($ss.q, s.time, C);
       const T of_joints = largest(C);
 )";
 
 // Ends that are passed take part from then on.
 constexpr const char* errors_of_ends = R"(      T over[bounded];
-      past(s.q, s.time, over);
+      past($ss.q, s.time, over);
       const T worst = select(largest(over) > of_joints, largest(over), of_joints);
 )";
 
@@ -84,10 +84,10 @@ constexpr const char* no_moves = R"(      Velocity d[bodies];
 constexpr const char* moves_of_ends = R"(      auto passed = T(1) < T(0);
       for (int i = 0; i < bounded; ++i) passed = passed || active[i];
       if (any(passed)) {{
-        if (!reached) reach(at.q, at.time, {0}B);
+        if (!reached) reach($sat.q, at.time, {0}B);
         reached = true;
         T along_ends[bounded], c[bounded], mu[bounded];
-        along(at.q, at.time, d, along_ends);
+        along($sat.q, at.time, d, along_ends);
         for (int i = 0; i < bounded; ++i) c[i] = -over[i] - along_ends[i], mu[i] = T(0);
         divide(B.S, active, c, mu);
         for (int e = 0; e < bounded; ++e)
@@ -262,7 +262,7 @@ std::string corrections_of(double tolerance, const Contents& has) {
     text += when(has.ends, ends_join);
     text += fmt::format(
         renews, has.ends ? "!more && " : "",
-        when(has.rows, "        evaluate(at.q, at.time, s.J);\n") + when(has.ends, "        reached = false;\n"));
+        when(has.rows, "        evaluate($sat.q, at.time, s.J);\n") + when(has.ends, "        reached = false;\n"));
     text += has.rows ? moves_of_rows : no_moves;
     if (has.ends) text += fmt::format(moves_of_ends, has.rows ? "s.J, " : "");
     text += round_ends;

@@ -1,11 +1,15 @@
 #include "derive/compile/equations.hpp"
 
+#include <fmt/format.h>
+#include <stdexcept>
+
 #include "derive/compile/rows/bounds.hpp"
 #include "derive/compile/rows/joint_rows.hpp"
 #include "derive/compile/rows/kick.hpp"
 #include "derive/compile/rows/motion.hpp"
 #include "derive/kernel/factor.hpp"
 #include "derive/program/print.hpp"
+#include "runtime/text/spelling.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -21,6 +25,7 @@ class EquationWriter {
   }
 
   Equations write() {
+    out_.constants.inputs = {mechanism_.inputs.begin(), mechanism_.inputs.end()};
     if (system().size() > 0) {
       out_.evaluate = joints_.evaluate(out_.constants, out_.stored);
       out_.errors = of_each_joint("position", "C", "C");
@@ -35,6 +40,7 @@ class EquationWriter {
       out_.potential = potential_of(blocks_, out_.constants);
     write_bounded();
     drop_unread();
+    check_inputs();
     return std::move(out_);
   }
 
@@ -70,6 +76,18 @@ class EquationWriter {
     for (auto row = order.rbegin(); row != order.rend(); ++row) algebra.output(element("lambda", *row), lambda[*row]);
     system().write_changes(algebra, lambda, [&](std::size_t k) { return joints_.inputs(algebra, k); });
     out_.solve = algebra.finish();
+  }
+
+  void check_inputs() const {
+    const std::vector<std::string> known(out_.constants.known.begin(), out_.constants.known.end());
+    for (const std::string& input : out_.constants.inputs) {
+      if (out_.constants.inputs_read.contains(input)) continue;
+      const std::string like = text::nearest(input, known, 4);
+      std::string list;
+      for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+      throw std::runtime_error(fmt::format("no number of this scene is called {}{}. Its numbers are: {}", input,
+                                           like.empty() ? "" : fmt::format(" (did you mean {}?)", like), list));
+    }
   }
 
   void write_bounded() {

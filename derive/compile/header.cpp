@@ -1,12 +1,13 @@
 #include "derive/compile/header.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <fmt/format.h>
 
 #include "derive/compile/arithmetic.hpp"
+#include "derive/compile/bodies.hpp"
 #include "derive/compile/equations.hpp"
+#include "derive/compile/identifiers.hpp"
 #include "derive/compile/steps.hpp"
 #include "derive/compile/texts.hpp"
 #include "derive/program/print.hpp"
@@ -14,61 +15,10 @@
 namespace cdot::compile {
 namespace {
 
-// Names of the header itself, and words of C++ that a scene is likely to use.
-const std::set<std::string>& taken() {
-  static const std::set<std::string> names = {"T",         "q",           "v",
-                                              "a",         "J",           "C",
-                                              "Cdot",      "g",           "b",
-                                              "d",         "s",           "h",
-                                              "i",         "k",           "at",
-                                              "x",         "y",           "w",
-                                              "c",         "time",        "rows",
-                                              "bodies",    "pivot",       "select",
-                                              "abs",       "sign",        "turn",
-                                              "close",     "errors",      "evaluate",
-                                              "rates",     "gamma",       "solve",
-                                              "step",      "reset",       "begin",
-                                              "push",      "fall",        "moved",
-                                              "weighed",   "project",     "slope",
-                                              "State",     "energy",      "Pose",
-                                              "Slope",     "Body",        "lambda",
-                                              "inverse",   "accelerate",  "Velocity",
-                                              "Jacobian",  "Evaluated",   "default_step",
-                                              "int",       "float",       "double",
-                                              "for",       "if",          "do",
-                                              "new",       "this",        "and",
-                                              "or",        "not",         "auto",
-                                              "const",     "static",      "struct",
-                                              "case",      "switch",      "default",
-                                              "return",    "template",    "left",
-                                              "largest",   "next",        "kick",
-                                              "potential", "E",           "sum",
-                                              "free",      "B",           "Bounded",
-                                              "Bound",     "bounded",     "Mask",
-                                              "entry",     "divide",      "settle",
-                                              "part",      "find_active", "find_contradiction",
-                                              "is_rate",   "reach",       "past",
-                                              "along",     "hold",        "mu",
-                                              "residual",  "error",       "moves"};
-  return names;
-}
-
-std::string identifier(const std::string& name) {
-  std::string text;
-  for (const char c : name) text += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-  if (text.empty() || std::isdigit(static_cast<unsigned char>(text[0])) != 0) text = "_" + text;
-  return text;
-}
-
-std::string unused(std::string name, std::set<std::string>& used) {
-  while (!used.insert(name).second) name += "_";
-  return name;
-}
-
 class HeaderWriter {
  public:
   HeaderWriter(const Mechanism& mechanism, const Request& request, const derive::SpecsFolder& specs)
-      : mechanism_(mechanism), request_(request), used_(taken()) {
+      : mechanism_(mechanism), request_(request), used_(taken_names()) {
     name_ = request.struct_name.empty() ? std::filesystem::path(mechanism.file).stem().string() : request.struct_name;
     name_ = unused(identifier(name_), used_);
     for (const Body& body : mechanism.bodies) names_.bodies.push_back(unused(identifier(body.name), used_));
@@ -83,14 +33,15 @@ class HeaderWriter {
     write_head();
     write_types();
     write_start();
-    write_poses();
-    write_masses();
-    write_energy();
+    const BodyTexts bodies{mechanism_, names_.bodies};
+    text_ += bodies.turn(equations_.turning);
+    if (!on_accelerations() && !has_effects()) text_ += bodies.push();
+    text_ += bodies.weighed() + bodies.energy(has_effects());
     write_equations();
     write_corrections();
     text_ += step_of(mechanism_.method, has());
     text_ += "};\n\n}  // namespace cdot::scenes\n";
-    return {std::move(text_), name_, operations(), state_bytes()};
+    return {with_inputs(std::move(text_)), name_, operations(), state_bytes()};
   }
 
  private:
@@ -100,6 +51,18 @@ class HeaderWriter {
   }
   bool has_rows() const { return has().rows; }
   bool has_effects() const { return has().effects || has().bounded; }
+
+  bool has_inputs() const { return !equations_.constants.inputs.empty(); }
+
+  // Functions take the inputs: "$d" declares them, "$s" passes those of a State, "$p" those of the caller.
+  std::string with_inputs(std::string text) const {
+    const std::pair<std::string_view, std::string_view> marks[] = {
+        {"$d", "const Inputs& p, "}, {"$s", "s.p, "}, {"$p", "p, "}};
+    for (const auto& [mark, argument] : marks)
+      for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos;)
+        text.replace(at, mark.size(), has_inputs() ? argument : std::string_view());
+    return text;
+  }
 
   void line(const std::string& line = {}) { text_ += line + "\n"; }
 
@@ -114,8 +77,8 @@ class HeaderWriter {
   long state_bytes() const {
     const long bodies = std::ranges::count_if(mechanism_.bodies, &Body::moves);
     const long of_rows = long(equations_.rows.size()) + long(equations_.stored.size()) + (has().closes() ? 1 : 0);
-    return long{sizeof(double)} *
-           (1 + bodies * (on_accelerations() ? 11 : 8) + of_rows + long(mechanism_.bounded.size()));
+    return long{sizeof(double)} * (1 + bodies * (on_accelerations() ? 11 : 8) + of_rows +
+                                   long(mechanism_.bounded.size()) + long(equations_.constants.inputs.size()));
   }
 
   // f(body, its name) for those that move.
@@ -156,7 +119,7 @@ class HeaderWriter {
       for (const std::string& wrapped : derive::wrapped("  enum Bound { " + rows + "bounded };")) line(wrapped);
     }
     line(fmt::format("  static constexpr double default_step = {};  // [s]", mechanism_.step));
-    for (const auto& [name, value] : equations_.constants)
+    for (const auto& [name, value] : equations_.constants.named)
       line(fmt::format("  static constexpr double {} = {};", name, value));
     text_ += R"(
   struct Pose {
@@ -177,6 +140,12 @@ class HeaderWriter {
       for (const std::string& member : equations_.stored) line("    T " + member + ";");
       line("  };");
     }
+    if (has_inputs()) {
+      line("  // Numbers that may be set before any step.");
+      line("  struct Inputs {");
+      for (const auto& [name, value] : equations_.constants.inputs_read) line("    T " + name + ";");
+      line("  };");
+    }
     line("  // What a run is made of: a copy is a snapshot. After a change of poses or velocities call begin().");
     line("  struct State {");
     line("    T time;  // [s]");
@@ -188,6 +157,7 @@ class HeaderWriter {
                        on_accelerations() ? "forces" : "impulses before the correction"));
     if (has().bounded)
       line("    T hold[bounded];  // of the rows with bounds: -1 at the lower one, 1 at the upper one, 0 between");
+    if (has_inputs()) line("    Inputs p;");
     if (has().closes()) line("    T residual;      // the largest |C| [m], [rad]");
     if (has_rows()) line("    Jacobian J;      // of the poses q");
     line("  };");
@@ -208,102 +178,26 @@ class HeaderWriter {
                        b.angle));
       line(fmt::format("    s.v[{}] = {{T({}), T({}), T({})}};", name, b.vx, b.vy, b.w));
     });
+    for (const auto& [name, value] : equations_.constants.inputs_read)
+      line(fmt::format("    s.p.{} = T({});", name, value));
+    if (has().bounded) line("    for (T& of_row : s.hold) of_row = T(0);");
     line("    begin(s);");
     line("  }");
     text_ += begin_of(mechanism_.method, has());
   }
 
-  void write_poses() {
-    line();
-    line(
-        "  static Pose moved(const Pose& q, const Velocity& d) { return {q.x + d.x, q.y + d.y, q.angle + d.w, q.c, "
-        "q.s}; }");
-    line();
-    line("  static void turn(Pose (&q)[bodies]) {");
-    each_body([&](const Body&, const std::string& name) {
-      if (equations_.turning.contains(name)) line(fmt::format("    sin_cos(q[{0}].angle, q[{0}].s, q[{0}].c);", name));
-      else line(fmt::format("    q[{0}].c = T(1), q[{0}].s = T(0);  // read by no joint", name));
-    });
-    line("  }");
-  }
-
-  static std::string scaled(double number, const std::string& text) {
-    return number == 1 ? text : fmt::format("T({}) * {}", number, text);
-  }
-
-  void write_push() {
-    line();
-    line("  // Forces other than the joints' act for h. Drag is implicit: v / (1 + h d).");
-    line("  static void push(Velocity (&v)[bodies], const T& h) {");
-    each_body([&](const Body& b, const std::string& name) {
-      write_force(name, "x", mechanism_.gravity_x + b.ax, b.linear_drag);
-      write_force(name, "y", mechanism_.gravity_y + b.ay, b.linear_drag);
-      write_force(name, "w", b.aw, b.angular_drag);
-    });
-    line("    (void)v, (void)h;");
-    line("  }");
-  }
-
-  void write_masses() {
-    if (!on_accelerations() && !has_effects()) write_push();
-    line();
-    line("  // Twice the kinetic energy.");
-    line("  static T weighed(const Velocity (&v)[bodies]) {");
-    line("    T sum = T(0);");
-    each_body([&](const Body& b, const std::string& name) {
-      const auto square = [&](const std::string& member) {
-        return fmt::format("v[{0}].{1} * v[{0}].{1}", name, member);
-      };
-      if (b.inv_m > 0) line(fmt::format("    sum = sum + T({}) * ({} + {});", 1 / b.inv_m, square("x"), square("y")));
-      if (b.inv_I > 0) line(fmt::format("    sum = sum + T({}) * ({});", 1 / b.inv_I, square("w")));
-    });
-    line("    return sum;");
-    line("  }");
-  }
-
-  // Gravity and constant forces have a potential, 0 at the start.
-  void write_energy() {
-    line();
-    line("  // Kinetic energy and the potential of gravity and constant forces, which is 0 at the start [J].");
-    line("  static T energy(const State& s) {");
-    line("    T sum = T(0.5) * weighed(s.v);");
-    if (has_effects()) {
-      line("    T E;  // of the effects");
-      line("    potential(s.q, s.time, E);");
-      line("    sum = sum + E;");
-    }
-    each_body([&](const Body& b, const std::string& name) {
-      const auto add = [&](double force, const std::string& member, double start) {
-        if (force == 0) return;
-        line(fmt::format("    sum = sum - T({}) * (s.q[{}].{} - T({}));", force, name, member, start));
-      };
-      if (b.inv_m > 0) {
-        add((mechanism_.gravity_x + b.ax) / b.inv_m, "x", b.x);
-        add((mechanism_.gravity_y + b.ay) / b.inv_m, "y", b.y);
-      }
-      if (b.inv_I > 0) add(b.aw / b.inv_I, "angle", b.angle);
-    });
-    line("    return sum;");
-    line("  }");
-  }
-
-  void write_force(const std::string& name, const std::string& member, double a, double drag) {
-    const std::string v = fmt::format("v[{}].{}", name, member);
-    if (drag != 0) line(fmt::format("    {0} = {0} * (T(1) / (T(1) + h * T({1})));", v, drag));
-    if (a != 0) line(fmt::format("    {0} = {0} + h * T({1});", v, a));
-  }
-
   void write_function(const std::string& comment, const std::string& head, const Program& program) {
     line();
-    line("  // " + comment + ": " + text(derive::count(program)));
-    for (const std::string& wrapped : derive::wrapped("  static void " + head + " {")) line(wrapped);
+    line("  // " + comment + ": " + derive::text(derive::count(program)));
+    for (const std::string& wrapped : derive::wrapped("  static void " + with_inputs(head) + " {")) line(wrapped);
     derive::Printing printing;
     printing.indent = "    ";
     printing.reserved = used_;
-    for (const auto& [constant, value] : equations_.constants) printing.reserved.insert(constant);
+    for (const auto& [constant, value] : equations_.constants.named) printing.reserved.insert(constant);
     write_using(program);
     const std::vector<std::string> lines = derive::print_statements(program, printing);
     for (const std::string& statement : lines) line(statement);
+    if (has_inputs() && head.find("$d") != std::string::npos) line("    (void)p;");
     for (const char* argument : {"q", "v", "time", "J", "b", "h"}) {
       const bool takes = head.find(fmt::format(" {}", argument)) != std::string::npos ||
                          head.find(fmt::format("(&{})", argument)) != std::string::npos;
@@ -332,7 +226,7 @@ class HeaderWriter {
   }
 
   void write_equations() {
-    const std::string at = "const Pose (&q)[bodies], const T& time", moving = "const Velocity (&v)[bodies]";
+    const std::string at = "$dconst Pose (&q)[bodies], const T& time", moving = "const Velocity (&v)[bodies]";
     text_ += guards;
     text_ += bounded_of(equations_.is_rate, has());
     if (has_rows()) {
@@ -370,7 +264,7 @@ class HeaderWriter {
       text_ += free_slope;
       return;
     }
-    const std::string at_v = "const Pose (&q)[bodies], " + moving + ", const T& time";
+    const std::string at_v = "$dconst Pose (&q)[bodies], " + moving + ", const T& time";
     write_function("-Jdot v - d/dt(dC/dt)", "gamma(" + at_v + ", T (&g)[rows])", equations_.gamma);
     text_ += equations_.driven ? accelerate_driven : accelerate_by_rates;
     text_ += slope;

@@ -28,6 +28,8 @@ std::string command_of(const Options& options) {
   std::string command = "cdot compile " + std::filesystem::path(options.scene).filename().string();
   if (!options.wishes.integrator.empty()) command += " --integrator " + options.wishes.integrator;
   if (options.wishes.step > 0) command += fmt::format(" --step {}", options.wishes.step);
+  for (const std::string& input : options.wishes.inputs)
+    command += (input == options.wishes.inputs.front() ? " --input " : ",") + input;
   if (!options.struct_name.empty()) command += " --name " + options.struct_name;
   return command;
 }
@@ -55,6 +57,10 @@ void add_options(Line& line, Options& options) {
            "Method of the step; without it that of the scene, or rk4 if the scene names none")
       .one_of({"euler", "rk4", "dop853"});
   line.add("--step", &options.wishes.step, "Its usual length [s]; without it that of the scene, or 0.001").positive();
+  line.add("--input", &options.wishes.inputs,
+           "A number that a run may change, as hinge.angle.motor.speed: a member of State::p. Several are separated by "
+           "commas")
+      .separated_by_commas();
   line.add("--name", &options.struct_name, "Name of the struct; without it that of the file").shown_as("NAME");
   line.add("--bill", &options.bill,
            "Instead of the header: what each joint and effect costs in a step, and what dropping it saves");

@@ -7,7 +7,7 @@
 namespace cdot::compile {
 namespace {
 
-constexpr const char* evaluates = "    evaluate(s.q, s.time, s.J);\n";
+constexpr const char* evaluates = "    evaluate($ss.q, s.time, s.J);\n";
 constexpr const char* closes = R"(    Velocity moves[bodies];
     close(s, at, T({}), moves);
 )";
@@ -79,13 +79,13 @@ constexpr const char* stages_end = R"(    for (int i = 0; i < bodies; ++i) {{
 
 constexpr const char* ends_on_joints = R"(    Velocity moves[bodies];
     close(s, at, T(0.5), moves);
-    evaluate(s.q, s.time, s.J);
+    evaluate($ss.q, s.time, s.J);
     project(s);
-    accelerate(s.q, s.v, s.time, s.J, s.lambda, s.a);
+    accelerate($ss.q, s.v, s.time, s.J, s.lambda, s.a);
     return s.residual;
 )";
 
-constexpr const char* ends_freely = R"(    fall(s.q, s.time, s.v, s.a);
+constexpr const char* ends_freely = R"(    fall($ss.q, s.time, s.v, s.a);
     return T(0);
 )";
 
@@ -110,7 +110,7 @@ std::string runge_kutta(const Method& method, const char* title, bool rows) {
     text += fmt::format("      const Slope now = {};\n", combined(method, stage));
     text += "      at.q[i] = moved(s.q[i], h * now.v);\n      v[i] = s.v[i] + h * now.a;\n    }\n";
     text += fmt::format("    at.time = s.time + T({}) * h;\n", double(method.c[stage]));
-    text += fmt::format("    slope(at, v, {}k[{}]);\n", rows ? "s.J, forces, " : "", stage);
+    text += fmt::format("    slope($sat, v, {}k[{}]);\n", rows ? "s.J, forces, " : "", stage);
   }
   return text + fmt::format(stages_end, combined(method, method.stages), rows ? ends_on_joints : ends_freely);
 }
@@ -118,7 +118,8 @@ std::string runge_kutta(const Method& method, const char* title, bool rows) {
 std::string euler(const Contents& has) {
   std::string text = euler_begins;
   if (has.effects || has.bounded) {
-    const std::string arguments = has.rows ? "s.q, s.time, s.v, s.J, h, next, s.lambda" : "s.q, s.time, s.v, h, next";
+    const std::string arguments =
+        has.rows ? "$ss.q, s.time, s.v, s.J, h, next, s.lambda" : "$ss.q, s.time, s.v, h, next";
     text +=
         fmt::format(euler_by_kick, has.bounded ? fmt::format(kick_with_bounds, arguments, has.rows ? adds_impulses : "")
                                                : fmt::format("    kick({});\n", arguments));
@@ -157,14 +158,13 @@ std::string begin_of(Method method, const Contents& has) {
   std::string text =
       "\n  // Makes a State whole after its poses, velocities or time were set.\n  static void begin(State& s) {\n"
       "    turn(s.q);\n";
-  if (has.bounded) text += "    for (T& of_row : s.hold) of_row = T(0);\n";
   if (has.rows) text += "    for (T& of_row : s.lambda) of_row = T(0);\n";
   if (has.closes()) text += "    s.residual = T(1e30);\n";
   if (has.rows) text += evaluates;
   if (has.closes()) text += notes_poses + fmt::format(closes, 0.2);
   if (has.rows) text += evaluates;
-  if (accelerates && has.rows) text += "    project(s);\n    accelerate(s.q, s.v, s.time, s.J, s.lambda, s.a);\n";
-  else if (accelerates) text += "    fall(s.q, s.time, s.v, s.a);\n";
+  if (accelerates && has.rows) text += "    project(s);\n    accelerate($ss.q, s.v, s.time, s.J, s.lambda, s.a);\n";
+  else if (accelerates) text += "    fall($ss.q, s.time, s.v, s.a);\n";
   return text + "  }\n";
 }
 

@@ -29,11 +29,11 @@ inline constexpr const char* guards = R"(
 // J a without dC/dt, which `rates` adds for driven joints.
 inline constexpr const char* accelerate_by_rates = R"(
   // M a = f + J^T lambda with J a = gamma.
-  static void accelerate(const Pose (&q)[bodies], const Velocity (&v)[bodies], const T& time, const Jacobian& J,
+  static void accelerate($dconst Pose (&q)[bodies], const Velocity (&v)[bodies], const T& time, const Jacobian& J,
                          T (&lambda)[rows], Velocity (&a)[bodies]) {
     T g[rows], Ja[rows];
-    fall(q, time, v, a);
-    gamma(q, v, time, g);
+    fall($pq, time, v, a);
+    gamma($pq, v, time, g);
     rates(J, a, Ja);
     for (int i = 0; i < rows; ++i) g[i] = g[i] - Ja[i];
     Velocity d[bodies];
@@ -44,11 +44,11 @@ inline constexpr const char* accelerate_by_rates = R"(
 
 inline constexpr const char* accelerate_driven = R"(
   // M a = f + J^T lambda with J a = gamma.
-  static void accelerate(const Pose (&q)[bodies], const Velocity (&v)[bodies], const T& time, const Jacobian& J,
+  static void accelerate($dconst Pose (&q)[bodies], const Velocity (&v)[bodies], const T& time, const Jacobian& J,
                          T (&lambda)[rows], Velocity (&a)[bodies]) {
     T g[rows], Ja[rows], C_t[rows];
-    fall(q, time, v, a);
-    gamma(q, v, time, g);
+    fall($pq, time, v, a);
+    gamma($pq, v, time, g);
     rates(J, a, Ja);
     Velocity none[bodies];
     for (int i = 0; i < bodies; ++i) none[i] = {T(0), T(0), T(0)};
@@ -62,11 +62,11 @@ inline constexpr const char* accelerate_driven = R"(
 
 inline constexpr const char* slope = R"(
   // The rates of change at a stage of a Runge-Kutta method.
-  static void slope(Evaluated& at, const Velocity (&v)[bodies], Jacobian& J, T (&forces)[rows], Slope (&k)[bodies]) {
+  static void slope($dEvaluated& at, const Velocity (&v)[bodies], Jacobian& J, T (&forces)[rows], Slope (&k)[bodies]) {
     turn(at.q);
-    evaluate(at.q, at.time, J);
+    evaluate($pat.q, at.time, J);
     Velocity a[bodies];
-    accelerate(at.q, v, at.time, J, forces, a);
+    accelerate($pat.q, v, at.time, J, forces, a);
     for (int i = 0; i < bodies; ++i) k[i] = {v[i], a[i]};
   }
 )";
@@ -74,10 +74,10 @@ inline constexpr const char* slope = R"(
 // Without joints.
 inline constexpr const char* free_slope = R"(
   // The rates of change at a stage of a Runge-Kutta method.
-  static void slope(Evaluated& at, const Velocity (&v)[bodies], Slope (&k)[bodies]) {
+  static void slope($dEvaluated& at, const Velocity (&v)[bodies], Slope (&k)[bodies]) {
     turn(at.q);
     Velocity a[bodies];
-    fall(at.q, at.time, v, a);
+    fall($pat.q, at.time, v, a);
     for (int i = 0; i < bodies; ++i) k[i] = {v[i], a[i]};
   }
 )";

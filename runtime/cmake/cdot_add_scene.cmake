@@ -1,9 +1,10 @@
-# cdot_add_scene(TARGET name SCENE crane.toml [INTEGRATOR rk4] [STEP 0.001] [NAME crane]): at build time `cdot compile`
-# writes the scene as its own step, and the target finds it by #include "crane.hpp". Needs no library.
+# cdot_add_scene(TARGET name SCENE crane.toml [INTEGRATOR rk4] [STEP 0.001] [NAME crane] [INPUTS hinge.angle.motor.speed …]):
+# at build time `cdot compile` writes the scene as its own step, and the target finds it by #include "crane.hpp". Needs
+# no library.
 function(cdot_add_scene)
-  cmake_parse_arguments(arg "" "TARGET;SCENE;INTEGRATOR;STEP;NAME" "" ${ARGN})
+  cmake_parse_arguments(arg "" "TARGET;SCENE;INTEGRATOR;STEP;NAME" "INPUTS" ${ARGN})
   if(NOT arg_TARGET OR NOT arg_SCENE OR arg_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "usage: cdot_add_scene(TARGET name SCENE file.toml [INTEGRATOR method] [STEP seconds] [NAME struct])")
+    message(FATAL_ERROR "usage: cdot_add_scene(TARGET name SCENE file.toml [INTEGRATOR method] [STEP seconds] [NAME struct] [INPUTS number…])")
   endif()
   if(NOT TARGET cdot::cdot-compile)
     message(FATAL_ERROR "cdot_add_scene: this cdot was built without its generator (CDOT_DERIVE=OFF)")
@@ -18,6 +19,10 @@ function(cdot_add_scene)
   endif()
   if(arg_STEP)
     list(APPEND options --step ${arg_STEP})
+  endif()
+  if(arg_INPUTS)
+    list(JOIN arg_INPUTS "," inputs)
+    list(APPEND options --input ${inputs})
   endif()
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/cdot_scenes/${arg_TARGET})
   file(MAKE_DIRECTORY ${folder})

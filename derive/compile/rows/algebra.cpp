@@ -11,11 +11,20 @@ constexpr int finest = 64, largest = 4096;  // exact numbers: multiples of 1/64 
 }  // namespace
 
 int Algebra::value(double number, const std::string& name) {
+  if (!name.empty()) constants_.known.insert(name);
+  if (constants_.inputs.contains(name)) {
+    constants_.inputs_read[name] = number;
+    return input("p." + name);
+  }
+  return fixed(number, name);
+}
+
+int Algebra::fixed(double number, const std::string& name) {
   const double scaled = number * finest;
   if (scaled == std::round(scaled) && std::abs(number) <= largest)
     return builder_.number(Rational(static_cast<std::int64_t>(scaled), finest));
-  if (name.empty() && number < 0) return sum({{value(-number)}, {Rational(-1)}});
-  if (!name.empty()) named_[name] = number;
+  if (name.empty() && number < 0) return sum({{fixed(-number, {})}, {Rational(-1)}});
+  if (!name.empty()) constants_.named[name] = number;
   const int op = input(name.empty() ? fmt::format("T({})", number) : "T(" + name + ")");
   real_[op] = number;
   return op;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,14 +19,22 @@ using derive::Program;
 using derive::Rational;
 using derive::Summands;
 
-using Constants = std::map<std::string, double>;  // those that a header names
+struct Constants {
+  std::set<std::string> inputs;               // names of those that a run may change: members of p
+  std::map<std::string, double> named;        // those that the header names
+  std::map<std::string, double> inputs_read;  // values of the inputs that occur
+  std::set<std::string> known;                // every name
+};
 
 class Algebra {
  public:
-  explicit Algebra(Constants& named) : named_(named) {}
+  explicit Algebra(Constants& constants) : constants_(constants) {}
 
-  // A constant. Small fractions of powers of two are exact numbers, which vanish from products and sums.
+  // A constant, or an input of the run if its name is among these. Small fractions of powers of two are exact numbers,
+  // which vanish from products and sums.
   int value(double number, const std::string& name = {});
+  // One that no run may change.
+  int fixed(double number, const std::string& name);
   int input(const std::string& text, bool is_position = false);
   int sum(const Summands& terms, const std::string& name = {});
   int product(const std::vector<int>& args, const std::vector<int>& exponents, const std::string& name = {});
@@ -46,7 +55,7 @@ class Algebra {
 
   derive::ProgramBuilder builder_;
   std::map<int, double> real_;  // constants that are no numbers of the program
-  Constants& named_;
+  Constants& constants_;
 };
 
 }  // namespace cdot::compile

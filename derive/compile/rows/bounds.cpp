@@ -40,9 +40,9 @@ Values BoundWriter::bounds() const {
   };
   switch (effect_.law) {
     case Effect::motor:
-      return {{"B.rate", number(0, "rate")},
-              {"B.lower", algebra_.sum({{number(1, "most")}, {-1}})},
-              {"B.upper", number(1, "most")}};
+      return {{"B.rate", number(0, "speed")},
+              {"B.lower", algebra_.sum({{number(1, "max")}, {-1}})},
+              {"B.upper", number(1, "max")}};
     case Effect::limit: return {{"B.lower", number(0, "lower")}, {"B.upper", number(1, "upper")}};
     case Effect::lock: return {{"B.lower", number(0, "at")}, {"B.upper", number(0, "at")}};
     default: return law_.call(law_.spec().bounded[effect_.row].bounds);
@@ -56,6 +56,11 @@ int BoundWriter::bound(const Values& bounds, const std::string& name, double mis
 
 bool BoundWriter::is_rate() const {
   return effect_.law == Effect::motor || (effect_.law == Effect::bound && law_.spec().bounded[effect_.row].of_rate);
+}
+
+bool BoundWriter::are_equal(int lower, int upper) const {
+  const std::optional<double> low = algebra_.constant(lower), high = algebra_.constant(upper);
+  return effect_.law == Effect::lock || (low && high && *low >= *high);
 }
 
 BoundWriter::Kick BoundWriter::kick(int h) const {
@@ -76,7 +81,7 @@ BoundWriter::Kick BoundWriter::of_ends(int h) const {
   const Values B = bounds();
   const int zero = algebra_.value(0), most = algebra_.value(boundless), least = algebra_.value(-boundless);
   const int lower = bound(B, "B.lower", -boundless), upper = bound(B, "B.upper", boundless), C = law_.C()[0];
-  if (algebra_.constant(lower) >= algebra_.constant(upper)) return {zero, zero, least, most};
+  if (are_equal(lower, upper)) return {zero, zero, least, most};
   const int above = algebra_.sum({{C, lower}, {1, -1}}), below = algebra_.sum({{upper, C}, {1, -1}});
   const int at_low = algebra_.sum({{below, above}, {1, -1}}), per_time = algebra_.function(Fn::inverse, {h});
   const int gap = algebra_.function(Fn::select, {at_low, above, below});
@@ -104,7 +109,7 @@ int BoundWriter::past() const {
   const Values B = bounds();
   const int lower = bound(B, "B.lower", -boundless), upper = bound(B, "B.upper", boundless);
   const int above = algebra_.sum({{C, lower}, {1, -1}}), below = algebra_.sum({{upper, C}, {1, -1}});
-  if (algebra_.constant(lower) >= algebra_.constant(upper)) return above;
+  if (are_equal(lower, upper)) return above;
   const int at_low = algebra_.sum({{below, above}, {1, -1}});
   return algebra_.function(Fn::select,
                            {at_low, law_.least(above, zero), law_.most(algebra_.sum({{below}, {-1}}), zero)});

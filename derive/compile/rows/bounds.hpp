@@ -24,6 +24,7 @@ class BoundWriter {
 
  private:
   bool is_rate() const;
+  bool are_equal(int lower, int upper) const;  // they hold the coordinate
   Kick of_rate(int h) const;
   Kick of_ends(int h) const;
   Kick of_force(int h) const;

@@ -32,7 +32,7 @@ Values LawWriter::call(const Program& function) const {
   const SpecPrograms& law = spec();
   Values in;
   for (std::size_t p = 0; p < law.parameters.size(); ++p)
-    in[law.parameters[p]] = algebra_.value(effect_.numbers[p], constant_name(block_, law.parameters[p]));
+    in[law.parameters[p]] = algebra_.value(effect_.numbers[p], number_name(block_, law.parameters[p]));
   in["pi"] = algebra_.value(std::numbers::pi);
   in["time"] = algebra_.input("time");
   for (const auto& [leaf, place] : law.leaves) {
@@ -54,7 +54,7 @@ int LawWriter::most(int a, int b) const {
 std::vector<int> LawWriter::force_without_limits() const {
   if (effect_.law == Effect::spring) return spring_force();
   if (effect_.law == Effect::load)
-    return std::vector<int>(C_.size(), algebra_.value(effect_.numbers[0], block_.name + "_F"));
+    return std::vector<int>(C_.size(), algebra_.value(effect_.numbers[0], block_.name + "_force"));
   return elements(call(spec().rows.function("force")), "F", C_.size());
 }
 
@@ -77,8 +77,8 @@ LawWriter::Slopes LawWriter::spring_slopes() const {
   const Values K = n[0] == 0 ? Values{} : rows_.call(algebra_, block_, "effective_mass", in_);
   for (std::size_t r = 0; r < C_.size(); ++r) {
     if (n[0] == 0) {
-      slopes.k.push_back(algebra_.value(n[1], block_.name + "_k"));
-      slopes.d.push_back(algebra_.value(n[2], block_.name + "_d"));
+      slopes.k.push_back(algebra_.value(n[1], block_.name + "_stiffness"));
+      slopes.d.push_back(algebra_.value(n[2], block_.name + "_damping"));
       continue;
     }
     const int mass = algebra_.function(Fn::inverse, {K.at(derive::triangle_element("K", r, r))});
@@ -133,7 +133,8 @@ std::vector<int> LawWriter::bound(const Values& slopes, const std::string& lette
 }
 
 int LawWriter::energy() const {
-  if (effect_.law == Effect::load) return algebra_.times(algebra_.value(-effect_.numbers[0]), C_[0]);
+  if (effect_.law == Effect::load)
+    return algebra_.sum({{algebra_.times(algebra_.value(effect_.numbers[0], block_.name + "_force"), C_[0])}, {-1}});
   if (effect_.law != Effect::spring)
     return spec().rows.has("energy") ? call(spec().rows.function("energy")).at("E") : algebra_.value(0);
   const Slopes slopes = spring_slopes();

@@ -1,5 +1,6 @@
 #include "derive/compile/rows/row_blocks.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -10,6 +11,10 @@ namespace cdot::compile {
 using derive::element;
 
 std::string constant_name(const RowBlock& block, const std::string& parameter) {
+  return block.owner + "_" + (parameter.starts_with("p.") ? parameter.substr(2) : parameter);
+}
+
+std::string number_name(const RowBlock& block, const std::string& parameter) {
   return block.name + "_" + (parameter.starts_with("p.") ? parameter.substr(2) : parameter);
 }
 
@@ -27,7 +32,7 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
   for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
     const Joint& joint = mechanism.joints[j];
     const SpecPrograms& spec = types_.at(joint.type);
-    joints_.push_back({names.joints[j], &spec, &spec.rows, &joint.bodies, &joint.parameters});
+    joints_.push_back({names.joints[j], names.joints[j], &spec, &spec.rows, &joint.bodies, &joint.parameters});
   }
   for (std::size_t e = 0; e < mechanism.effects.size(); ++e)
     effects_.push_back(block_of(names.effects[e], mechanism.effects[e]));
@@ -35,13 +40,22 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
     bounded_.push_back(block_of(names.bounded[b], mechanism.bounded[b]));
 }
 
+// The joint on whose coordinate the effect acts: they share its parameters.
+std::string RowBlocks::owner_of(const std::string& name, const Effect& effect) const {
+  const auto owns = [&](const Joint& joint) { return effect.name.starts_with(joint.name + "."); };
+  const auto joint = std::ranges::find_if(mechanism_.joints, owns);
+  if (effect.coordinate.empty() || joint == mechanism_.joints.end()) return name;
+  return names_.joints[static_cast<std::size_t>(joint - mechanism_.joints.begin())];
+}
+
 // A row with bounds of an effect between bodies is on a coordinate of that effect.
 RowBlock RowBlocks::block_of(const std::string& name, const Effect& effect) const {
   const SpecPrograms& spec = types_.at(effect.type);
   const bool own = effect.coordinate.empty() && effect.law == Effect::bound;
   const std::string& coordinate = own ? spec.bounded[effect.row].coordinate : effect.coordinate;
-  return {name, &spec, coordinate.empty() ? &spec.rows : &spec.coordinates.at(coordinate), &effect.bodies,
-          &effect.parameters};
+  return {name,           owner_of(name, effect),
+          &spec,          coordinate.empty() ? &spec.rows : &spec.coordinates.at(coordinate),
+          &effect.bodies, &effect.parameters};
 }
 
 Values RowBlocks::inputs(Algebra& algebra, const RowBlock& block) const {
@@ -94,8 +108,8 @@ void RowBlocks::replace_velocities(Values& in, const RowBlock& block, const Valu
 int RowBlocks::inverse_mass(Algebra& algebra, int index, std::size_t column) const {
   const Body& b = mechanism_.bodies[static_cast<std::size_t>(index)];
   if (!b.moves) return algebra.value(0);
-  return column < 2 ? algebra.value(b.inv_m, body_name(index) + "_inv_m")
-                    : algebra.value(b.inv_I, body_name(index) + "_inv_I");
+  return column < 2 ? algebra.fixed(b.inv_m, body_name(index) + "_inv_m")
+                    : algebra.fixed(b.inv_I, body_name(index) + "_inv_I");
 }
 
 Values RowBlocks::call(Algebra& algebra, const RowBlock& block, const std::string& function, const Values& in) const {

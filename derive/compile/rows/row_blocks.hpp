@@ -20,7 +20,8 @@ struct Names {
 };
 
 struct RowBlock {
-  std::string name;  // before the names of what it computes
+  std::string name;   // before the names of what it computes
+  std::string owner;  // before those of its parameters
   const SpecPrograms* spec = nullptr;
   const RowPrograms* rows = nullptr;
   const std::vector<int>* bodies = nullptr;
@@ -32,6 +33,8 @@ using Forces = std::map<std::pair<int, std::size_t>, Summands>;
 
 // Of a parameter of a kernel, "p.pa_x" or "phi", in the header.
 std::string constant_name(const RowBlock& block, const std::string& parameter);
+// Of a number of an effect's law.
+std::string number_name(const RowBlock& block, const std::string& parameter);
 
 class RowBlocks {
  public:
@@ -60,6 +63,7 @@ class RowBlocks {
                   Forces& forces) const;
 
  private:
+  std::string owner_of(const std::string& name, const Effect& effect) const;
   RowBlock block_of(const std::string& name, const Effect& effect) const;
   void add_body(Algebra& algebra, Values& in, const std::string& L, int index) const;
 

@@ -143,6 +143,8 @@ Mechanism read_mechanism(const std::string& file, const Wishes& wishes) {
   mechanism.method = method_of(scene);
   mechanism.step = scene.step;
   mechanism.tolerance = tolerance_of(scene);
+  mechanism.inputs = wishes.inputs;
+  for (std::string& name : mechanism.inputs) std::ranges::replace(name, '.', '_');
   mechanism.gravity_x = scene.settings.gravity_x, mechanism.gravity_y = scene.settings.gravity_y;
   BasicWorld<Space> world = build_world<double>(scene);
   if (scene.project) world.project(1e-12);

@@ -53,6 +53,7 @@ struct Mechanism {
   double step = 0;                      // [s]
   double tolerance = 0;                 // of C [m], [rad]
   double gravity_x = 0, gravity_y = 0;  // [m/s^2]
+  std::vector<std::string> inputs;      // numbers that a run may change, as a header names them
   std::vector<Body> bodies;             // the last one is the world
   std::vector<Joint> joints;
   std::vector<Effect> effects;  // by forces
@@ -63,6 +64,7 @@ struct Mechanism {
 struct Wishes {
   std::string integrator;
   double step = 0;
+  std::vector<std::string> inputs;  // "hinge.angle.servo.target"
 };
 
 // Throws SceneError for a scene that has mistakes, or that has parts which cannot be compiled.

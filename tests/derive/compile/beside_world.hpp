@@ -15,8 +15,7 @@
 
 namespace cdot {
 
-inline World<double> world_of(const std::string& file, Integrator integrator) {
-  Scene scene = read_scene(std::string(CDOT_SOURCE_DIR) + "/" + file);
+inline World<double> world_of(Scene scene, Integrator integrator) {
   scene.settings.integrator = integrator;
   scene.accuracy = 0;
   settle_drift(scene);
@@ -40,7 +39,7 @@ double distance(const typename Compiled::State& state, const World<double>& worl
 template <class Compiled>
 void runs_as_the_world(const std::string& file, Integrator integrator, double within = 1e-10, double until = 0.7) {
   constexpr double step = 0.001;  // [s]; the four-bar is singular at 0.708 s
-  auto world = world_of(file, integrator);
+  auto world = world_of(read_scene(std::string(CDOT_SOURCE_DIR) + "/" + file), integrator);
   typename Compiled::State state;
   Compiled::reset(state);
   double farthest = 0, moved = 0;

@@ -1,0 +1,32 @@
+// Functions of the header over all bodies, as text.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "derive/compile/scene/mechanism.hpp"
+
+namespace cdot::compile {
+
+struct BodyTexts {
+  const Mechanism& mechanism;
+  const std::vector<std::string>& names;  // in C++
+
+  // moved() and turn(): sine and cosine of the bodies in `turning`.
+  std::string turn(const std::set<std::string>& turning) const;
+  // push(): forces other than the joints' for a step of Euler's method.
+  std::string push() const;
+  // weighed(): twice the kinetic energy.
+  std::string weighed() const;
+  std::string energy(bool has_effects) const;
+
+  // f(body, its name) for those that move.
+  template <class F>
+  void each(F f) const {
+    for (std::size_t i = 0; i < mechanism.bodies.size(); ++i)
+      if (mechanism.bodies[i].moves) f(mechanism.bodies[i], names[i]);
+  }
+};
+
+}  // namespace cdot::compile

@@ -1,0 +1,33 @@
+#include "derive/compile/identifiers.hpp"
+
+#include <cctype>
+#include <sstream>
+
+namespace cdot::compile {
+
+std::set<std::string> taken_names() {
+  std::istringstream words(
+      "T q v a J C Cdot g b d s h i k at x y w c time rows bodies pivot select abs sign turn close errors evaluate "
+      "rates gamma solve step reset begin push fall moved weighed project slope State energy Pose Slope Body lambda "
+      "inverse accelerate Velocity Jacobian Evaluated default_step int float double for if do new this and or not "
+      "auto const static struct case switch default return template left largest next kick potential E sum free B "
+      "Bounded Bound bounded Mask entry divide settle part find_active p Inputs find_contradiction is_rate reach "
+      "past along hold mu residual error moves ");
+  std::set<std::string> names;
+  for (std::string word; words >> word;) names.insert(word);
+  return names;
+}
+
+std::string identifier(const std::string& name) {
+  std::string text;
+  for (const char c : name) text += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  if (text.empty() || std::isdigit(static_cast<unsigned char>(text[0])) != 0) text = "_" + text;
+  return text;
+}
+
+std::string unused(std::string name, std::set<std::string>& used) {
+  while (!used.insert(name).second) name += "_";
+  return name;
+}
+
+}  // namespace cdot::compile

@@ -1,0 +1,70 @@
+// Numbers of a compiled scene that a run may change: the step is then that of a scene with these numbers.
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+
+#include "arm_with_inputs.hpp"
+#include "tailgate_with_inputs.hpp"
+#include "tests/derive/compile/beside_world.hpp"
+#include "tests/derive/compile/command.hpp"
+
+namespace {
+
+using cdot::Integrator;
+using namespace cdot::scenes;
+
+// The scene with other text in these places.
+cdot::Scene changed(const std::string& file, const std::vector<std::pair<std::string, std::string>>& changes) {
+  std::ifstream in(std::string(CDOT_SOURCE_DIR) + "/" + file);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  for (const auto& [from, to] : changes) {
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    if (at != std::string::npos) text.replace(at, from.size(), to);
+  }
+  return cdot::read_scene(text, "changed.toml");
+}
+
+template <class Compiled>
+double farthest(typename Compiled::State& state, cdot::World<double> world) {
+  double most = 0;
+  for (int k = 0; k < 700; ++k) {
+    EXPECT_TRUE(world.step(0.001));
+    Compiled::step(state, 0.001);
+    most = std::max(most, cdot::distance<Compiled>(state, world));
+  }
+  return most;
+}
+
+TEST(CompiledInputs, BeginAsInTheScene) {
+  cdot::runs_as_the_world<arm_with_inputs<double>>("specs/scenes/robot_arm.toml", Integrator::euler);
+  cdot::runs_as_the_world<tailgate_with_inputs<double>>("specs/scenes/tailgate.toml", Integrator::rk4);
+}
+
+TEST(CompiledInputs, MoveAsASceneWithTheseNumbers) {
+  arm_with_inputs<double>::State arm;
+  arm_with_inputs<double>::reset(arm);
+  arm.p.shoulder_angle_servo_target = 0.75, arm.p.wrist_angle_brake_torque = 2;
+  const cdot::Scene other_arm =
+      changed("specs/scenes/robot_arm.toml", {{"target = \"20 deg\"", "target = 0.75"}, {"brake = 6", "brake = 2"}});
+  EXPECT_LT(farthest<arm_with_inputs<double>>(arm, cdot::world_of(other_arm, Integrator::euler)), 1e-10);
+
+  tailgate_with_inputs<double>::State gate;
+  tailgate_with_inputs<double>::reset(gate);
+  gate.p.brake_d = 400;
+  tailgate_with_inputs<double>::begin(gate);
+  const cdot::Scene other_gate = changed("specs/scenes/tailgate.toml", {{"= 1000", "= 400"}});
+  EXPECT_LT(farthest<tailgate_with_inputs<double>>(gate, cdot::world_of(other_gate, Integrator::rk4)), 1e-10);
+}
+
+TEST(CompiledInputs, MisspeltNamesAreToldTheRightOne) {
+  const cdot::Outcome wrong =
+      cdot::compile("specs/scenes/robot_arm.toml --integrator euler --input wrist.angle.brake.torqe");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.text.find("no number of this scene is called wrist_angle_brake_torqe (did you mean "
+                            "wrist_angle_brake_torque?)"),
+            std::string::npos)
+      << wrong.text;
+}
+
+}  // namespace
