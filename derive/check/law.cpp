@@ -71,7 +71,8 @@ void check_bounded(const Derivation& derivation, Findings& findings) {
 
 void check_forces(const Derivation& derivation, const Proof& proof, Findings& findings) {
   const DerivedLaw& law = *derivation.law;
-  const Span where = derivation.joint.rows.front().where;
+  const Joint& joint = derivation.joint;
+  const Span where = joint.on_any_coordinate() ? joint.law->free->where : joint.rows.front().where;
   if (const Law& opposite = proof.of(LawId::opposite); !opposite.text.empty())
     findings.add(
         Level::note, "momentum", where, opposite.text,

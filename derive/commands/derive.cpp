@@ -104,7 +104,7 @@ Files present(const fs::path& root) {
   for (const char* table : {"ledger.csv", proofs_file}) {
     if (fs::exists(root / table)) files[table] = content_of(root / table);
   }
-  for (const char* space : {"planar", "spatial"}) {
+  for (const char* space : {"coordinate", "planar", "spatial"}) {
     std::error_code none;
     for (const fs::directory_entry& entry : fs::directory_iterator(root / space, none)) {
       files[std::string(space) + "/" + entry.path().filename().string()] = content_of(entry.path());

@@ -75,6 +75,8 @@ struct DerivedLaw {
 // The prescribed rate of a bounded row, and its derivative by time.
 struct DerivedBound {
   Expr rate, acceleration;  // empty for the ends of a coordinate
+  Expr lower, upper;        // without a load; empty: none
+  Expr by_lower, by_upper;  // what each unit of the load adds
 };
 
 // A joint and all parts of its kernels, derived once: the same object is proved, planned, printed and explained.

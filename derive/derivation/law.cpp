@@ -75,8 +75,15 @@ DerivedLaw law_of(const Joint& joint) {
 void derive_law(Derivation& derivation) {
   const Joint& joint = derivation.joint;
   if (!joint.law->inputs.empty()) derivation.law = law_of(joint);
-  for (const BoundedRow& row : joint.law->bounded)
-    derivation.bounded.push_back({row.rate, row.rate ? time_derivative(row.rate, joint) : Expr()});
+  for (const BoundedRow& row : joint.law->bounded) {
+    DerivedBound bound{row.rate, row.rate ? time_derivative(row.rate, joint) : Expr(), row.lower, row.upper, {}, {}};
+    if (row.load) {
+      const std::map<const Node*, Expr> none = {{&*row.load, joint.pool->number(0)}};
+      bound.by_lower = slope(row.lower, row.load, joint), bound.by_upper = slope(row.upper, row.load, joint);
+      bound.lower = substitute(row.lower, none), bound.upper = substitute(row.upper, none);
+    }
+    derivation.bounded.push_back(bound);
+  }
 }
 
 }  // namespace cdot::derive

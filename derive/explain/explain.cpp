@@ -48,6 +48,12 @@ void describe(const Lecture& lecture, const Parameter& p, Step& step) {
 }
 
 void introduce_bodies(const Joint& joint, Step& step) {
+  if (joint.on_any_coordinate()) {
+    step.say(joint.law->free->name + " [" + text(joint.law->free->unit) +
+             "] is the coordinate of any joint. Its J and K are those of the joint; a force F on it is J' F on the "
+             "bodies.");
+    return;
+  }
   const BodySymbols a = body_symbols(joint, 0);
   const std::string who = (joint.bodies.size() > 1 ? "bodies " : "body ") + listed(joint.bodies);
   const std::string others = joint.bodies.size() > 1 ? "; likewise the others" : "";

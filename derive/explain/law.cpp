@@ -21,6 +21,8 @@ std::vector<Chain> law_chains(const Lecture& lecture) {
 void explain_law(Lecture& lecture) {
   if (!lecture.joint.law) return;
   Step& step = lecture.section("The law");
+  if (lecture.joint.law->mass)
+    step.say("mass is the effective mass 1/K of the coordinate. The slopes of the force take it as constant.");
   if (!lecture.joint.rows.empty())
     step.say("The rows are no constraints: the effect pushes along them by a force F, J' F on the bodies.");
   for (Chain& chain : law_chains(lecture)) step.show(std::move(chain));

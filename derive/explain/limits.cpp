@@ -74,7 +74,7 @@ void assume(const Joint& joint, Step& step) {
     } else if (p.kind == ParameterKind::unit || p.kind == ParameterKind::frame) {
       step.list("{} has length 1.", {leaf(p.symbol)});
     } else if (!p.range.empty()) {
-      step.list("{} lies " + p.range + ".", {leaf(p.symbol)});
+      step.list(p.from ? "{} is " + p.range.substr(5) + " or more." : "{} lies " + p.range + ".", {leaf(p.symbol)});
     }
   }
   for (const Row& row : joint.rows) {
@@ -82,6 +82,7 @@ void assume(const Joint& joint, Step& step) {
       step.list("Row `" + row.name + "` acts only where C reaches 0.");
     }
   }
+  if (joint.on_any_coordinate()) return;
   step.list("A body that cannot move has inverse mass and inverse inertia 0; its terms of K vanish.");
   step.list("If K = 0 (no body can move), the guarded factorisation of the kernel gives no impulse.");
   if (joint.uses_world) {

@@ -48,10 +48,12 @@ std::vector<Expr> body_euler_parameters(Pool& pool, int body) {
 }
 Expr time_symbol(Pool& pool) { return pool.symbol("time", Role::time); }
 Expr pi_symbol(Pool& pool) { return pool.symbol("pi", Role::constant); }
+Expr unlimited_symbol(Pool& pool) { return pool.symbol("unlimited", Role::constant); }
 
 std::optional<double> constant_value(Expr e) {
   if (e->kind == Kind::number) return e->value.value();
-  if (e->kind == Kind::symbol && e->role == Role::constant) return std::numbers::pi;
+  if (e->kind == Kind::symbol && e->role == Role::constant)
+    return e->symbol == "pi" ? std::numbers::pi : std::numeric_limits<double>::infinity();
   if (e->kind != Kind::sum && e->kind != Kind::product) return {};
   double result = e->kind == Kind::sum ? 0 : 1;
   for (std::size_t i = 0; i < e->args.size(); ++i) {
@@ -64,7 +66,7 @@ std::optional<double> constant_value(Expr e) {
 }
 
 bool is_symbol_of_tool(std::string_view name) {
-  if (name == "time" || name == "pi") return true;
+  if (name == "time" || name == "pi" || name == "unlimited") return true;
   for (const std::string_view stem : stems)
     if (name.starts_with(stem) && body_of_letter(name.substr(stem.size())) >= 0) return true;
   return false;

@@ -25,6 +25,7 @@ Expr inverse_inertia(Pool& pool, int body);
 std::vector<Expr> body_euler_parameters(Pool& pool, int body);
 Expr time_symbol(Pool& pool);
 Expr pi_symbol(Pool& pool);
+Expr unlimited_symbol(Pool& pool);  // infinity, the default of a bound
 // Of sums and products of numbers and pi; empty for all else.
 std::optional<double> constant_value(Expr e);
 

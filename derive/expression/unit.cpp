@@ -20,18 +20,18 @@ std::string power_text(std::string_view name, Rational exponent) {
 }  // namespace
 
 Unit operator*(const Unit& a, const Unit& b) {
-  return without_hidden_radians({a.m + b.m, a.rad + b.rad, a.s + b.s, a.kg + b.kg});
+  return without_hidden_radians({a.m + b.m, a.rad + b.rad, a.s + b.s, a.kg + b.kg, a.any + b.any});
 }
 
 Unit operator/(const Unit& a, const Unit& b) { return a * pow(b, -1); }
 
 Unit pow(const Unit& u, Rational exponent) {
-  return without_hidden_radians({u.m * exponent, u.rad * exponent, u.s * exponent, u.kg * exponent});
+  return without_hidden_radians({u.m * exponent, u.rad * exponent, u.s * exponent, u.kg * exponent, u.any * exponent});
 }
 
 std::string text(const Unit& u) {
-  const std::array<std::pair<const char*, Rational>, 4> parts = {
-      {{"kg", u.kg}, {"m", u.m}, {"rad", u.rad}, {"s", u.s}}};
+  const std::array<std::pair<const char*, Rational>, 5> parts = {
+      {{"kg", u.kg}, {"m", u.m}, {"rad", u.rad}, {"any", u.any}, {"s", u.s}}};
   std::string over, under;
   for (const auto& [name, exponent] : parts) {
     if (exponent.sign() > 0) over += (over.empty() ? "" : "*") + power_text(name, exponent);
@@ -41,10 +41,11 @@ std::string text(const Unit& u) {
 }
 
 std::string spoken(const Unit& u) {
-  static const std::array<std::pair<Unit, const char*>, 12> words = {{
+  static const std::array<std::pair<Unit, const char*>, 13> words = {{
       {{}, "a pure number"},
       {{.m = 1}, "metres"},
       {{.rad = 1}, "radians"},
+      {{.any = 1}, "the unit of the coordinate"},
       {{.s = 1}, "seconds"},
       {{.kg = 1}, "kilograms"},
       {{.m = 2}, "square metres"},

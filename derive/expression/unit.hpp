@@ -1,4 +1,5 @@
-// Units as products of metres, radians, seconds and kilograms with rational exponents (roots halve them).
+// Units as products of metres, radians, seconds and kilograms with rational exponents (roots halve them), and of `any`:
+// the unit of the coordinate that an effect acts on.
 #pragma once
 
 #include <optional>
@@ -11,7 +12,7 @@ namespace cdot::derive {
 
 // Radians are kept only where nothing but seconds stands beside them: an arc, radius times angle, is in metres.
 struct Unit {
-  Rational m{}, rad{}, s{}, kg{};
+  Rational m{}, rad{}, s{}, kg{}, any{};
 
   friend bool operator==(const Unit&, const Unit&) = default;
 };

@@ -1,8 +1,10 @@
-// Kernels to C++: generated/planar/<joint>.hpp, generated/spatial/<joint>.hpp and the registries.
+// Kernels to C++: generated/planar/<joint>.hpp, generated/spatial/<joint>.hpp, generated/coordinate/<effect>.hpp and
+// the registries.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <set>
+#include <span>
 
 #include "derive/kernel/emit.hpp"
 #include "derive/kernel/emit_function.hpp"
@@ -49,7 +51,8 @@ class KernelWriter {
     line("struct " + joint_.name + " {");
     metadata();
     parameters();
-    block(kernel_.rows, nullptr, 1);
+    if (joint_.on_any_coordinate()) law_on_coordinate();
+    else block(kernel_.rows, nullptr, 1);
     defaults();
     for (const KernelBlock& coordinate : kernel_.coordinates) coordinate_struct(coordinate);
     tuple("Coordinates", kernel_.coordinates, 1);
@@ -67,7 +70,7 @@ class KernelWriter {
   }
 
  private:
-  std::string space() const { return name_of_space(joint_.dimension); }
+  std::string space() const { return name_of_space(joint_); }
   static std::string indent(int depth) { return std::string(2 * static_cast<std::size_t>(depth), ' '); }
 
   void line(const std::string& s, int depth = 0) {
@@ -133,6 +136,18 @@ class KernelWriter {
     return fmt::format(", {}, {}", bound(p.above), bound(p.below));
   }
 
+  static bool is_unlimited(Expr e) {
+    const auto infinite = [](Expr leaf) { return leaf->role == Role::constant && leaf->symbol == "unlimited"; };
+    return e && std::ranges::any_of(leaves_of({&e, 1}), infinite);
+  }
+
+  // ", true, false": whether the range has its lower end, and whether the number may be infinite.
+  static std::string further(const Parameter& p) {
+    const bool unlimited = is_unlimited(p.default_value);
+    if (!p.from && !unlimited) return "";
+    return fmt::format("{}, {}, {}", p.range.empty() ? ", -unbounded, unbounded" : "", p.from, unlimited);
+  }
+
   std::string where(const Parameter& p) const {
     if (p.kind == ParameterKind::scalar)
       return fmt::format("[{}]{}{}", derive::text(p.unit), p.range.empty() ? "" : " ", p.range);
@@ -157,12 +172,29 @@ class KernelWriter {
     int offset = 0;
     for (const Parameter& p : joint_.parameters) {
       const int size = static_cast<int>(fields_of(joint_, p).size());
-      line(fmt::format("{{{}, ParameterKind::{}, {}, {}, {}, {}, {}{}}},", literal(p.name), text(p.kind), p.body,
-                       literal(derive::text(p.unit)), offset, size, p.default_value ? "true" : "false", range(p)),
+      line(fmt::format("{{{}, ParameterKind::{}, {}, {}, {}, {}, {}{}{}}},", literal(p.name), text(p.kind), p.body,
+                       literal(derive::text(p.unit)), offset, size, p.default_value ? "true" : "false", range(p),
+                       further(p)),
            3);
       offset += size;
     }
     line("}};", 1);
+  }
+
+  // The functions of a force on the coordinate of any joint; those of a bounded row stand in its struct.
+  void law_on_coordinate() {
+    const std::size_t rows = kernel_.derivation->law ? kernel_.derivation->law->force.size() : 0;
+    line("");
+    line(fmt::format("static constexpr int bodies = 0, rows = {};", rows), 1);
+    line("static constexpr bool explicit_time = false;", 1);
+    line("static constexpr std::array<std::string_view, 0> row_names = {};", 1);
+    line("static constexpr std::array<RowKind, 0> row_kinds = {};", 1);
+    if (rows > 0) {
+      const SlopesOfLaw slopes = slopes_of(joint_, *kernel_.derivation->law);
+      line(fmt::format("static constexpr bool reads_mass = {};", static_cast<bool>(joint_.law->mass)), 1);
+      line(fmt::format("static constexpr bool linear = {}, slopes_vanish = {};", slopes.linear, slopes.vanish), 1);
+    }
+    for (const KernelFunction& f : kernel_.rows.functions) out_ += function_text(f, rows, 1);
   }
 
   // Members that every row block has. A variant inherits equal members from the block `base`.
@@ -208,8 +240,12 @@ class KernelWriter {
   }
 
   std::string function(const KernelBlock& b, const KernelFunction& f, int depth) const {
+    return function_text(f, b.block->rows.size(), depth);
+  }
+
+  std::string function_text(const KernelFunction& f, std::size_t rows, int depth) const {
     std::string s = fmt::format("\n{}// {}: {}\n", indent(depth), f.summary, derive::text(count(f.program)));
-    for (const std::string& part : functions_.function(f, b.block->rows.size(), depth)) {
+    for (const std::string& part : functions_.function(f, rows, depth)) {
       s += part + "\n";
     }
     return s;
@@ -246,7 +282,9 @@ class KernelWriter {
     for (const OnCoordinate::Use use : on.uses)
       uses += (uses.empty() ? "CoordinateUse::" : ", CoordinateUse::") + std::string(words[use]);
     line("");
-    line("// On the coordinate of any joint in this unit, and the parameters there.", 1);
+    line(joint_.on_any_coordinate() ? "// On the coordinate of any joint."
+                                    : "// On the coordinate of any joint in this unit, and the parameters there.",
+         1);
     line("static constexpr std::string_view coordinate_unit = " + literal(derive::text(on.unit)) + ";", 1);
     line(fmt::format("static constexpr std::array<CoordinateUse, {}> coordinate_uses = {{{}}};", on.uses.size(), uses),
          1);
@@ -258,7 +296,7 @@ class KernelWriter {
     for (const KernelBound& bound : kernel_.bounded) {
       const BoundedRow& row = *bound.row;
       const auto coordinate = std::ranges::find(joint_.coordinates, row.coordinate, &Coordinate::name);
-      const std::vector<Expr> numbers = {row.lower, row.upper, row.rate};
+      const std::vector<Expr> numbers = {row.lower, row.upper, row.rate, row.after, row.until};
       const bool in_time = std::ranges::any_of(numbers, [](Expr e) {
         return e && std::ranges::any_of(leaves_of({&e, 1}), [](Expr leaf) { return leaf->role == Role::time; });
       });
@@ -267,10 +305,15 @@ class KernelWriter {
       line("struct " + row.name + " {", 1);
       line("static constexpr std::string_view name = " + literal(row.name) + ";", 2);
       line(fmt::format("static constexpr int coordinate = {};", coordinate - joint_.coordinates.begin()), 2);
-      line(fmt::format("static constexpr bool of_rate = {}, in_time = {};", row.of_rate, in_time), 2);
-      out_ += fmt::format("\n{}// {}: {}\n", indent(2), bound.function.summary,
-                          derive::text(count(bound.function.program)));
-      for (const std::string& part : functions_.function(bound.function, 1, 2)) out_ += part + "\n";
+      const bool of_value = std::ranges::any_of(std::span(numbers).first(3), [&](Expr e) {
+        return e && std::ranges::any_of(leaves_of({&e, 1}), [&](Expr leaf) { return leaf == row.value; });
+      });
+      line(fmt::format("static constexpr bool of_rate = {}, in_time = {}, of_value = {};", row.of_rate, in_time,
+                       of_value),
+           2);
+      if (row.load) line(fmt::format("static constexpr int load_of = {};", row.load_of), 2);
+      out_ += function_text(bound.function, 1, 2);
+      for (const KernelFunction& other : bound.others) out_ += function_text(other, 1, 2);
       line("};", 1);
       names += (names.empty() ? "" : ", ") + row.name;
     }

@@ -36,7 +36,10 @@ const std::map<std::string, Signature>& signatures() {
       {"unstored", {{"C", "rate", "p", "time"}, "T (&F)[ROWS]"}},
       {"slopes", {{"C", "rate", "p", "time"}, "T (&k)[ROWS][ROWS], T (&d)[ROWS][ROWS]"}},
       {"limits", {{"C", "p", "time"}, "T (&lower)[ROWS], T (&upper)[ROWS]"}},
-      {"bounds", {{"C", "p", "time"}, "RowBounds<T>& B"}}};
+      {"bounds", {{"C", "p", "time"}, "RowBounds<T>& B"}},
+      {"by_load", {{"C", "p", "time"}, "RowBounds<T>& B"}},
+      {"after", {{"C", "rate", "p", "time", "load"}, "T& D"}},
+      {"until", {{"C", "rate", "p", "time", "load"}, "T& D"}}};
   return table;
 }
 
@@ -54,6 +57,8 @@ const std::map<std::string, std::string>& declarations() {
                                                            {"lambda", "const T (&{})[ROWS]"},
                                                            {"C", "const T (&{})[ROWS]"},
                                                            {"rate", "const T (&{})[ROWS]"},
+                                                           {"mass", "T {}"},
+                                                           {"load", "T {}"},
                                                            {"index", "int {}"}};
   return table;
 }
@@ -96,7 +101,10 @@ bool is_cleared(const std::string& function) {
 }  // namespace
 
 FunctionWriter::FunctionWriter(const Joint& joint)
-    : bodies_(joint.bodies.size()), width_(columns_per_body(joint.dimension)) {
+    : bodies_(joint.bodies.size()),
+      width_(columns_per_body(joint.dimension)),
+      on_any_coordinate_(joint.on_any_coordinate()),
+      reads_mass_(joint.law && joint.law->mass) {
   for (std::size_t b = 0; b < bodies_; ++b) name_inputs_of_body(joint, b);
   auto& in = printing_.inputs;
   std::size_t rows = width_ * bodies_;  // at most, but an effect may have rows that depend on each other
@@ -105,6 +113,7 @@ FunctionWriter::FunctionWriter(const Joint& joint)
     in[fmt::format("lambda_{}", i + 1)] = fmt::format("lambda[{}]", i);
   }
   in["pi"] = "T(3.14159265358979323846)";
+  in["unlimited"] = "T(unbounded)";
   for (const Parameter& p : joint.parameters) {
     if (p.kind == ParameterKind::scalar) in[p.name] = "p." + p.name;
   }
@@ -130,7 +139,10 @@ void FunctionWriter::name_inputs_of_law(const Joint& joint) {
     if (!input.rate->vector) name(input, "");
     for (int k = 0; k < joint.dimension && input.rate->vector; ++k) name(input, std::string("_") + "xyz"[k]);
   }
+  if (joint.law->mass) printing_.inputs[joint.law->mass->symbol] = "mass";
   printing_.inputs[bounded_value] = "C[0]";
+  printing_.inputs[bounded_rate] = "rate[0]";
+  printing_.inputs[bounded_load] = "load";
   for (const char* name : {"B", "E", "k", "d", "lower", "upper"}) printing_.reserved.insert(name);
 }
 
@@ -210,7 +222,9 @@ std::vector<std::string> FunctionWriter::function(const KernelFunction& f, std::
   const std::string& name = f.name;
   const Program& program = f.program;
   const Signature& signature = signatures().at(name);
-  std::string list = arguments(signature.inputs, inputs_read(program, printing_), rows);
+  std::vector<std::string> inputs = signature.inputs;
+  if (reads_mass_) inputs.emplace_back("mass");
+  std::string list = arguments(inputs, inputs_read(program, printing_), rows);
   if (f.isotropic) list = replaced(list, "const InverseMass<T>", "const IsotropicInverseMass<T>");
   std::string output = sized(signature.output, rows);
   const bool writes_jacobian = std::any_of(program.outputs.begin(), program.outputs.end(),
@@ -237,7 +251,7 @@ std::vector<std::string> FunctionWriter::default_value(const std::vector<Case>& 
     read.merge(inputs_read(*c.program, printing_));
     read.insert({"index", "p"});
   }
-  std::string list = arguments({"index", "q"}, read, 0);
+  std::string list = on_any_coordinate_ ? arguments({"index"}, read, 0) : arguments({"index", "q"}, read, 0);
   list += cases.empty() ? ", Parameters<T>&" : ", Parameters<T>& p";
   list += ", " + arguments({"time"}, read, 0);
   std::vector<std::string> lines = {"  template <class T>"};

@@ -45,6 +45,7 @@ class FunctionWriter {
   bool reads(const std::set<std::string>& read, const std::string& argument) const;
 
   std::size_t bodies_ = 0, width_ = 0;
+  bool on_any_coordinate_ = false, reads_mass_ = false;  // of an effect
   std::vector<BodyPart> parts_;
   Printing printing_;
 };

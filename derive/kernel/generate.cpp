@@ -8,7 +8,7 @@ namespace cdot::derive {
 
 GeneratedJoint print(const Kernel& kernel) {
   const Joint& joint = kernel.derivation->joint;
-  return {name_of_space(joint.dimension), joint.name, emit_kernel(kernel), ledger_of(kernel), joint.law.has_value()};
+  return {name_of_space(joint), joint.name, emit_kernel(kernel), ledger_of(kernel), joint.law.has_value()};
 }
 
 Files collect(const std::vector<GeneratedJoint>& joints, const std::vector<LedgerRow>& hand_counts) {
@@ -16,7 +16,7 @@ Files collect(const std::vector<GeneratedJoint>& joints, const std::vector<Ledge
   struct Names {
     std::vector<std::string> joints, effects;
   };
-  std::map<std::string, Names> names = {{"planar", {}}, {"spatial", {}}};
+  std::map<std::string, Names> names = {{"coordinate", {}}, {"planar", {}}, {"spatial", {}}};
   std::vector<LedgerRow> ledger;
   for (const GeneratedJoint& joint : joints) {
     files[joint.space + "/" + joint.name + ".hpp"] = joint.kernel;

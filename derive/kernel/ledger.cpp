@@ -12,7 +12,7 @@ void add_functions(const Joint& joint, const KernelBlock& block, const std::stri
                    std::vector<LedgerRow>& rows) {
   for (const KernelFunction& f : block.functions) {
     const std::string quantity = f.name + (f.isotropic ? "_isotropic" : "");
-    rows.push_back({name_of_space(joint.dimension), joint.name, name, quantity, "generated", count(f.program)});
+    rows.push_back({name_of_space(joint), joint.name, name, quantity, "generated", count(f.program)});
   }
   for (const KernelBlock& variant : block.variants) {
     add_functions(joint, variant, (name == "rows" ? "" : name + ".") + variant.name, rows);
@@ -21,7 +21,7 @@ void add_functions(const Joint& joint, const KernelBlock& block, const std::stri
 
 void add_quantities(const Joint& joint, const Block& block, const std::string& name, std::vector<LedgerRow>& rows) {
   if (block.rows.empty()) return;
-  const std::string space = name_of_space(joint.dimension);
+  const std::string space = name_of_space(joint);
   std::vector<Expr> C, J, K;
   for (std::size_t i = 0; i < block.rows.size(); ++i) {
     C.push_back(block.rows[i].C);

@@ -10,7 +10,7 @@
 namespace cdot::derive {
 
 struct LedgerRow {
-  std::string space;                   // "planar", "spatial"
+  std::string space;                   // "planar", "spatial", "coordinate"
   std::string joint, block, quantity;  // "line", "slide.a_immovable", "jacobian"
                                        // ("apply_isotropic"); quantities from poses: "C", "J", "K"
   // "generated", or the id of a published derivation that agrees at every pose. If its scope differs from the spec, the

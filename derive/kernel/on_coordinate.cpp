@@ -11,6 +11,7 @@ namespace {
 // The coordinate that the law is about; null if it reads or pushes more than one, or has more than one row.
 const std::string* only_coordinate(const Joint& joint) {
   const EffectLaw& law = *joint.law;
+  if (law.free) return &law.free->name;
   if (law.inputs.size() + law.bounded.size() != 1) return nullptr;
   if (!law.bounded.empty()) return &law.bounded[0].coordinate;
   const LawInput& input = law.inputs[0];
@@ -25,7 +26,8 @@ std::vector<Expr> numbers_of(const EffectLaw& law) {
   };
   add(law.energy);
   for (const LawInput& input : law.inputs) add(input.force), add(input.lower), add(input.upper);
-  for (const BoundedRow& row : law.bounded) add(row.lower), add(row.upper), add(row.rate);
+  for (const BoundedRow& row : law.bounded)
+    for (const Expr e : {row.lower, row.upper, row.rate, row.after, row.until}) add(e);
   return numbers;
 }
 
@@ -36,8 +38,9 @@ std::optional<OnCoordinate> on_coordinate(const Joint& joint) {
   if (!coordinate) return {};
   const auto own = std::ranges::find(joint.coordinates, *coordinate, &Coordinate::name);
   const bool bounded = own != joint.coordinates.end();
-  const Expr C = bounded ? own->value : joint.rows[0].C;
-  OnCoordinate on{bounded ? own->unit : joint.law->inputs[0].unit, {}};
+  const std::optional<Coordinate>& free = joint.law->free;
+  const Expr C = free ? free->value : bounded ? own->value : joint.rows[0].C;
+  OnCoordinate on{free ? free->unit : bounded ? own->unit : joint.law->inputs[0].unit, {}};
   on.uses.assign(joint.parameters.size(), OnCoordinate::none);
   std::set<const Node*> read;
   for (const Expr leaf : leaves_of(numbers_of(*joint.law))) read.insert(&*leaf);

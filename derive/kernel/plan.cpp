@@ -375,7 +375,8 @@ Kernel plan(const Derivation& derivation) {
   const Joint& joint = derivation.joint;
   Kernel kernel;
   kernel.derivation = &derivation;
-  kernel.rows = plan_block(joint, derivation.rows, joint.name);
+  if (joint.on_any_coordinate()) kernel.rows.block = &derivation.rows;
+  else kernel.rows = plan_block(joint, derivation.rows, joint.name);
   if (derivation.law) plan_law(joint, *derivation.law, kernel.rows.functions);
   for (const Block& coordinate : derivation.coordinates) {
     kernel.coordinates.push_back(plan_block(joint, coordinate, coordinate.name));
@@ -384,7 +385,9 @@ Kernel plan(const Derivation& derivation) {
     kernel.bounded.push_back(plan_bound(joint, joint.law->bounded[i], derivation.bounded[i]));
   }
   for (std::size_t i = 0; i < joint.parameters.size(); ++i) {
-    if (joint.parameters[i].default_value) {
+    const Expr by_default = joint.parameters[i].default_value;
+    const bool is_value = joint.on_any_coordinate() && by_default == joint.law->free->value;
+    if (by_default && !is_value) {
       kernel.defaults.push_back(plan_default(joint, static_cast<int>(i)));
     }
   }

@@ -43,6 +43,7 @@ struct KernelBlock {
 struct KernelBound {
   const BoundedRow* row = nullptr;
   KernelFunction function;
+  std::vector<KernelFunction> others{};  // by_load, after, until
 };
 
 // An effect on the coordinate of any joint in this unit.
@@ -54,6 +55,13 @@ struct OnCoordinate {
 };
 // Nothing if the law of the effect is about more than one coordinate.
 std::optional<OnCoordinate> on_coordinate(const Joint& joint);
+
+// The force on a coordinate is linear in it and in its rate if its slopes read neither these nor the time and cannot be
+// negative: an implicit step is then exact.
+struct SlopesOfLaw {
+  bool linear = false, vanish = false;
+};
+SlopesOfLaw slopes_of(const Joint& joint, const DerivedLaw& law);
 
 struct DefaultValue {
   int parameter = 0;
@@ -104,6 +112,8 @@ void plan_law(const Joint& joint, const DerivedLaw& law, std::vector<KernelFunct
 KernelBound plan_bound(const Joint& joint, const BoundedRow& row, const DerivedBound& derived);
 // The leaf of a coordinate in the bounds of its rows.
 inline constexpr const char* bounded_value = "value of the bounded coordinate";
+inline constexpr const char* bounded_rate = "rate of the bounded coordinate";
+inline constexpr const char* bounded_load = "force of the bounded row";
 
 // The default of a parameter that has one, in its own frame.
 DefaultValue plan_default(const Joint& joint, int index);

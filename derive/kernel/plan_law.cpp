@@ -44,19 +44,72 @@ void plan_law(const Joint& joint, const DerivedLaw& law, std::vector<KernelFunct
   add("slopes", "k = -dF/dC and d = -dF/d(rate)", slopes);
 }
 
+namespace {
+
+// By its form alone: sums and products of numbers, parameters and masses that cannot be negative.
+bool cannot_be_negative(const Joint& joint, Expr e) {
+  const auto all = [&](const std::vector<Expr>& parts) {
+    return std::ranges::all_of(parts, [&](Expr part) { return cannot_be_negative(joint, part); });
+  };
+  switch (e->kind) {
+    case Kind::number: return e->value.sign() >= 0;
+    case Kind::sum: return std::ranges::all_of(e->coefs, [](Rational c) { return c.sign() > 0; }) && all(e->args);
+    case Kind::product:
+      for (std::size_t i = 0; i < e->args.size(); ++i)
+        if (e->exponents[i] % 2 != 0 && !cannot_be_negative(joint, e->args[i])) return false;
+      return true;
+    case Kind::symbol: break;
+    default: return false;
+  }
+  if (e->role == Role::constant || e == joint.law->mass) return true;
+  const auto parameter = std::ranges::find(joint.parameters, e, &Parameter::symbol);
+  return parameter != joint.parameters.end() && parameter->above >= 0;
+}
+
+}  // namespace
+
+SlopesOfLaw slopes_of(const Joint& joint, const DerivedLaw& law) {
+  std::vector<Expr> slopes;
+  for (const auto* matrix : {&law.stiffness, &law.damping})
+    for (const std::vector<Expr>& row : *matrix) slopes.insert(slopes.end(), row.begin(), row.end());
+  const auto known = [&](Expr leaf) {
+    return leaf->role == Role::parameter || leaf->role == Role::constant || leaf == joint.law->mass;
+  };
+  const bool limited = std::ranges::any_of(joint.law->inputs, [](const LawInput& i) { return bool(i.lower); });
+  const bool in_time = std::ranges::any_of(leaves_of(law.force), [](Expr e) { return e->role == Role::time; });
+  return {!limited && !in_time && std::ranges::all_of(leaves_of(slopes), known) &&
+              std::ranges::all_of(slopes, [&](Expr e) { return cannot_be_negative(joint, e); }),
+          std::ranges::all_of(slopes, [](Expr e) { return is_zero(e); })};
+}
+
 KernelBound plan_bound(const Joint& joint, const BoundedRow& row, const DerivedBound& derived) {
   PoseInputs parameters(joint);
   Components components;
-  const std::map<const Node*, Expr> own = {{&*row.value, joint.pool->symbol(bounded_value, Role::given)}};
+  std::map<const Node*, Expr> own = {{&*row.value, joint.pool->symbol(bounded_value, Role::given)},
+                                     {&*row.own_rate, joint.pool->symbol(bounded_rate, Role::given)}};
+  if (row.own_load) own.emplace(&*row.own_load, joint.pool->symbol(bounded_load, Role::given));
   std::vector<NamedExpr> outputs;
   const auto add = [&](const char* name, Expr e) {
     if (e) outputs.push_back({name, parameters.of(components.of(substitute(e, own)))});
   };
-  add("B.lower", row.lower);
-  add("B.upper", row.upper);
+  std::vector<KernelFunction> others;
+  if (row.load) {
+    add("B.lower", derived.by_lower);
+    add("B.upper", derived.by_upper);
+    others.push_back({"by_load", "what each unit of the load adds to the bounds", assemble(outputs), false, {}});
+    outputs.clear();
+  }
+  for (const auto& [name, distance] : {std::pair("after", row.after), std::pair("until", row.until)}) {
+    if (!distance) continue;
+    add("D", distance);
+    others.push_back({name, "the distance from that event, at most 0 where it happens", assemble(outputs), false, {}});
+    outputs.clear();
+  }
+  add("B.lower", derived.lower);
+  add("B.upper", derived.upper);
   if (row.of_rate && !is_zero(derived.rate)) add("B.rate", derived.rate), add("B.acceleration", derived.acceleration);
   const char* const summary = row.of_rate ? "bounds of the force, and the rate" : "ends of the coordinate";
-  return {&row, {"bounds", summary, assemble(outputs), false, {}}};
+  return {&row, {"bounds", summary, assemble(outputs), false, {}}, std::move(others)};
 }
 
 }  // namespace cdot::derive

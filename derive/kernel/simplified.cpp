@@ -47,7 +47,10 @@ Kernel simplified(Kernel kernel, std::vector<CutShort>* cut_short, SearchBounds 
   KernelSearch search(bounds);
   search.simplify_functions(kernel.rows);
   for (KernelBlock& coordinate : kernel.coordinates) search.simplify_functions(coordinate);
-  for (KernelBound& bound : kernel.bounded) bound.function.program = search.simplified(bound.function.program);
+  for (KernelBound& bound : kernel.bounded) {
+    bound.function.program = search.simplified(bound.function.program);
+    for (KernelFunction& other : bound.others) other.program = search.simplified(other.program);
+  }
   for (DefaultValue& value : kernel.defaults) value.program = search.simplified(value.program);
   if (cut_short != nullptr) *cut_short = std::move(search.cut_short);
   return kernel;

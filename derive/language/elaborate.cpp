@@ -33,6 +33,7 @@ Elaborator::Elaborator(const Library& library, int dimension, const Anchors& anc
     : library_(library), pool_(std::make_shared<Pool>(dimension)), anchors_(anchors) {
   joint_.pool = pool_;
   joint_.dimension = dimension;
+  unlimited_ = scalar(unlimited_symbol(*pool_), std::nullopt);
 }
 
 void Elaborator::error(Source& source, Span where, std::string message, std::string fix, std::vector<Span> also) {
@@ -56,6 +57,7 @@ void Elaborator::run(Source& spec) {
   joint_.comment = spec.ast.comment;
   joint_.file = spec.file;
   if (spec.ast.effect) joint_.law.emplace();
+  of_coordinate_ = spec.ast.dimension == "coordinate";
   spec.including = {spec.ast.name.text};
   statements(spec);
   if (is_word_of_cpp(joint_.name))
@@ -142,9 +144,10 @@ void Elaborator::finish(ReadResult& result, Source& spec) {
 }
 
 const Value* SourceNames::find(const std::string& name) {
+  if (name == "unlimited" && e_.in_default_) return &e_.unlimited_;
   const auto found = e_.names_.find(source_.prefix + name);
   if (found == e_.names_.end()) return nullptr;
-  if (!e_.in_law_ && found->second.kind == "coordinate") return nullptr;
+  if (!e_.in_law_ && found->second.kind == "coordinate" && !e_.of_coordinate_) return nullptr;
   found->second.used = true;
   const Value& value = found->second.value;
   if (e_.in_law_ && value.type == Type::point && value.body >= 0) {
@@ -153,6 +156,14 @@ const Value* SourceNames::find(const std::string& name) {
   }
   e_.of_world_ |= found->second.of_world;
   return &value;
+}
+
+const Value* SourceNames::load_of(const std::string& name) { return e_.load(name); }
+
+// The effective mass of the coordinate that an effect acts on.
+const Value* SourceNames::mass_of(const std::string& name) {
+  if (!e_.joint_.on_any_coordinate() || e_.joint_.law->free->name != name || !find(name)) return nullptr;
+  return &e_.mass();
 }
 
 const Value* SourceNames::rate_of(const std::string& name) {
@@ -180,6 +191,7 @@ std::vector<std::string> SourceNames::known() const {
 std::string SourceNames::hint(const std::string& name) const {
   if (const auto known = e_.names_.find(name); known != e_.names_.end() && known->second.kind == "coordinate")
     return "only the law of an effect reads coordinates: write the expression of " + quote(name) + " here";
+  if (name == "unlimited") return "the default of a scalar may be unlimited: scalar most [N] = unlimited";
   if (const std::string vector = e_.vector_of_component(name); !vector.empty())
     return "did you mean " + quote(vector + "." + name.back()) + "?";
   const auto below = source_.declared_anywhere.find(name);

@@ -107,8 +107,15 @@ class Elaborator {
   LawInput* input_of(const std::string& text);
   Expr leaf_of_input(std::string name, bool vector_input);
   void check_law(Source& spec);
+  // elaborate_free.cpp
+  void free_coordinate(Source& source, const StatementAst& s);
+  const Value& mass();
+  const Value* load(const std::string& name);
+  const Value& own_load();
+  void check_free(Source& spec);
   // elaborate_bound.cpp
   void bound(Source& source, const StatementAst& s);
+  bool event(Source& source, const ConditionAst& condition, BoundedRow& row, Expr& distance);
   Expr bound_value(Source& source, const Ast& ast, const Unit& unit, const std::vector<Expr>& also);
   const Coordinate* bounded_coordinate(Source& source, const Word& name);
   void drop_idle_inputs();
@@ -135,8 +142,14 @@ class Elaborator {
   std::vector<std::shared_ptr<const SourceFile>> included_;
   int include_count_ = 0;
   int row_count_ = 0;
-  bool of_world_ = false;  // the statement has named a quantity of the world so far
-  bool in_law_ = false;    // the statement is the law of an effect
+  bool of_world_ = false;       // the statement has named a quantity of the world so far
+  bool in_law_ = false;         // the statement is the law of an effect
+  bool in_default_ = false;     // of a scalar
+  bool of_coordinate_ = false;  // an effect on the coordinate of any joint
+  Value mass_, unlimited_;
+  BoundedRow* in_bound_ = nullptr;                                     // the row whose bounds of the force are read
+  bool in_event_ = false;                                              // of that row
+  Value load_;                                                         // in these bounds
   std::map<std::string, Value, std::less<>> law_values_, law_rates_;   // by names of inputs
   std::map<std::string, Coordinate, std::less<>> bounded_candidates_;  // the coordinates of an effect
 };
@@ -147,6 +160,8 @@ class SourceNames final : public Scope {
   SourceNames(Elaborator& elaborator, Source& source) : e_(elaborator), source_(source) {}
   const Value* find(const std::string& name) override;
   const Value* rate_of(const std::string& name) override;
+  const Value* load_of(const std::string& name) override;
+  const Value* mass_of(const std::string& name) override;
   int body(const std::string& letter) const override;
   void use_body(int body, Span where) override;
   void use_world() override { e_.use_world(); }

@@ -1,6 +1,7 @@
 // Rows with bounds in the law of an effect: ends of a coordinate, and a rate that a bounded force prescribes.
 #include <algorithm>
 
+#include "derive/expression/functions.hpp"
 #include "derive/expression/symbols.hpp"
 #include "derive/language/elaborate.hpp"
 
@@ -31,7 +32,8 @@ Expr Elaborator::bound_value(Source& source, const Ast& ast, const Unit& unit, c
     return {};
   }
   const auto known = [&](Expr leaf) {
-    return leaf->role == Role::parameter || leaf->role == Role::constant || std::ranges::find(also, leaf) != also.end();
+    return leaf->role == Role::parameter || leaf->role == Role::constant || (in_bound_ && leaf == in_bound_->load) ||
+           std::ranges::find(also, leaf) != also.end();
   };
   if (std::ranges::all_of(leaves_of(std::span<const Expr>(&v.e, 1)), known)) return v.e;
   if (also.empty())
@@ -39,10 +41,44 @@ Expr Elaborator::bound_value(Source& source, const Ast& ast, const Unit& unit, c
             "move the rest into the coordinate, and bound that by 0");
   else
     d.error(ast.where,
-            also.size() > 1 ? "a bound of a force depends on parameters, time and its own coordinate alone"
+            also.size() > 1 ? "a bound of a force depends on parameters, time, its own coordinate and one load alone"
                             : "a prescribed rate depends on parameters and time alone",
             "write a law of rates or of other coordinates as a force: force on NAME = ...");
   return {};
+}
+
+// `left >= right` as (right - left) / (|left| + |right|).
+bool Elaborator::event(Source& source, const ConditionAst& condition, BoundedRow& row, Expr& distance) {
+  Diagnostics& d = source.diagnostics;
+  in_bound_ = &row;
+  in_law_ = in_event_ = true;
+  const Value left = evaluate(source, condition.left), right = evaluate(source, condition.right);
+  in_bound_ = nullptr;
+  in_law_ = in_event_ = false;
+  if (left.type == Type::poison || right.type == Type::poison) return false;
+  const auto known = [&](Expr leaf) {
+    return leaf->role == Role::parameter || leaf->role == Role::constant || leaf->role == Role::time ||
+           leaf == row.value || leaf == row.own_rate || leaf == row.own_load;
+  };
+  for (const auto& [value, ast] : {std::pair(&left, &condition.left), std::pair(&right, &condition.right)}) {
+    if (value->type != Type::scalar) {
+      d.error(ast->where, "a condition compares numbers, not " + std::string(in_words(value->type)));
+      return false;
+    }
+    if (std::ranges::all_of(leaves_of(std::span<const Expr>(&value->e, 1)), known)) continue;
+    d.error(ast->where, "an event depends on parameters, time, the coordinate of its row, its rate and its load alone",
+            "load(" + row.name + ") is the size of the force of the row");
+    return false;
+  }
+  if (!left.zero && !right.zero && !same_unit(left, right, true)) {
+    d.error(condition.right.where, "this is in " + spoken(*right.unit) + ", not in " + spoken(*left.unit), "",
+            {condition.left.where});
+    return false;
+  }
+  const Expr gap = condition.at_least ? right.e - left.e : left.e - right.e;
+  const Expr sides[] = {left.e, right.e};
+  distance = gap * pow(call(Fn::abs, std::span(sides, 1)) + call(Fn::abs, std::span(sides + 1, 1)), -1);
+  return true;
 }
 
 // The coordinate that a row bounds, as a row block of its own. Null after an error.
@@ -50,10 +86,11 @@ const Coordinate* Elaborator::bounded_coordinate(Source& source, const Word& nam
   const auto declared = bounded_candidates_.find(name.text);
   if (declared == bounded_candidates_.end()) {
     source.diagnostics.error(name.where, quote(name.text) + " is no coordinate of this effect",
-                             "declare it before: coordinate " + name.text + " [m] = ...");
+                             "declare it before: coordinate " + name.text + (of_coordinate_ ? " [any]" : " [m] = ..."));
     return nullptr;
   }
   names_.at(name.text).used = true;
+  if (of_coordinate_) return &declared->second;
   auto& all = joint_.coordinates;
   const auto known = std::ranges::find(all, name.text, &Coordinate::name);
   if (known != all.end()) return &*known;
@@ -93,10 +130,16 @@ void Elaborator::bound(Source& source, const StatementAst& s) {
   const Expr time = time_symbol(*pool_);
   const Unit of_bounds = s.of_rate ? joule / unit : unit;
   const std::vector<Expr> also = s.of_rate ? std::vector{value, time} : std::vector<Expr>{};
+  in_bound_ = s.of_rate ? &row : nullptr;
   bool right = number(s.lower, row.lower, of_bounds, also);
   right &= number(s.upper, row.upper, of_bounds, also);
+  in_bound_ = nullptr;
   if (s.of_rate) right &= number(s.left, row.rate, unit / Unit{.s = 1}, {time});
-  for (const Expr e : {row.lower, row.upper, row.rate}) joint_.uses_time |= e && depends_on_role(e, Role::time);
+  row.own_rate = law_rates_.at(s.bounded.text).e;
+  if (s.after) right &= event(source, *s.after, row, row.after);
+  if (s.until) right &= event(source, *s.until, row, row.until);
+  for (const Expr e : {row.lower, row.upper, row.rate, row.after, row.until})
+    joint_.uses_time |= e && depends_on_role(e, Role::time);
   if (right) joint_.law->bounded.push_back(std::move(row));
 }
 
@@ -111,11 +154,10 @@ void Elaborator::drop_idle_inputs() {
   const auto reads = [&](Expr leaf) { return std::ranges::find(leaves, leaf) != leaves.end(); };
   for (std::size_t i = law.inputs.size(); i-- > 0;) {
     const LawInput& input = law.inputs[i];
-    const bool bounded =
-        std::ranges::find(joint_.coordinates, input.name, &Coordinate::name) != joint_.coordinates.end();
+    const bool bounded = std::ranges::find(law.bounded, input.name, &BoundedRow::coordinate) != law.bounded.end();
     if (!bounded || input.force || reads(input.value) || reads(input.rate)) continue;
     law.inputs.erase(law.inputs.begin() + static_cast<std::ptrdiff_t>(i));
-    joint_.rows.erase(joint_.rows.begin() + static_cast<std::ptrdiff_t>(i));
+    if (!of_coordinate_) joint_.rows.erase(joint_.rows.begin() + static_cast<std::ptrdiff_t>(i));
   }
 }
 

@@ -88,7 +88,9 @@ bool Elaborator::resolve_body(Source& source, const DeclaredAst& d, Parameter& p
 
 Value Elaborator::default_value(Source& source, const DeclaredAst& d) {
   if (!d.value || d.broken) return {};
+  in_default_ = d.kind == "scalar";
   const Value v = evaluate(source, *d.value);
+  in_default_ = false;
   if (v.type == Type::poison) return {};
   if (!free_of_velocity(source, *d.value, v, "a default")) return {};
   if (v.e && depends_on_role(v.e, Role::time)) {
@@ -145,6 +147,11 @@ bool Elaborator::resolve_unit(Source& source, const DeclaredAst& d, const Value&
     return false;
   }
   const Unit metre{.m = 1};
+  if (d.unit && !of_coordinate_ && d.unit->unit.any != Rational(0)) {
+    source.diagnostics.error(d.unit->where, "`any` is the unit of the coordinate of a joint that an effect acts on",
+                             "write `effect NAME coordinate` in the header, or another unit");
+    return false;
+  }
   if (d.kind == "point") p.unit = metre;
   else if (d.unit) p.unit = d.unit->unit;
   else if (given.unit && d.value) p.unit = *given.unit;
@@ -171,6 +178,7 @@ bool Elaborator::resolve_range(Source& source, const DeclaredAst& d, Parameter& 
     if (!value) return false;
     *to = *value;
   }
+  p.from = d.range->from;
   if (!(p.above < p.below)) {
     source.diagnostics.error(d.range->where, "no number lies in this range", "put the smaller bound first");
     return false;

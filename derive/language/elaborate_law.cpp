@@ -55,7 +55,7 @@ LawInput& Elaborator::add_input(std::string name, Row row, bool has_value) {
   if (has_value) law_values_.emplace(name, value);
   law_rates_.emplace(name, rate);
   row.name = name;
-  joint_.rows.push_back(std::move(row));
+  if (!of_coordinate_) joint_.rows.push_back(std::move(row));
   joint_.law->inputs.push_back(input);
   return joint_.law->inputs.back();
 }
@@ -238,6 +238,7 @@ void Elaborator::check_law(Source& spec) {
     spec.diagnostics.error(spec.ast.name.where, "a force with limits stores no energy, but this effect has one",
                            "write the slope of the energy into the force");
   drop_idle_inputs();
+  check_free(spec);
 }
 
 }  // namespace cdot::derive

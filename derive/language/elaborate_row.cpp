@@ -180,10 +180,11 @@ Value Elaborator::coordinate_value(Source& source, const DeclaredAst& d) {
 void Elaborator::coordinate(Source& source, const StatementAst& s) {
   const DeclaredAst& d = s.declared;
   const std::string full = source.prefix + d.name.text;
-  if (d.broken || !d.value) return;
+  if (d.broken || (!d.value && !of_coordinate_)) return;
   if (is_word_of_cpp(full) || is_member_of_kernels(full) || full == joint_.name)
     return error(source, d.name.where, quote(full) + " is already a name of the generated kernel",
                  "choose another name");
+  if (of_coordinate_ && !d.value) return free_coordinate(source, s);
   const Value v = coordinate_value(source, d);
   if (joint_.law) return coordinate_of_effect(source, s, v, d.unit ? d.unit->unit : v.unit.value_or(Unit{}));
   if (v.type == Type::poison) return;

@@ -16,6 +16,8 @@ class Scope {
   virtual ~Scope() = default;
   virtual const Value* find(const std::string& name) = 0;               // null if unknown; counts as a use
   virtual const Value* rate_of(const std::string&) { return nullptr; }  // of a coordinate or point, in a law
+  virtual const Value* load_of(const std::string&) { return nullptr; }  // of a bounded row, in the bounds of another
+  virtual const Value* mass_of(const std::string&) { return nullptr; }  // of the coordinate that an effect acts on
   virtual int body(const std::string& letter) const = 0;                // -1 if it is no body
   virtual void use_body(int body, Span where) = 0;
   virtual void use_world() = 0;

@@ -108,6 +108,14 @@ Value Evaluator::call(const Ast& ast) {
   const bool of_name = ast.args.size() == 1 && ast.args[0].kind == Ast::Kind::name;
   if (of_name && (ast.text == "rate" || ast.text == "v"))
     if (const Value* rate = names_.rate_of(ast.args[0].text)) return *rate;
+  if (of_name && ast.text == "load" && !hand_) {
+    if (const Value* load = names_.load_of(ast.args[0].text)) return *load;
+    return error(
+        ast.args[0].where, quote(ast.args[0].text) + " is no row whose load may stand here",
+        "bounds of a force name a row before it, or in an effect on a coordinate `joint`; events name their row");
+  }
+  if (of_name && ast.text == "mass")
+    if (const Value* mass = names_.mass_of(ast.args[0].text)) return *mass;
   const auto candidates = operators_here(ast.text);
   std::vector<Value> arguments;
   bool poisoned = false;

@@ -36,6 +36,7 @@ struct Parameter {
   std::vector<Expr> axes;                                   // of a frame in space: its three leaves, `symbol` first
   double above = -std::numeric_limits<double>::infinity();  // a scalar lies between these
   double below = std::numeric_limits<double>::infinity();
+  bool from = false;               // `above` itself too
   std::string range;               // "between 0 and pi", as written; empty: any number
   Expr default_value;              // may be empty; of the kind of `value`
   std::vector<Expr> default_axes;  // of a frame in space
@@ -96,6 +97,14 @@ struct BoundedRow {
   Expr value;         // the leaf of the coordinate
   Span where;
   std::string text;  // as written, for people
+  // The leaf of the load that the bounds of the force grow with, and the row of the effect that carries it; -1: the
+  // joint of the coordinate. Without a leaf they grow with none.
+  Expr load{};
+  int load_of = -1;
+  // Distances from the events between which the row acts, as shares of what is compared: at most 0 where it happens.
+  // They may read the coordinate, its rate and the row's own force too. Empty: it acts from the start, or for ever.
+  Expr after{}, until{};
+  Expr own_rate{}, own_load{};  // their leaves
 };
 
 // The law of an effect: generalised forces along the rows of its joint, F = force - dE/d(value), and rows with bounds.
@@ -103,6 +112,10 @@ struct EffectLaw {
   std::vector<LawInput> inputs;
   Expr energy;  // empty: none
   std::vector<BoundedRow> bounded;
+  // Of an effect on the coordinate of any joint: that coordinate, its value a leaf. Such an effect has no bodies and no
+  // rows, and at most one input.
+  std::optional<Coordinate> free{};
+  Expr mass{};  // the leaf of its effective mass 1/K, if the law reads it
 };
 
 // Folders, namespaces and headers of specs are named so.
@@ -124,6 +137,12 @@ struct Joint {
   std::shared_ptr<const SourceFile> file;  // for messages of later stages
   bool uses_world = false;                 // some quantity is fixed in the world
   bool uses_time = false;
+
+  bool on_any_coordinate() const { return law && law->free; }
 };
+
+inline std::string name_of_space(const Joint& joint) {
+  return joint.on_any_coordinate() ? "coordinate" : name_of_space(joint.dimension);
+}
 
 }  // namespace cdot::derive

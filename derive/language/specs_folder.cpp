@@ -12,7 +12,7 @@ SpecsFolder::SpecsFolder(fs::path folder) : folder_(std::move(folder)) {}
 std::vector<fs::path> SpecsFolder::all() const {
   std::vector<fs::path> specs;
   bool found = false;
-  for (const char* space : {"planar", "spatial"}) {
+  for (const char* space : {"coordinate", "planar", "spatial"}) {
     std::error_code failure;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / space, failure)) {
       if (is_spec(entry.path())) specs.push_back(entry.path());
@@ -31,12 +31,16 @@ std::vector<fs::path> SpecsFolder::all() const {
 fs::path SpecsFolder::find(const std::string& spec) const {
   if (fs::exists(spec)) return spec;
   std::vector<std::string> names;
+  fs::path on_coordinates;
   for (const fs::path& known : all()) {
-    const std::string name = known.stem().string();
-    // `line`, or `spatial/line` where both spaces have one of that name; the planar one comes first.
-    if (name == spec || known.parent_path().filename().string() + "/" + name == spec) return known;
+    const std::string name = known.stem().string(), space = known.parent_path().filename().string();
+    // `line`, or `spatial/line` where several folders have one of that name: the planar one comes first, then the
+    // spatial one.
+    if (space + "/" + name == spec || (name == spec && space != "coordinate")) return known;
+    if (name == spec) on_coordinates = known;
     names.push_back(name);
   }
+  if (!on_coordinates.empty()) return on_coordinates;
   if (spec.find('/') != std::string::npos) throw NoSuchSpec(fmt::format("no such file: {}", spec));
   const std::string near = nearest(spec, names);
   throw NoSuchSpec(fmt::format("no spec `{}`: neither that file nor {} exists{}", spec,

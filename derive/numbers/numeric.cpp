@@ -38,6 +38,7 @@ class Doubles final : public Arithmetic<double> {
 
   double scalar_leaf(const Node& leaf) override {
     if (leaf.role == Role::constant && leaf.symbol == "pi") return std::numbers::pi;
+    if (leaf.role == Role::constant && leaf.symbol == "unlimited") return std::numeric_limits<double>::infinity();
     const Sample::Body* const body = body_of(leaf);
     if (body && leaf.role == Role::angle) return body->theta;
     if (body && leaf.role == Role::spin && leaf.pool->dimension() == 2) return body->w[2];

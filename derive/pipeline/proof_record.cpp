@@ -111,13 +111,16 @@ std::string statement_of(const Derivation& derivation) {
       if (input.lower) expressions.insert(expressions.end(), {input.lower, input.upper});
   for (const DerivedBound& bound : derivation.bounded)
     if (bound.rate) expressions.insert(expressions.end(), {bound.rate, bound.acceleration});
+  for (const DerivedBound& bound : derivation.bounded)
+    if (bound.by_lower)
+      expressions.insert(expressions.end(), {bound.lower, bound.upper, bound.by_lower, bound.by_upper});
   return hash_of(text + text_of_graph(*joint.pool, expressions));
 }
 
 std::vector<ProofRow> rows_of(const std::vector<Proved>& proofs, const Joint& joint, const std::string& statement) {
   std::vector<ProofRow> rows;
   for (const Proved& proved : proofs) {
-    rows.push_back({name_of_space(joint.dimension), joint.name, proved.name.empty() ? "rows" : proved.name, statement,
+    rows.push_back({name_of_space(joint), joint.name, proved.name.empty() ? "rows" : proved.name, statement,
                     words_of(proved.proof, Verdict::holds), words_of(proved.proof, Verdict::shown)});
   }
   return rows;
@@ -147,7 +150,7 @@ ProofRecord::ProofRecord(const std::string& csv) {
 }
 
 std::vector<ProofRow> ProofRecord::find(const Derivation& derivation, const std::string& statement) const {
-  const auto found = rows_.find({name_of_space(derivation.joint.dimension), derivation.joint.name});
+  const auto found = rows_.find({name_of_space(derivation.joint), derivation.joint.name});
   if (found == rows_.end() || found->second.size() != 1 + derivation.coordinates.size()) return {};
   for (const ProofRow& row : found->second) {
     if (row.statement != statement) return {};

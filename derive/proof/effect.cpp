@@ -14,6 +14,7 @@ class EffectProver {
         law_(derivation.law.value_or(DerivedLaw{})),
         names_(joint_, Algebra::Route::names),
         of_law_(joint_, Algebra::Route::names) {
+    if (joint_.on_any_coordinate()) free_.name = joint_.law->free->name;
     for (std::size_t b = 0; b < joint_.bodies.size(); ++b) names_.coordinates(static_cast<int>(b));
   }
 
@@ -21,22 +22,41 @@ class EffectProver {
   void force(Law& law) {
     for (std::size_t i = 0; i < law_.force.size(); ++i) {
       const ex unstored = of_law_.of(law_.unstored[i]);
-      require_zero(law, of_law_, of_law_.of(law_.force[i]) - unstored + slope(law_.energy, law_.value[i]),
-                   block_.rows[i], ": F is not -dE/dC and what the spec adds");
+      require_zero(law, of_law_, of_law_.of(law_.force[i]) - unstored + slope(law_.energy, law_.value[i]), row(i),
+                   ": F is not -dE/dC and what the spec adds");
     }
   }
 
   // k = -dF/dC, d = -dF/d(rate)
   void slopes(Law& law) {
     const auto require = [&](Expr stated, std::size_t i, Expr by, std::size_t j, const char* letter) {
-      require_zero(law, of_law_, of_law_.of(stated) + slope(law_.force[i], by), block_.rows[i],
-                   ", column " + block_.rows[j].name + ": " + letter + " is not the slope of F");
+      require_zero(law, of_law_, of_law_.of(stated) + slope(law_.force[i], by), row(i),
+                   ", column " + row(j).name + ": " + letter + " is not the slope of F");
     };
     for (std::size_t i = 0; i < law_.force.size(); ++i) {
       for (std::size_t j = 0; j < law_.force.size(); ++j) {
         require(law_.stiffness[i][j], i, law_.value[j], j, "k");
         require(law_.damping[i][j], i, law_.rate[j], j, "d");
       }
+    }
+  }
+
+  // Bounds are those without a load and what each unit of it adds.
+  void loads(Law& law) {
+    for (std::size_t i = 0; i < bounded_.size(); ++i) {
+      const BoundedRow& row = joint_.law->bounded[i];
+      if (!row.load) continue;
+      const auto differs = [&](Expr whole, Expr without, Expr by) {
+        return of_law_.is_zero(of_law_.of(whole) - of_law_.of(without) - of_law_.of(row.load) * of_law_.of(by)) >
+               Algebra::Zero::shown;
+      };
+      if (!differs(row.lower, bounded_[i].lower, bounded_[i].by_lower) &&
+          !differs(row.upper, bounded_[i].upper, bounded_[i].by_upper))
+        continue;
+      law.verdict = Verdict::fails;
+      law.text = row.name + ": a bound is not a multiple of the load and a part without it";
+      law.fix = "write it as mu*load(...), with mu free of the load";
+      law.parts = {row.where};
     }
   }
 
@@ -83,6 +103,8 @@ class EffectProver {
   }
 
  private:
+  const ScalarRow& row(std::size_t i) const { return joint_.on_any_coordinate() ? free_ : block_.rows[i]; }
+
   ex slope(Expr e, Expr by) { return e && by ? of_law_.derivative(of_law_.of(e), of_law_.of(by)) : ex(0); }
 
   const Joint& joint_;
@@ -90,6 +112,7 @@ class EffectProver {
   const std::vector<DerivedBound>& bounded_;
   const DerivedLaw law_;
   Algebra names_, of_law_;
+  ScalarRow free_{};  // the coordinate of any joint
 };
 
 }  // namespace
@@ -99,6 +122,7 @@ std::vector<Law> laws_of_effect(const Derivation& derivation) {
   const auto slopes = [&](Law& law) {
     prover.slopes(law);
     prover.accelerations(law);
+    prover.loads(law);
   };
   if (!derivation.law) return {judged(LawId::slopes, slopes)};
   return {judged(LawId::force, [&](Law& law) { prover.force(law); }), judged(LawId::slopes, slopes),

@@ -52,6 +52,7 @@ struct Ast {
 // The values that a parameter may have, without the bounds themselves.
 struct RangeAst {
   std::optional<Ast> above, below;
+  bool from = false;  // with the lower bound: `from 0`
   Span where;
 };
 
@@ -74,6 +75,13 @@ struct IncludeAst {
   Span where;
 };
 
+// "after" or "until" left ( ">=" | "<=" ) right
+struct ConditionAst {
+  Ast left, right;
+  bool at_least = true;  // ">="
+  Span where;
+};
+
 // One statement of a spec. `include` and declarations have one item each: the parser splits lists.
 struct StatementAst {
   enum class Kind { include, declare, let, coordinate, row, energy, force, bound };
@@ -89,8 +97,9 @@ struct StatementAst {
   bool torque = false;  // force: `torque on BODY`
   Word bounded;         // bound: the coordinate. `left` is its prescribed rate, if `of_rate`
   bool of_rate = false;
-  std::optional<Ast> lower, upper;  // bound: of the coordinate, or of the force that prescribes its rate
-  Word keep;                        // row: how many of its components, as written
+  std::optional<Ast> lower, upper;           // bound: of the coordinate, or of the force that prescribes its rate
+  std::optional<ConditionAst> after, until;  // bound: its events
+  Word keep;                                 // row: how many of its components, as written
   int first_token = 0, end_token = 0;
 
   // A row of a joint, or a part of the law of an effect: it declares no name.
@@ -101,7 +110,7 @@ struct StatementAst {
 struct JointAst {
   Word name;
   bool effect = false;
-  std::string dimension;  // "planar" or "spatial"; empty if the header is missing
+  std::string dimension;  // "planar", "spatial" or, of an effect, "coordinate"; empty if the header is missing
   std::string title, source, comment;
   std::vector<StatementAst> statements;
 };

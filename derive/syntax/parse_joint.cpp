@@ -65,7 +65,7 @@ class JointParser {
     row();
   }
 
-  // ( joint | effect ) NAME ( planar | spatial )
+  // ( joint | effect ) NAME ( planar | spatial ), or effect NAME coordinate
   void header() {
     const Token word = p_.take();
     const std::string kind(word.text);
@@ -74,7 +74,8 @@ class JointParser {
     const Word name = p_.name("the name of the " + kind);
     if (joint_.name.text.empty()) joint_.name = name, joint_.effect = kind == "effect";
     if (p_.failed()) return;
-    if (!p_.at_word("planar") && !p_.at_word("spatial"))
+    const bool of_coordinate = kind == "effect" && p_.at_word("coordinate");
+    if (!p_.at_word("planar") && !p_.at_word("spatial") && !of_coordinate)
       return p_.fail(p_.peek().where, "`planar` or `spatial` is missing: " + p_.found(),
                      "write " + kind + " " + name.text + " planar");
     const Token dimension = p_.take();
@@ -144,16 +145,17 @@ class JointParser {
     return kind + " NAME on BODY = default";
   }
 
-  // "above" expression, "below" expression, or "between" expression "and" expression
+  // ( "above" | "from" | "below" ) expression, or "between" expression "and" expression
   void range(DeclaredAst& d) {
     const Token first = p_.peek();
     if (p_.at_symbol("<") || p_.at_symbol(">"))
       return p_.fail(first.where, "a range is written in words",
                      std::string("write ") + (first.text == "<" ? "below" : "above") + " and a number");
     const bool both = p_.at_word("between");
-    if (!both && !p_.at_word("above") && !p_.at_word("below")) return;
+    if (!both && !p_.at_word("above") && !p_.at_word("from") && !p_.at_word("below")) return;
     p_.take();
     RangeAst range;
+    range.from = first.text == "from";
     (first.text == "below" ? range.below : range.above) = p_.expression();
     if (both && !p_.at_word("and") && !p_.failed())
       p_.fail(p_.peek().where, "the upper bound is missing: `and` and a number must follow", "write between 0 and 1");
@@ -190,7 +192,7 @@ class JointParser {
     named_expression(s, "let");
   }
 
-  // coordinate NAME [ unit ] "=" expression
+  // coordinate NAME [ unit ] "=" expression; without the expression it is that of any joint
   void coordinate() {
     p_.take();
     StatementAst s = begin(StatementAst::Kind::coordinate);
@@ -202,7 +204,8 @@ class JointParser {
     s.declared.unit = p_.unit();
     if (keyword == "let" && s.declared.unit)
       p_.fail(s.declared.unit->where, "a let takes its unit from its expression", "remove the unit here");
-    if (!p_.failed() && !p_.at_symbol("="))
+    const bool of_any_joint = keyword == "coordinate" && joint_.dimension == "coordinate";
+    if (!p_.failed() && !p_.at_symbol("=") && !of_any_joint)
       p_.fail(p_.peek().where, "`=` is missing after `" + keyword + " " + s.declared.name.text + "`: " + p_.found(),
               "write " + keyword + " " + s.declared.name.text + " = ...");
     if (p_.accept("=")) s.declared.value = p_.expression();

@@ -20,11 +20,33 @@ void prescribed_rate(Parser& p, StatementAst& s) {
     return p.fail(p.peek().where, "`=` is missing after `rate(" + s.bounded.text + ")`: " + p.found(),
                   "write rate(" + s.bounded.text + ") = ..., force in [-most, most]");
   s.left = p.expression();
-  if (p.failed() || !p.accept(",")) return;
+  if (p.failed() || !p.at_symbol(",") || p.at_word("after", 1) || p.at_word("until", 1)) return;
+  p.take();
   if (!p.at_word("force") || !p.at_word("in", 1))
     return p.fail(p.peek().where, "the bounds of the force must follow: " + p.found(), "write force in [-most, most]");
   p.take();
   range(p, s);
+}
+
+// ( "after" | "until" ) expression ( ">=" | "<=" ) expression
+void event(Parser& p, StatementAst& s) {
+  const Token first = p.peek();
+  if (!p.at_word("after") && !p.at_word("until"))
+    return p.fail(first.where, "an event must follow: " + p.found(), "write after time >= 2 [s], or until ...");
+  std::optional<ConditionAst>& condition = p.at_word("after") ? s.after : s.until;
+  if (condition)
+    return p.fail(first.where, "the row has two events " + quote(first.text), "write one, of the first of both",
+                  {condition->where});
+  p.take();
+  condition.emplace();
+  condition->left = p.expression();
+  if (p.failed()) return;
+  condition->at_least = p.at_symbol(">=");
+  if (!p.accept(">=") && !p.accept("<="))
+    return p.fail(p.peek().where, "`>=` or `<=` is missing in the condition: " + p.found(),
+                  "write " + std::string(first.text) + " time >= 2 [s]");
+  condition->right = p.expression();
+  condition->where = p.from(first);
 }
 
 }  // namespace
@@ -68,6 +90,7 @@ void parse_bounded_row(Parser& p, StatementAst& s) {
   else if (p.accept(">=")) s.lower = p.expression();
   else if (p.accept("<=")) s.upper = p.expression();
   else range(p, s);
+  while (!p.failed() && p.accept(",")) event(p, s);
 }
 
 }  // namespace cdot::derive

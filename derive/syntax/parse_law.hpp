@@ -10,6 +10,7 @@ void parse_law(Parser& p, StatementAst& s);
 
 // [ NAME ":" ] ( NAME ( ( ">=" | "<=" ) expression | "in" range )
 //              | "rate" "(" NAME ")" "=" expression [ "," "force" "in" range ] )
+//   { "," ( "after" | "until" ) expression ( ">=" | "<=" ) expression }
 void parse_bounded_row(Parser& p, StatementAst& s);
 bool at_bounded_row(const Parser& p);
 

@@ -1,4 +1,4 @@
-// Numbers and their units: decimals as exact fractions, units as products of m, rad, s and kg.
+// Numbers and their units: decimals as exact fractions, units as products of m, rad, s, kg and any.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -39,13 +39,14 @@ struct NamedUnit {
   Unit unit;
   int degrees;
 };
-const std::array<NamedUnit, 7> known_units = {{{"m", {.m = 1}, 0},
+const std::array<NamedUnit, 8> known_units = {{{"m", {.m = 1}, 0},
                                                {"rad", {.rad = 1}, 0},
                                                {"s", {.s = 1}, 0},
                                                {"kg", {.kg = 1}, 0},
                                                {"N", {.m = 1, .s = -2, .kg = 1}, 0},
                                                {"J", {.m = 2, .s = -2, .kg = 1}, 0},
-                                               {"deg", {.rad = 1}, 1}}};
+                                               {"deg", {.rad = 1}, 1},
+                                               {"any", {.any = 1}, 0}}};
 
 std::string unit_fix(std::string_view word) {
   // clang-format off

@@ -168,7 +168,7 @@ struct air_brake {
   struct grab {
     static constexpr std::string_view name = "grab";
     static constexpr int coordinate = 0;
-    static constexpr bool of_rate = true, in_time = true;
+    static constexpr bool of_rate = true, in_time = true, of_value = false;
 
     // bounds of the force, and the rate: 3 +, 2 *, 1 /, 1 <, 1 call
     template <class T>

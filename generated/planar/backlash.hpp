@@ -176,7 +176,7 @@ struct backlash {
   struct turn_ends {
     static constexpr std::string_view name = "turn_ends";
     static constexpr int coordinate = 0;
-    static constexpr bool of_rate = false, in_time = false;
+    static constexpr bool of_rate = false, in_time = false, of_value = false;
 
     // ends of the coordinate: 2 +, 1 *
     template <class T>

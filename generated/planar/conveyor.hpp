@@ -256,7 +256,7 @@ struct conveyor {
   struct drag {
     static constexpr std::string_view name = "drag";
     static constexpr int coordinate = 0;
-    static constexpr bool of_rate = true, in_time = false;
+    static constexpr bool of_rate = true, in_time = false, of_value = false;
 
     // bounds of the force, and the rate: 1 +
     template <class T>

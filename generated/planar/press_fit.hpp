@@ -240,7 +240,7 @@ struct press_fit {
   struct friction {
     static constexpr std::string_view name = "friction";
     static constexpr int coordinate = 0;
-    static constexpr bool of_rate = true, in_time = false;
+    static constexpr bool of_rate = true, in_time = false, of_value = true;
 
     // bounds of the force, and the rate: 1 +, 3 *, 1 <
     template <class T>

@@ -45,6 +45,7 @@
 #include <cdot/planar/rolling.hpp>
 #include <cdot/planar/rope.hpp>
 #include <cdot/planar/rotational_drag.hpp>
+#include <cdot/planar/rough_line.hpp>
 #include <cdot/planar/servo.hpp>
 #include <cdot/planar/shaker.hpp>
 #include <cdot/planar/sine_track.hpp>
@@ -53,6 +54,7 @@
 #include <cdot/planar/spindle.hpp>
 #include <cdot/planar/spring.hpp>
 #include <cdot/planar/target.hpp>
+#include <cdot/planar/tearing_rope.hpp>
 #include <cdot/planar/thruster.hpp>
 #include <cdot/planar/torsion_spring.hpp>
 #include <cdot/planar/viscous_drag.hpp>
@@ -114,11 +116,13 @@ using Effects = std::tuple<
     position_drive,
     press_fit,
     rotational_drag,
+    rough_line,
     servo,
     shaker,
     soft_stop,
     spindle,
     spring,
+    tearing_rope,
     thruster,
     torsion_spring,
     viscous_drag,

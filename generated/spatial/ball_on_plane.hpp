@@ -499,7 +499,7 @@ struct ball_on_plane {
   struct contact {
     static constexpr std::string_view name = "contact";
     static constexpr int coordinate = 0;
-    static constexpr bool of_rate = false, in_time = false;
+    static constexpr bool of_rate = false, in_time = false, of_value = false;
 
     // ends of the coordinate: nothing
     template <class T>

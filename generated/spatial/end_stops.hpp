@@ -503,7 +503,7 @@ struct end_stops {
   struct stops {
     static constexpr std::string_view name = "stops";
     static constexpr int coordinate = 0;
-    static constexpr bool of_rate = false, in_time = false;
+    static constexpr bool of_rate = false, in_time = false, of_value = false;
 
     // ends of the coordinate: nothing
     template <class T>

@@ -41,6 +41,7 @@
 #include <cdot/spatial/spring.hpp>
 #include <cdot/spatial/surface.hpp>
 #include <cdot/spatial/swing_twist.hpp>
+#include <cdot/spatial/tearing_rope.hpp>
 #include <cdot/spatial/thruster.hpp>
 #include <cdot/spatial/universal.hpp>
 
@@ -90,6 +91,7 @@ using Effects = std::tuple<
     press_fit,
     spindle,
     spring,
+    tearing_rope,
     thruster>;
 
 }  // namespace cdot::spatial

@@ -654,7 +654,7 @@ struct spindle {
   struct drive {
     static constexpr std::string_view name = "drive";
     static constexpr int coordinate = 0;
-    static constexpr bool of_rate = true, in_time = true;
+    static constexpr bool of_rate = true, in_time = true, of_value = false;
 
     // bounds of the force, and the rate: 3 +, 4 *, 1 /, 1 <, 1 call
     template <class T>

@@ -109,7 +109,8 @@ enum class Kick : char { only, first, second };
 // A rate of 0 by a force that may be 0 is friction, which can only take.
 template <class S>
 void work_of_rate(const Batch<S>& batch, const Guard<typename S::Scalar>& guard, double done, Work& work) {
-  if (guard.rate != 0 || batch.law->in_time || guard.lower > 0 || guard.upper < 0) work.put(batch.source, done);
+  const bool drives = guard.rate != 0 || guard.lower > 0 || guard.upper < 0;
+  if (drives || batch.law->in_time || batch.ops->explicit_time) work.put(batch.source, done);
   else work.take(batch.source, done);
 }
 
@@ -125,10 +126,8 @@ void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& 
     const double before = kick == Kick::second ? double(batch.error[i]) : 0;
     const double done = double(lambda(i)) * double(batch.rate[i]) + before;
     if (kick == Kick::first) batch.error[i] = typename S::Scalar(done);
-    else if (moves && batch.law->of_spec) work_of_rate(batch, guards[r], done, work);
-    else if (moves && guards[r].rate != 0) work.put(Source::motor, done);
+    else if (moves) work_of_rate(batch, guards[r], done, work);
     else if (batch.ops->explicit_time) work.put(batch.source, done);
-    else if (moves) work.take(Source::friction, done);
     else if (guards[r].one_sided()) work.take(batch.source, done);
   }
 }
@@ -165,15 +164,15 @@ void work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S
   }
 }
 
-// Springs given by their frequency, the first constant of their laws.
+// Springs given by their frequency: their stiffness changes with the pose.
 template <class S>
 void work_of_stiffness(WorldData<S>& world, const Island<S>& island, const typename S::Velocity* v, double h,
                        Work& work) {
   for (const Segment<S>& segment : island.segments) {
     const Batch<S>& batch = *segment.batch;
-    if (!batch.law || !batch.law->energy || batch.law->constants < 3 || batch.law->is_of_effect()) continue;
+    if (!batch.law || !batch.law->by_mass) continue;
     for (int slot = segment.begin; slot < segment.end; ++slot)
-      if (batch.constants[slot * batch.law->constants] != 0)
+      if (batch.law->by_mass(batch, slot))
         work.put(batch.source, h * power_of_stiffness(world, batch, slot, v, world.one_slot, world.few));
   }
 }

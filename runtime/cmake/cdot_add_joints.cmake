@@ -12,12 +12,12 @@ function(cdot_add_joints)
   endif()
   set(out ${CMAKE_CURRENT_BINARY_DIR}/cdot_joints/${arg_TARGET})
   set(specs "")
-  set(kernels ${out}/cdot/planar/registry.hpp ${out}/cdot/spatial/registry.hpp)
+  set(kernels ${out}/cdot/coordinate/registry.hpp ${out}/cdot/planar/registry.hpp ${out}/cdot/spatial/registry.hpp)
   foreach(spec ${arg_SPECS})
     cmake_path(ABSOLUTE_PATH spec BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
     list(APPEND specs ${spec})
-    file(STRINGS ${spec} header REGEX "^(joint|effect) +[^ ]+ +(planar|spatial)" LIMIT_COUNT 1)
-    if(header MATCHES "^(joint|effect) +([^ ]+) +(planar|spatial)")
+    file(STRINGS ${spec} header REGEX "^(joint|effect) +[^ ]+ +(planar|spatial|coordinate)" LIMIT_COUNT 1)
+    if(header MATCHES "^(joint|effect) +([^ ]+) +(planar|spatial|coordinate)")
       list(APPEND kernels ${out}/cdot/${CMAKE_MATCH_3}/${CMAKE_MATCH_2}.hpp)
     endif()
   endforeach()
@@ -28,12 +28,14 @@ function(cdot_add_joints)
     DEPENDS cdot::cdot ${specs} COMMENT "Deriving the joints of ${arg_TARGET}" VERBATIM)
   file(CONFIGURE OUTPUT ${out}/add_joints.cpp CONTENT [=[
 // Written by cdot_add_joints. Makes the joints of this target known to the runtime before main().
+#include <cdot/coordinate/registry.hpp>
 #include <cdot/planar/registry.hpp>
 #include <cdot/spatial/registry.hpp>
 #include <cdot/detail/add_joints.hpp>
 
 namespace {
 [[maybe_unused]] const bool added = [] {
+  cdot::add_effects_on_any_coordinate(std::type_identity<cdot::coordinate::Effects>{});
   cdot::add_joints<cdot::Planar>(std::type_identity<cdot::planar::Joints>{});
   cdot::add_joints<cdot::Planar>(std::type_identity<cdot::planar::Effects>{});
   cdot::add_joints<cdot::Spatial>(std::type_identity<cdot::spatial::Joints>{});

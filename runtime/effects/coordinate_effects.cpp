@@ -3,8 +3,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include <cdot/detail/bounded_law.hpp>
-#include <cdot/detail/describe_joint.hpp>
+#include <cdot/coordinate/registry.hpp>
+#include <cdot/detail/coordinate_effects.hpp>
 #include <cdot/planar.hpp>
 #include <cdot/planar/registry.hpp>
 #include <cdot/spatial.hpp>
@@ -22,7 +22,8 @@ constexpr bool has_name_of(std::type_identity<std::tuple<Others...>>) {
   return ((Effect::name == Others::name) || ...);
 }
 
-// f(std::type_identity<Effect>, std::type_identity<Pose<double>>) for each; of equal names that of the plane.
+// f(std::type_identity<Effect>, std::type_identity<Pose<double>>) for each; of equal names that of any coordinate, or
+// else that of the plane.
 template <class F>
 void each_coordinate_effect(F f) {
   const auto in_space = [&]<class Pose, class Others, class... Effects>(std::type_identity<std::tuple<Effects...>>,
@@ -34,64 +35,13 @@ void each_coordinate_effect(F f) {
     };
     (one(std::type_identity<Effects>{}), ...);
   };
-  using Planar = std::type_identity<planar::Effects>;
-  in_space(Planar{}, std::type_identity<std::tuple<>>{}, std::type_identity<planar::Pose<double>>{});
-  in_space(std::type_identity<spatial::Effects>{}, Planar{}, std::type_identity<spatial::Pose<double>>{});
-}
-
-template <class Effect>
-using RowOf = std::tuple_element_t<0, typename Effect::Bounded>;
-
-template <class S, class Effect>
-constexpr const Law<S>& law_on_coordinate() {
-  if constexpr (requires { typename Effect::Bounded; }) return bounded_law<S, Effect, RowOf<Effect>, ParametersAt::row>;
-  else return effect_law<S, Effect, ParametersAt::row>;
-}
-
-// In the order of coordinate_effects().
-template <class S>
-const std::vector<const Law<S>*>& laws_on_coordinates() {
-  static const std::vector<const Law<S>*> laws = [] {
-    std::vector<const Law<S>*> all;
-    each_coordinate_effect([&]<class Effect, class Pose>(std::type_identity<Effect>, std::type_identity<Pose>) {
-      all.push_back(&law_on_coordinate<S, Effect>());
-    });
-    return all;
-  }();
-  return laws;
-}
-
-// The functions of an effect in doubles.
-struct Functions {
-  void (*default_value)(int index, double* parameters, double time);
-  void (*bounds)(double C, const double* parameters, double time, RowBounds<double>&);  // null: no bounds
-};
-
-template <class Effect, class Pose>
-Functions functions_of() {
-  using Numbers = typename Effect::template Parameters<double>;
-  Functions functions{[](int index, double* parameters, double time) {
-                        const Pose nowhere[Effect::bodies] = {};
-                        Effect::default_value(index, nowhere, *reinterpret_cast<Numbers*>(parameters), time);
-                      },
-                      nullptr};
-  if constexpr (requires { typename Effect::Bounded; })
-    functions.bounds = [](double C, const double* parameters, double time, RowBounds<double>& B) {
-      const double value[1] = {C};
-      RowOf<Effect>::bounds(value, *reinterpret_cast<const Numbers*>(parameters), time, B);
-    };
-  return functions;
-}
-
-const std::vector<Functions>& functions_on_coordinates() {
-  static const std::vector<Functions> functions = [] {
-    std::vector<Functions> all;
-    each_coordinate_effect([&]<class Effect, class Pose>(std::type_identity<Effect>, std::type_identity<Pose>) {
-      all.push_back(functions_of<Effect, Pose>());
-    });
-    return all;
-  }();
-  return functions;
+  using Any = coordinate::Effects;
+  using AnyOrPlanar = decltype(std::tuple_cat(Any{}, planar::Effects{}));
+  in_space(std::type_identity<Any>{}, std::type_identity<std::tuple<>>{}, std::type_identity<planar::Pose<double>>{});
+  in_space(std::type_identity<planar::Effects>{}, std::type_identity<Any>{},
+           std::type_identity<planar::Pose<double>>{});
+  in_space(std::type_identity<spatial::Effects>{}, std::type_identity<AnyOrPlanar>{},
+           std::type_identity<spatial::Pose<double>>{});
 }
 
 // Its place among coordinate_effects().
@@ -154,8 +104,21 @@ NamedLaw<S> law_of(std::size_t index) {
 }  // namespace
 
 #ifndef CDOT_EXTENDED
-std::span<const JointType> coordinate_effects() {
-  static const std::vector<JointType> types = [] {
+std::span<const JointType> coordinate_effects() { return registered_coordinate_effects(); }
+
+std::vector<FunctionsOnCoordinate>& functions_on_coordinates() {
+  static std::vector<FunctionsOnCoordinate> functions = [] {
+    std::vector<FunctionsOnCoordinate> all;
+    each_coordinate_effect([&]<class Effect, class Pose>(std::type_identity<Effect>, std::type_identity<Pose>) {
+      all.push_back(functions_on_coordinate<Effect, Pose>());
+    });
+    return all;
+  }();
+  return functions;
+}
+
+std::vector<JointType>& registered_coordinate_effects() {
+  static std::vector<JointType> types = [] {
     std::vector<JointType> all;
     each_coordinate_effect([&]<class Effect, class Pose>(std::type_identity<Effect>, std::type_identity<Pose>) {
       all.push_back(describe_joint<Effect>());
@@ -175,6 +138,18 @@ bool SpecEffect::acts_one_way() const { return coordinate_effects()[index_of(typ
 #endif
 
 template <class S>
+std::vector<const Law<S>*>& laws_on_coordinates() {
+  static std::vector<const Law<S>*> laws = [] {
+    std::vector<const Law<S>*> all;
+    each_coordinate_effect([&]<class Effect, class Pose>(std::type_identity<Effect>, std::type_identity<Pose>) {
+      all.push_back(law_on_coordinate<S, Effect>());
+    });
+    return all;
+  }();
+  return laws;
+}
+
+template <class S>
 int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const SpecEffect& effect) {
   WorldData<S>& data = world.data();
   check_joint(data, joint);
@@ -183,7 +158,7 @@ int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, con
   const JointType& of_joint = joint_types(S::dimension)[static_cast<std::size_t>(data.joints[joint].type)];
   const auto place = static_cast<std::size_t>(coordinate_index<S>(data.joints[joint].type, coordinate));
   const std::string_view unit = of_joint.coordinates[place].unit;
-  if (unit != type.coordinate_unit)
+  if (!type.acts_on(unit))
     throw Error(fmt::format("effect `{}` acts on a coordinate in {}; `{}` of joint `{}` is in {}", type.name,
                             type.coordinate_unit, coordinate, of_joint.name, unit));
   const auto constants = complete(index, effect.parameters, world.coordinate(joint, coordinate), data.time);
@@ -207,6 +182,7 @@ void set_effect(BasicWorld<S>& world, int joint, int number, const SpecEffect& e
 }
 
 #define CDOT_INSTANTIATE(S)                                                          \
+  template std::vector<const Law<S>*>& laws_on_coordinates<S>();                     \
   template int add_effect(BasicWorld<S>&, int, std::string_view, const SpecEffect&); \
   template void set_effect(BasicWorld<S>&, int, int, const SpecEffect&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)

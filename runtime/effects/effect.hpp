@@ -1,11 +1,10 @@
-// add_effect() and set_effect() of every effect, from two functions in the file of its kind:
+// add_effect() and set_effect() of every effect with a struct of its own, from two functions for it:
 //
 //   template <class S> static NamedLaw<S> law_of(const Effect&);
-//   static std::array<double, n> constants_of(const Effect&);  // of that law, or more; throws Error if they are wrong
+//   static Parameters<double> constants_of(const Effect&);  // of the spec of that law; throws Error if they are wrong
 //
 #pragma once
 
-#include <array>
 #include <span>
 
 #include <cdot/effects.hpp>
@@ -19,8 +18,14 @@ namespace cdot {
 template <class S>
 struct NamedLaw {
   const Law<S>& law;
-  const char* name;  // in messages
+  const char* name;  // in messages, and of its work
 };
+
+// The numbers of a Parameters<double>, in the order of the law's constants.
+template <class Parameters>
+std::span<const double> numbers_of(const Parameters& parameters) {
+  return {reinterpret_cast<const double*>(&parameters), sizeof parameters / sizeof(double)};
+}
 
 // The rows of the effect; null if all bodies of the joint are immovable. Throws Error if the joint has no effect of
 // that number, or if the effect has another law.
@@ -40,15 +45,14 @@ const Effect& at_pose(BasicWorld<S>&, int, std::string_view, const Effect& effec
 template <class S, class Effect>
 int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Effect& effect) {
   const auto constants = constants_of(at_pose(world, joint, coordinate, effect));
-  const Law<S>& law = law_of<S>(effect).law;
+  const NamedLaw<S> named = law_of<S>(effect);
   note_change(world.data());
-  return add_coordinate_row(world.data(), joint, coordinate, &law,
-                            std::span(constants).first(static_cast<size_t>(law.constants)));
+  return add_coordinate_row(world.data(), joint, coordinate, &named.law, numbers_of(constants), named.name);
 }
 
 template <class S, class Effect>
 void set_effect(BasicWorld<S>& world, int joint, int number, const Effect& effect) {
-  set_constants(world, joint, number, law_of<S>(effect), constants_of(effect));
+  set_constants(world, joint, number, law_of<S>(effect), numbers_of(constants_of(effect)));
 }
 
 #define CDOT_INSTANTIATE_EFFECT(S, Effect)                                       \

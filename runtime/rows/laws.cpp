@@ -100,6 +100,11 @@ double energy_soft(const Batch<S>& batch, int slot) {
   return energy;
 }
 
+template <class S>
+bool soft_by_frequency(const Batch<S>& batch, int slot) {
+  return batch.constants[slot * spring_constants_count] != 0;
+}
+
 }  // namespace
 
 template <class S>
@@ -110,8 +115,15 @@ const Law<S>& unilateral_law() {
 
 template <class S>
 const Law<S>& soft_law() {
-  static constexpr Law<S> law{spring_constants_count, false,   fill_soft<S>,      nullptr, energy_soft<S>,
-                              force_of_soft<S>,       nullptr, numbers_of_soft<S>};
+  static constexpr Law<S> law{.constants = spring_constants_count,
+                              .reported = false,
+                              .fill = fill_soft<S>,
+                              .error = nullptr,
+                              .energy = energy_soft<S>,
+                              .force = force_of_soft<S>,
+                              .guard = nullptr,
+                              .spring = numbers_of_soft<S>,
+                              .by_mass = soft_by_frequency<S>};
   return law;
 }
 

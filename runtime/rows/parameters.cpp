@@ -30,12 +30,14 @@ void check_numbers(const JointType& type, const ParameterInfo& info, const Named
     throw Error(fmt::format("parameter `{}` of joint `{}` takes {} number{}, not {}", info.name, type.name, info.size,
                             info.size == 1 ? "" : "s", value.numbers.size()));
   for (double number : value.numbers)
-    if (!std::isfinite(number))
+    if (!std::isfinite(number) && !(info.unlimited && std::isinf(number)))
       throw Error(fmt::format("parameter `{}` of joint `{}` is not finite", info.name, type.name));
 }
 
 void check_range(const JointType& type, const ParameterInfo& info, double number) {
-  if (!(info.above < number && number < info.below))
+  const bool in_range = (info.from ? info.above <= number : info.above < number) && number < info.below;
+  const bool unlimited = info.unlimited && std::isinf(number) && info.above <= number && number <= info.below;
+  if (!in_range && !unlimited)
     throw Error(fmt::format("parameter `{}` of joint `{}` is {:.6g} [{}]. Likely fix: a number{}", info.name, type.name,
                             number, info.unit, range_of(info)));
 }
@@ -101,7 +103,7 @@ void take(const JointType& type, const ParameterInfo& info, const NamedValue& va
 
 std::string range_of(const ParameterInfo& info) {
   if (std::isinf(info.above) && std::isinf(info.below)) return "";
-  if (std::isinf(info.below)) return fmt::format(" above {:.6g}", info.above);
+  if (std::isinf(info.below)) return fmt::format(" {} {:.6g}", info.from ? "from" : "above", info.above);
   if (std::isinf(info.above)) return fmt::format(" below {:.6g}", info.below);
   return fmt::format(" between {:.6g} and {:.6g}", info.above, info.below);
 }
@@ -125,7 +127,7 @@ std::vector<double> parameter_numbers(int type_index, const std::vector<NamedVal
       throw Error(fmt::format("joint `{}` needs its parameter `{}` (it has no default)", type.name, info.name));
     }
     for (int k = 0; k < info.size; ++k)
-      if (!std::isfinite(at[k]))
+      if (!std::isfinite(at[k]) && !(info.unlimited && std::isinf(at[k])))
         throw Error(
             fmt::format("the default of parameter `{}` of joint `{}` is not finite here", info.name, type.name));
     check_range(type, info, *at);

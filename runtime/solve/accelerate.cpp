@@ -25,6 +25,7 @@ template <class S>
 void follow_bounds(Batch<S>& batch, int begin, int end) {
   Guard<typename S::Scalar> guard[most_rows];
   for (int i = begin; i < end; ++i) {  // a coordinate has one row
+    batch.load[i] = 0;                 // the solver finds it
     batch.law->guard(batch, i, guard);
     batch.bias[i] -= guard->acceleration;
     if (batch.mode[i] == Mode::pushed) batch.lower[i] = batch.upper[i] = guard->upper;
@@ -45,7 +46,7 @@ void ask_for_gamma(WorldData<S>& world, Island<S>& island, typename S::Scalar ti
     }
     batch.ops->gamma(batch, segment.begin, segment.end, world.bodies, time, batch.bias.data());
     for (int i = begin; i < end; ++i) batch.bias[i] = -batch.bias[i];
-    if (batch.law && batch.law->of_spec) follow_bounds(batch, segment.begin, segment.end);
+    if (batch.law && batch.law->moving) follow_bounds(batch, segment.begin, segment.end);
   }
 }
 

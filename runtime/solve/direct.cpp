@@ -5,6 +5,7 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/solve/loads.hpp"
 #include "runtime/solve/longest_move.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solver.hpp"
@@ -57,6 +58,21 @@ void factor(WorldData<S>& world, Island<S>& island) {
   system.factor();
 }
 
+// The same with bounds that grow with loads.
+template <class S>
+void solve_loaded(WorldData<S>& world, Island<S>& island, System<S>& system) {
+  begin_loads(world, island);
+  const auto solve = [&] {
+    system.load_laws();
+    island.redundant_rows = system.solve_bounded();
+    system.store([](Batch<S>& batch, int i, auto lambda) { batch.lambda[i] = typename S::Scalar(lambda); });
+  };
+  if (settle_loads(island, solve, impulse_of_rows(island))) {
+    if (!island.acceleration_level) unload(island);
+  } else if (island.acceleration_level) island.jams = true;
+  else island.trouble = StepProblem::jams;
+}
+
 // K lambda = -(J v + bias), lambda within its bounds.
 template <class S>
 void solve_velocities(WorldData<S>& world, Island<S>& island, typename S::Velocity* v, typename S::Scalar) {
@@ -65,7 +81,9 @@ void solve_velocities(WorldData<S>& world, Island<S>& island, typename S::Veloci
   load_rates(island, system, v);
   system.load_tensions(v);
   if (!island.factored) system.assemble(world.bodies);
-  if (system.lawful()) {
+  if (!island.loads.empty()) {
+    solve_loaded(world, island, system);
+  } else if (system.lawful()) {
     system.load_laws();
     island.redundant_rows = system.solve_bounded();
   } else {
@@ -118,6 +136,18 @@ void refine(WorldData<S>& world, Island<S>& island, System<S>& system, typename 
   }
 }
 
+// The same, where rows at a bound follow their load.
+template <class S>
+void solve_known_loads(WorldData<S>& world, Island<S>& island, System<S>& system) {
+  begin_loads(world, island);
+  const auto solve = [&] {
+    system.give([](const Batch<S>& batch, int i) { return batch.law ? batch.lower[i] : typename S::Scalar(0); });
+    system.solve();
+    system.store([](Batch<S>& batch, int i, auto lambda) { batch.lambda[i] = typename S::Scalar(lambda); });
+  };
+  island.jams |= !settle_loads(island, solve, impulse_of_rows(island));
+}
+
 // K lambda = gamma - J dv/dt, with dv/dt without joints and known forces given.
 template <class S>
 void solve_accelerations(WorldData<S>& world, Island<S>& island) {
@@ -133,7 +163,8 @@ void solve_accelerations(WorldData<S>& world, Island<S>& island) {
   }
   if (!island.factored) island.redundant_rows = system.factor();
   island.factored = true;
-  system.solve();
+  if (island.loads.empty()) system.solve();
+  else solve_known_loads(world, island, system);
   exert_solution(world, island, system, rate);
   refine(world, island, system, rate);
 }

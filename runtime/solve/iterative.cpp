@@ -5,6 +5,7 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/solve/loads.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
@@ -75,11 +76,21 @@ void warm_start(WorldData<S>& world, Island<S>& island, typename S::Velocity* v,
   }
 }
 
+// Bounds follow the loads of the sweep before.
+template <class S>
+void follow_loads(Island<S>& island) {
+  if (island.loads.empty()) return;
+  for (LoadedRow<S>& row : island.loads) row.load = carried(island, row, impulse_of_rows(island));
+  bound_by_loads(island);
+}
+
 // Impulses that grow with the step would let the errors of sweeps grow with them.
 template <class S>
 void sweep_velocities(WorldData<S>& world, Island<S>& island, typename S::Velocity* v, typename S::Scalar share) {
   warm_start(world, island, v, std::min(typename S::Scalar(1), share));
+  begin_loads(world, island);
   for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
+    follow_loads(island);
     for (const auto& [batch, begin, end, whole] : island.segments) {
       if (batch->law) iterate_bounded(*batch, begin, end, world.bodies, v);
       else batch->ops->iterate(*batch, begin, end, world.bodies, v, batch->lambda.data());
@@ -90,7 +101,9 @@ void sweep_velocities(WorldData<S>& world, Island<S>& island, typename S::Veloci
 template <class S>
 void sweep_softly(WorldData<S>& world, Island<S>& island, SoftSweep<typename S::Scalar> soft, bool springs) {
   auto* const v = world.bodies.velocity.data();
+  begin_loads(world, island);
   for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
+    follow_loads(island);
     for (const auto& [batch, begin, end, whole] : island.segments) {
       if (!batch->law) batch->ops->soften(*batch, begin, end, world.bodies, v, batch->lambda.data(), soft);
       else if (springs || !batch->law->force) iterate_bounded(*batch, begin, end, world.bodies, v);

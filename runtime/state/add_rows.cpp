@@ -12,12 +12,8 @@
 namespace cdot {
 namespace {
 
-// Rows of effects on coordinates have the source of their kind, where work_of_bounded() tells motors from friction. All
-// others have that of their joint.
 template <class S>
-size_t source_of(WorldData<S>& world, const Law<S>* law, std::string_view type) {
-  if (law && !law->reported && !law->is_of_effect() && !law->of_spec)
-    return static_cast<size_t>(law->guard ? Source::limit : Source::spring);
+size_t source_named(WorldData<S>& world, std::string_view type) {
   const auto found = std::find(world.sources.begin(), world.sources.end(), type);
   if (found != world.sources.end()) return static_cast<size_t>(found - world.sources.begin());
   world.sources.push_back(type);
@@ -26,14 +22,15 @@ size_t source_of(WorldData<S>& world, const Law<S>* law, std::string_view type) 
 
 template <class S>
 int find_batch(WorldData<S>& world, const BlockOps<S>* ops, const Law<S>* law, const std::vector<RowKind>& kinds,
-               std::string_view type) {
+               std::string_view source, bool own) {
   for (size_t i = 0; i < world.batches.size(); ++i)
     if (world.batches[i]->ops == ops && world.batches[i]->law == law) return static_cast<int>(i);
   world.batches.push_back(std::make_unique<Batch<S>>());
   world.batches.back()->ops = ops;
   world.batches.back()->law = law;
   world.batches.back()->kinds = kinds;
-  world.batches.back()->source = source_of(world, law, type);
+  world.batches.back()->source = source_named(world, source);
+  world.batches.back()->own = own;
   return static_cast<int>(world.batches.size()) - 1;
 }
 
@@ -55,7 +52,7 @@ void add_rows(WorldData<S>& world, int joint, const BlockOps<S>* ops, const Law<
   ops = ops->with(world.settings.kernels);
   JointRecord& record = world.joints[joint];
   const std::string_view type = joint_types(S::dimension)[static_cast<size_t>(record.type)].name;
-  const int index = find_batch(world, ops, law, kinds, source.empty() ? type : source);
+  const int index = find_batch(world, ops, law, kinds, source.empty() ? type : source, record.places.empty());
   Batch<S>& batch = *world.batches[index];
   record.added.add(index), record.added.add(ops->rows), record.added.add(ops->bodies);
   record.added.bytes(constants.data(), constants.size_bytes());
@@ -75,6 +72,8 @@ void add_rows(WorldData<S>& world, int joint, const BlockOps<S>* ops, const Law<
     grow(batch.lower, ops->rows, -std::numeric_limits<T>::infinity());
     grow(batch.upper, ops->rows, std::numeric_limits<T>::infinity());
     grow(batch.mode, ops->rows, Mode::bounded);
+    grow(batch.load, 1);
+    if (law->distance) grow(batch.happened, 1);
     for (double constant : constants) batch.constants.push_back(T(constant));
   }
   if (ops->start_counting) {

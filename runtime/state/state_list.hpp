@@ -40,8 +40,8 @@ struct StateList {
   // breaks: slots may change places.
   template <class S, class Visitor>
   static void each_slot(Batch<S>& batch, int index, bool breaks, Visitor& visit) {
-    auto& [home, joint, body, parameters, counters, lambda, correction, mode, softness, lower, upper, constants] =
-        static_cast<BatchState<S>&>(batch);
+    auto& [home, joint, body, parameters, counters, lambda, correction, mode, softness, lower, upper, constants,
+           happened] = static_cast<BatchState<S>&>(batch);
     const bool counts = batch.ops && batch.ops->start_counting;  // whole turns, in parameters too
     visit.item("rows.home", index, breaks), visit(home);
     visit.item("rows.joint", index, breaks), visit(joint);
@@ -54,6 +54,7 @@ struct StateList {
     visit.item("rows.softness", index, true), visit(softness);
     visit.item("rows.bounds", index, true), visit(lower), visit(upper);
     visit.item("rows.constants", index, breaks), visit(constants);
+    if (batch.law && batch.law->distance) visit.item("rows.happened", index, true), visit(happened);
   }
 
   // The iterative solver needs no system, but the projection of the start builds one.

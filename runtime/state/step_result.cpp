@@ -10,6 +10,7 @@ const char* what_went_wrong(StepProblem problem) {
     case StepProblem::not_finite: return "a pose or velocity became infinite or NaN";
     case StepProblem::joints_apart: return "Newton did not converge: the joints drifted apart in this step";
     case StepProblem::moved_far: return "the joints nearly contradict each other";
+    case StepProblem::jams: return "it jams: friction grows with the load that it causes itself";
     case StepProblem::too_large:
       return "it has more than 200 bodies (in space 100) that move together, too many for radau5";
     case StepProblem::bad_step:
@@ -29,6 +30,7 @@ std::string likely_fix(StepProblem problem, OnFailure tried) {
     case StepProblem::moved_far:
       return "correct the anchors, lengths or angles of the joints of this loop, or remove one; a shorter step" +
              or_retry;
+    case StepProblem::jams: return "integrator euler, whose impulses stop what jams; a smaller coefficient of friction";
     case StepProblem::too_large: return "integrator implicit, or dop853 with local_error";
     case StepProblem::bad_step: return "a finite step above 0 s";
     case StepProblem::none: break;
@@ -41,6 +43,7 @@ const char* name_of(StepProblem problem) {
     case StepProblem::not_finite: return "not_finite";
     case StepProblem::joints_apart: return "joints_apart";
     case StepProblem::moved_far: return "moved_far";
+    case StepProblem::jams: return "jams";
     case StepProblem::too_large: return "too_large";
     case StepProblem::bad_step: return "bad_step";
     case StepProblem::none: break;

@@ -54,6 +54,19 @@ struct FlowWorkspace {
   CollocationWorkspace<T> collocation;
 };
 
+// A row whose bounds grow with the load that other rows of its joint carry (solve/loads.hpp).
+template <class S>
+struct LoadedRow {
+  using T = typename S::Scalar;
+  Batch<S>*batch, *carrier;
+  int home, carrier_home;  // Batch::slot_of[home]
+  int carrier_block = -1;  // in System::blocks; -1: without a system
+  T lower, upper;          // its bounds without the load
+  T by_lower, by_upper;    // what each unit of the load adds to them
+  T arms[3 * most_rows];   // of the force on the last body, by row of the carrier; unused for a single row
+  T load = 0, found = 0;   // as assumed, and as the solution has it
+};
+
 template <class S>
 struct IslandWorkspace {
   std::vector<Segment<S>> segments;
@@ -61,6 +74,12 @@ struct IslandWorkspace {
   // The same with rows of tension, for steps in which a Runge-Kutta method falls back to an implicit one. Built
   // only if such rows exist.
   System<S> rescue;
+  std::vector<LoadedRow<S>> loads;
+  std::vector<typename S::Scalar> load_changes;
+  Broyden<typename S::Scalar> load_search;
+  // Shares: of the impulses in Batch::correction that loads count, and of a load in the bounds of a kick.
+  typename S::Scalar corrections_in_loads = 0, loads_in_kick = 1;
+  bool jams = false;                        // no load was found that bounds the forces which it comes from
   const RowSolver<S>* solver = nullptr;     // that of the settings, except in a retry
   bool stiffened = false;                   // linearly implicit step: effective masses include stiffness
   StepProblem trouble = StepProblem::none;  // problem found by a stage of the step

@@ -18,7 +18,11 @@ void move_velocities(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   evaluate_rows(world, island, h);
   apply_forces(world, island, h);
   // Warm start: the same forces over another time.
-  island.solver->velocities(world, island, world.bodies.velocity.data(), last_step > 0 ? h / T(last_step) : T(0));
+  const T share = last_step > 0 ? h / T(last_step) : T(0);
+  // What turns the velocities is the last projection's part of the joints' forces.
+  island.corrections_in_loads = world.settings.drift == Drift::projection ? share : T(0);
+  island.solver->velocities(world, island, world.bodies.velocity.data(), share);
+  island.corrections_in_loads = 0;
 }
 
 // The linearly implicit step needs the last step's impulses. The first step takes those of a plain step.

@@ -8,6 +8,7 @@
 
 #include "runtime/balance/balance.hpp"
 #include "runtime/motion/motion.hpp"
+#include "runtime/solve/latch.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
@@ -110,6 +111,7 @@ void clear_laws(Island<S>& island) {
     if (!batch.law) continue;
     for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i)
       batch.softness[i] = batch.lower[i] = batch.upper[i] = 0;
+    std::fill(batch.load.begin() + segment.begin, batch.load.begin() + segment.end, typename S::Scalar(0));
   }
 }
 
@@ -131,6 +133,22 @@ bool has_strong_motor(Island<S>& island) {
   return any;
 }
 
+// True if a row stops or drives its bodies by an impulse: an end that is met, or a clutch of unlimited force that meets
+// a rate beyond its own. `missing` is what the row lacks to its rate.
+template <class T>
+bool strikes(const Guard<T>& guard, const Resolution<T>& resolution, T missing) {
+  const T bound = missing > T(0) ? guard.upper : guard.lower;
+  const bool may_act = guard.one_sided() ? guard.gap() <= resolution.C : guard.of_rate && !guard.bilateral();
+  return may_act && std::isinf(bound) && std::abs(missing) > resolution.rate;
+}
+// True if an impact at another row may call for an impulse of this one.
+template <class T>
+bool may_strike(const Guard<T>& guard, const Resolution<T>& resolution, bool loaded) {
+  if (loaded) return true;
+  if (guard.one_sided()) return guard.gap() <= resolution.C;
+  return guard.bilateral() || (guard.of_rate && (std::isinf(guard.lower) || std::isinf(guard.upper)));
+}
+
 // Inelastic impacts: rows that close at contact stop, J v >= 0 with impulses >= 0. They become `held`, because sweeps
 // leave a rate that is not exactly 0. Motors with a bounded force do not act during an impact.
 template <class S>
@@ -138,18 +156,17 @@ void stop_what_hits(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   bool hits = false;
   find_rates(world, island);
-  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard,
-                               const Resolution<typename S::Scalar>& resolution) {
-    const T rate = batch.rate[i] + batch.bias[i];
-    hits |= guard.one_sided() && guard.gap() <= resolution.C && (guard.lower == T(0) ? rate : -rate) < -resolution.rate;
-  });
+  each_guarded_row(
+      island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
+        hits |= strikes(guard, resolution, guard.rate - (batch.rate[i] + batch.bias[i]));
+      });
   if (!hits) return;
   clear_laws(island);
   each_guarded_row(
       island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
-        if (!guard.bilateral() && !(guard.one_sided() && guard.gap() <= resolution.C)) return;
-        batch.lower[i] = guard.lower;
-        batch.upper[i] = guard.upper;
+        if (!may_strike(guard, resolution, batch.law->by_load != nullptr)) return;
+        batch.lower[i] = std::isinf(guard.lower) ? guard.lower : T(0);
+        batch.upper[i] = std::isinf(guard.upper) ? guard.upper : T(0);
         batch.bias[i] -= guard.rate;
       });
   const double before = kinetic_energy(world, island);
@@ -158,12 +175,13 @@ void stop_what_hits(WorldData<S>& world, Island<S>& island) {
   for (const Segment<S>& segment : island.segments)
     for (int i = segment.begin * segment.batch->ops->rows; i < segment.end * segment.batch->ops->rows; ++i)
       segment.batch->correction[i] += segment.batch->lambda[i];
-  each_guarded_row(
-      island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
-        if (!guard.bilateral() && !(guard.one_sided() && guard.gap() <= resolution.C)) return;
-        batch.bias[i] += guard.rate;
-        if (batch.lambda[i] != T(0)) batch.mode[i] = Mode::held;
-      });
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard,
+                               const Resolution<typename S::Scalar>& resolution) {
+    if (!may_strike(guard, resolution, batch.law->by_load != nullptr)) return;
+    batch.bias[i] += guard.rate;
+    const bool slips = batch.law->by_load && !(batch.lower[i] < batch.lambda[i] && batch.lambda[i] < batch.upper[i]);
+    if (batch.lambda[i] != T(0) && !slips) batch.mode[i] = Mode::held;
+  });
 }
 
 // Sets the bounds of each row's force and a first mode. True if the forces must decide about some rows.
@@ -213,10 +231,10 @@ void decide_by_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar
   });
 }
 
-// The margin of one row; infinite if no event is possible.
+// The margin of one row from its own bounds; infinite if no event is possible.
 template <class S>
-typename S::Scalar margin_of(const Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard,
-                             const Resolution<typename S::Scalar>& resolution, typename S::Scalar rate) {
+typename S::Scalar margin_within(const Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard,
+                                 const Resolution<typename S::Scalar>& resolution, typename S::Scalar rate) {
   using T = typename S::Scalar;
   const T force = batch.lambda[i];
   switch (batch.mode[i]) {
@@ -230,6 +248,20 @@ typename S::Scalar margin_of(const Batch<S>& batch, int i, const Guard<typename 
     case Mode::bounded: break;
   }
   return infinite<T>;
+}
+
+// The same, or from an event of the row that has not happened.
+template <class S>
+typename S::Scalar margin_of(const Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard,
+                             const Resolution<typename S::Scalar>& resolution, typename S::Scalar rate) {
+  using T = typename S::Scalar;
+  T margin = margin_within(batch, i, guard, resolution, rate), from[2];
+  if (!batch.law->distance) return margin;
+  batch.law->distance(batch, i, rate, batch.lambda[i], from);
+  const int happened = static_cast<int>(batch.happened[i]);
+  for (const int which : {0, 1})
+    if (!(happened & (1 << which))) margin = std::min(margin, from[which] / at_event<T>);
+  return margin;
 }
 
 }  // namespace
@@ -250,8 +282,11 @@ void count_guarded_rows(Island<S>& island) {
 
 template <class S>
 void choose_modes(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
+  using T = typename S::Scalar;
   if (island.flow.guarded > 0) {
     std::fill(island.flow.resolution.begin(), island.flow.resolution.end(), Resolution<typename S::Scalar>{});
+    find_rates(world, island);
+    latch_events(island, T(1));
     free_accelerations(world, island);
     find_resolution(world, island, h);
     stop_what_hits(world, island);

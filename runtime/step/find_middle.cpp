@@ -13,6 +13,7 @@
 
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/direct.hpp"
+#include "runtime/solve/loads.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/step/dampers.hpp"
@@ -170,7 +171,17 @@ typename S::Scalar improve(WorldData<S>& world, Island<S>& island, typename S::S
   });
   system.load_tensions(world.bodies.increment.data());
   if (renew) system.assemble(world.bodies);
-  if (system.lawful()) {
+  if (!island.loads.empty()) {
+    begin_loads(world, island);
+    const auto solve = [&] {
+      bound_changes(island);
+      island.redundant_rows = system.solve_bounded();
+    };
+    const auto impulse = [&](const Batch<S>& batch, int i, int row) {
+      return batch.correction[i] + T(2) * T(system.lambda[row]);
+    };
+    if (!settle_loads(island, solve, impulse)) island.trouble = StepProblem::jams;
+  } else if (system.lawful()) {
     bound_changes(island);
     island.redundant_rows = system.solve_bounded();
   } else {

@@ -30,16 +30,36 @@ bool has_rows(const Island<S>& island, bool (*are)(const Batch<S>&)) {
                      [&](const Segment<S>& s) { return s.begin < s.end && are(*s.batch); });
 }
 
+// Limits that are met carry the load of friction. Their own impulses are dropped afterwards.
+template <class S>
+void offer_load(const Island<S>& island, Batch<S>& batch, int begin, int end) {
+  using T = typename S::Scalar;
+  if (!batch.law->guard) return;
+  Guard<T> guards[most_rows];
+  for (int slot = begin; slot < end; ++slot) {
+    batch.law->guard(batch, slot, guards);
+    for (int r = 0; r < batch.ops->rows; ++r) {
+      if (!guards[r].one_sided() || guards[r].gap() > foreign<T> * island.scale) continue;
+      batch.lower[slot * batch.ops->rows + r] = guards[r].lower;
+      batch.upper[slot * batch.ops->rows + r] = guards[r].upper;
+    }
+  }
+}
+
 // Bounds of the force at the start, and into Batch::impulse the rate that a motor or friction misses. Others under a
 // law do not act.
 template <class S>
-void offer_bounds(WorldData<S>& world, Batch<S>& batch, int begin, int end) {
+void offer_bounds(WorldData<S>& world, const Island<S>& island, Batch<S>& batch, int begin, int end) {
   using T = typename S::Scalar;
   each_row(batch, begin, end, [&](int i) { batch.softness[i] = batch.lower[i] = batch.upper[i] = T(0); });
-  if (!acts_by_force(batch)) return;
+  if (!acts_by_force(batch)) {
+    if (!island.loads.empty()) offer_load(island, batch, begin, end);
+    return;
+  }
   batch.ops->velocity(batch, begin, end, world.bodies.velocity.data(), batch.rate.data());
   for (int i = begin; i < end; ++i) {  // a coordinate has one row
     Guard<T> guard;
+    batch.load[i] = T(0);  // the solver adds it
     batch.law->guard(batch, i, &guard);
     batch.lower[i] = guard.lower;
     batch.upper[i] = guard.upper;
@@ -65,7 +85,7 @@ template <class S>
 void exert_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   for (const auto& [batch, begin, end, whole] : island.segments)
-    if (batch->law) offer_bounds(world, *batch, begin, end);
+    if (batch->law) offer_bounds(world, island, *batch, begin, end);
   const T time = T(world.time);
   if (has_rows(island, acts_by_force<S>)) reach_rates(world, island, h / 2);
   else accelerate(world, island, time);
@@ -159,7 +179,10 @@ void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   factorize_rows(world, island);
   bound_rows(world, island, h);
   island.factored = false;
+  // Loads are those of the whole step. The other half of what they bound acts at the start of the next one.
+  island.corrections_in_loads = 1, island.loads_in_kick = typename S::Scalar(0.5);
   island.solver->velocities(world, island, world.bodies.velocity.data(), typename S::Scalar(1));
+  island.corrections_in_loads = 0, island.loads_in_kick = 1;
   forget_dampers(world, island);
 }
 

@@ -42,7 +42,8 @@ void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 // not take back what was too much.
 template <class S>
 bool acts_at_start(const Batch<S>& batch, int i) {
-  return !batch.law || !batch.law->of_spec || (batch.lower[i] != 0 && batch.upper[i] != 0);
+  if (!batch.law || batch.law->error) return true;
+  return batch.law->by_load || (batch.lower[i] != 0 && batch.upper[i] != 0);
 }
 
 }  // namespace cdot

@@ -132,8 +132,13 @@ bool went_astray(const WorldData<S>& world, const Island<S>& island, typename S:
 template <class S, class F>
 double try_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                 typename S::Scalar h, F error_now) {
-  island.flow.astray = false;
-  if (!take_stages(world, island, method, time, h)) return std::numeric_limits<double>::quiet_NaN();
+  island.flow.astray = island.jams = false;
+  const bool taken = take_stages(world, island, method, time, h);
+  if (island.jams) {
+    island.flow.astray = true;
+    return std::numeric_limits<double>::infinity();
+  }
+  if (!taken) return std::numeric_limits<double>::quiet_NaN();
   double error = method.error_at_end ? 0 : error_now();
   if (method.implicit && error > 1) {
     refine_error(world, island, method, time, h);
@@ -248,6 +253,7 @@ void begin(WorldData<S>& world, Island<S>& island, typename S::Scalar time, type
   project_start(world, island);
   island.acceleration_level = true;
   evaluate_anew(world, island, time);
+  island.jams = false;
   choose_modes(world, island, time, h);
   island.flow.known = true;
 }
@@ -271,7 +277,8 @@ void fall_back(WorldData<S>& world, Island<S>& island, typename S::Scalar time, 
   fill_lambda(island, T(0));
   evaluate_anew(world, island, time);
   island.factored = false;
-  accelerate(world, island, time);
+  if (!island.jams) accelerate(world, island, time);
+  island.jams = false;
   scale_forces(island, h);
   drop_modes(island);
   island.acceleration_level = island.evaluated = island.factored = false;
@@ -312,6 +319,10 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
     }
     const bool goes_on = flow.known;
     begin(world, island, time, h);
+    if (island.jams) {
+      fall_back(world, island, time, left, true);
+      return h;
+    }
     keep_start(world, island, method, time, goes_on);
     flow.low.assign(flow.margins.begin(), flow.margins.end());
     flow.end_kept = flow.projects_stages = false;

@@ -10,6 +10,8 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/balance/balance.hpp"
+#include "runtime/solve/latch.hpp"
+#include "runtime/solve/loads.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/solve/sweep_order.hpp"
 #include "runtime/solve/tension.hpp"
@@ -194,10 +196,12 @@ void prepare_topology(WorldData<S>& world) {
     island.solver = &solver_of<S>(world.settings.solver);
     island.stiffened = row_of(world.settings.integrator).stiffens;
     if (world.needs_systems()) build_systems(world, island, at);
+    list_loads(world, island);
     stepper_of<S>(world.settings.integrator).prepare(island);
     world.awake.push_back(i);
   }
   watch_breaking_loads(world);
+  watch_events(world);
   settle_state(world);
   world.prepared = true;
 }

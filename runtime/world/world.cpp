@@ -216,7 +216,8 @@ int BasicWorld<S>::add_joint(const JointDefinition& definition) {
   const Law<S>* const own = joint_entries<S>()[record.type].law;
   const Law<S>* law = own ? own : definition.soft ? &soft_law<S>() : unilateral ? &unilateral_law<S>() : nullptr;
   const auto* ops = joint_entries<S>()[record.type].rows.choose(data_->bodies, record.bodies);
-  add_rows(*data_, joint, ops, law, kinds, {spring, definition.soft ? static_cast<size_t>(spring_constants_count) : 0});
+  add_rows(*data_, joint, ops, law, kinds, {spring, definition.soft ? static_cast<size_t>(spring_constants_count) : 0},
+           definition.soft ? "spring" : "");
   add_bounded_rows(*data_, joint);
   return joint;
 }

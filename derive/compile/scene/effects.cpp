@@ -71,11 +71,15 @@ class EffectReader {
       mechanism_.effects.push_back(effect);
     }
     effect.law = Effect::bound;
-    for (std::size_t k = 1; k < places.size() && is_bounded(places[k]); ++k, ++effect.row) add_bounded(source, effect);
+    for (std::size_t k = 1; k < places.size() && is_bounded(places[k]); ++k, ++effect.row)
+      add_bounded(source, effect, places[k]);
   }
 
-  void add_bounded(const SceneJoint& source, const Effect& effect) {
-    if (mechanism_.method == Method::euler) mechanism_.bounded.push_back(effect);
+  void add_bounded(const SceneJoint& source, const Effect& effect, const Place& place) {
+    const auto& law = *batch_of(place).law;
+    if (law.by_load) refuse_(&source, fmt::format("{}: bounds that grow with a load", effect.name));
+    else if (law.distance) refuse_(&source, fmt::format("{}: events", effect.name));
+    else if (mechanism_.method == Method::euler) mechanism_.bounded.push_back(effect);
     else
       refuse_(&source, fmt::format("{} by {}, which has to find when it begins to slip, to hold or to touch",
                                    effect.name, mechanism_.method_name));
@@ -106,7 +110,7 @@ class EffectReader {
     effect.numbers = constants_of(place);
     const std::string what = name_law(kind, effect);
     effect.name += "." + what;
-    if (is_bounded(place)) return add_bounded(source, effect);
+    if (is_bounded(place)) return add_bounded(source, effect, place);
     if (has_limits(place) && mechanism_.method == Method::euler) {
       effect.law = Effect::limited;
       mechanism_.bounded.push_back(std::move(effect));
@@ -120,8 +124,12 @@ class EffectReader {
     effect.law = type.row_names.empty() ? Effect::bound : Effect::of_spec;
     return effect.law_type = kind.type;
   }
+  // The numbers of coordinate::spring as those of soft joints: by frequency, which, damping, rest.
   static std::string name_law(const CoordinateSpring& kind, Effect& effect) {
     effect.law = Effect::spring;
+    const Softness& soft = kind.softness;
+    effect.numbers = {double(soft.by_frequency), soft.by_frequency ? soft.frequency : soft.stiffness,
+                      soft.by_frequency ? soft.damping_ratio : soft.damping, effect.numbers.back()};
     return is_damper(kind) ? "damper" : "spring";
   }
   static std::string name_law(const Load&, Effect& effect) {
@@ -134,6 +142,7 @@ class EffectReader {
   }
   static std::string name_law(const DryFriction&, Effect& effect) {
     effect.law = Effect::motor;
+    effect.numbers.insert(effect.numbers.begin(), 0);  // the speed
     return "friction";
   }
   static std::string name_law(const Limit& kind, Effect& effect) {

@@ -30,6 +30,7 @@ struct JointType {
   // Of an effect that acts on the coordinate of any joint too: the unit of that, and the use of each parameter there.
   std::string_view coordinate_unit{};
   std::vector<CoordinateUse> coordinate_uses{};
+  bool acts_on(std::string_view unit) const { return coordinate_unit == "any" || coordinate_unit == unit; }
 };
 
 enum class Dimension { planar, spatial };

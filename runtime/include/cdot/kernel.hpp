@@ -44,7 +44,8 @@
 //   Coordinates                                                    std::tuple of the coordinates
 //   Immovable                                                      a coordinate: std::tuple of the variants
 //   Bounded                                                        an effect: std::tuple of its bounded rows, if any
-//   coordinate_unit, coordinate_uses                               an effect whose law is about one coordinate alone
+//   coordinate_unit, coordinate_uses                               an effect whose law is about one coordinate alone;
+//                                                                  "any" unit: cdot::coordinate, without row blocks
 //   immovable_body                                                 a variant only: the index of that body
 // A variant inherits every unchanged member from its block. T is float, double, cdot::Pack, or any type with + - * /,
 // comparison, select and the functions used.
@@ -94,6 +95,8 @@ struct ParameterInfo {
   int size;
   bool has_default;  // default_value(index, ...) computes it from the initial pose and the parameters before it
   double above = -unbounded, below = unbounded;  // a scalar lies between these
+  bool from = false;                             // it may be `above` itself
+  bool unlimited = false;                        // it may be infinite
 };
 
 inline float abs(float x) { return std::fabs(x); }

@@ -11,6 +11,7 @@ enum class StepProblem : char {
   not_finite,    // a pose or a velocity became infinite or NaN
   joints_apart,  // Newton did not converge, or left a larger C than the motion had
   moved_far,     // the projection moves a body by more than the error of the joints explains
+  jams,          // friction grows with the load that it causes, and no step finds a balance
   too_large,     // radau5 takes islands of at most 600 velocity components: 200 bodies in the plane, 100 in space
 };
 

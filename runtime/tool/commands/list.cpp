@@ -30,7 +30,7 @@ std::vector<std::string> effects_on(const CoordinateInfo& coordinate) {
   std::vector<std::string> effects;
   for (const EffectKind* kind : effect_kinds) effects.push_back(kind->key);
   for (const JointType& type : coordinate_effects())
-    if (type.coordinate_unit == coordinate.unit && std::ranges::find(effects, type.name) == effects.end())
+    if (type.acts_on(coordinate.unit) && std::ranges::find(effects, type.name) == effects.end())
       effects.push_back(std::string(type.name));
   return effects;
 }

@@ -92,7 +92,7 @@ void read_specs(Entry& entry, const CoordinateInfo& coordinate, CoordinateEffect
   for (const JointType& type : coordinate_effects()) {
     const std::string key(type.name);
     if (is_key_of_kind(key) || !entry.has(key)) continue;
-    if (type.coordinate_unit == coordinate.unit) read_spec(entry, type, effects);
+    if (type.acts_on(coordinate.unit)) read_spec(entry, type, effects);
     else
       entry.error(entry.where(key),
                   fmt::format("`{}` acts on coordinates in {}; `{}` is in {}", key, type.coordinate_unit,

@@ -31,7 +31,6 @@ const Numbers of_turns[] = {
 
 // Of what points of both bodies have between them, at 1 m from each other.
 const Numbers of_ways[] = {
-    {"spring", {{"k", {5}}, {"d", {0.3}}, {"rest", {0.8}}}},
     {"duffing_spring", {{"k", {5}}, {"k3", {2}}, {"rest", {0.8}}}},
     {"bungee", {{"k", {5}}, {"rest", {0.8}}}},
     {"soft_stop", {{"least", {1.2}}, {"k", {5}}}},

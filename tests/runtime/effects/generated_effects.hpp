@@ -30,6 +30,10 @@ inline int wheel(World<double>& world, double inertia, double angle = 0, double 
   return body;
 }
 
+inline void advance(World<double>& world, double duration, double h) {
+  for (long k = 0; k < std::lround(duration / h); ++k) ASSERT_TRUE(world.step(h));
+}
+
 struct Expected {
   double floor = 1e-11;  // below it the error is round-off
   int by_kicks = 2;      // the order of RATTLE and of the midpoint rule

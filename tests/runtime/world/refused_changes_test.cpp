@@ -38,7 +38,7 @@ TEST(Changes, ThatMakeNoSenseAreRefusedAndChangeNothing) {
   refused([&] { set_motor(world, 1, 2, {}); }, "joint number 1 has no effect number 2");
   refused([&] { set_motor(world, 1, 0, {}); }, "joint number 1 has no effect number 0");
   refused([&] { set_motor(world, 0, lock, {}); }, "effect number 1 of joint number 0 is not a motor");
-  refused([&] { set_limit(world, 0, lock, {.lower = 0, .upper = 1}); }, "is not a limit with two ends");
+  refused([&] { set_limit(world, 1, motor, {.lower = 0, .upper = 1}); }, "is not a limit");
   refused([&] { set_motor(world, 1, motor, {.speed = NAN}); }, "a motor's speed must be finite");
   refused([&] { set_limit(world, 0, lock, {.lower = 2, .upper = 1}); }, "must not lie above");
 }

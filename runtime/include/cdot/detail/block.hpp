@@ -84,6 +84,9 @@ enum class Mode : char {
   pulled,   // the same at the lower bound
 };
 
+// The events of a row so far: it acts after `began`, if its law waits for that, and until `ended`.
+enum class Event : char { none = 0, began = 1, ended = 2, both = 3 };
+
 // The conditions under which a row under a law acts. A row with one bound at 0 is one-sided: it acts where C has
 // reached `end`, with a force away from the end.
 template <class T>
@@ -132,7 +135,16 @@ struct Law {
   bool in_time = false;  // the force depends on the time: its island never sleeps
   // Of an effect whose force has limits: stiffness and damping within these. Null: no limits.
   void (*within_limits)(const Batch<S>&, int slot, SpringNumbers<T>*) = nullptr;
-  bool of_spec = false;  // of a bounded row: its bounds may change with C and with the time
+  bool moving = false;  // of a bounded row: its bounds may change with C or with the time
+  // Of a row whose bounds grow with a load: what each newton of it adds to them. Null: they do not.
+  void (*by_load)(const Batch<S>&, int slot, T* lower, T* upper) = nullptr;
+  // The rows of the same joint that carry that load; null: the joint's own, whose resultant force it is.
+  const Law<S>* load_of = nullptr;
+  // Of a row with events, given the rate of C and the force: how far the row is from its begin and its end, negative
+  // beyond. A condition that the law lacks is infinitely far. Null: no events.
+  void (*distance)(const Batch<S>&, int slot, T rate, T force, T (&from)[2]) = nullptr;
+  // True if the energy of one slot changes with K. Null: never.
+  bool (*by_mass)(const Batch<S>&, int slot) = nullptr;
 
   bool is_of_effect() const { return unstored != nullptr; }
 };
@@ -143,6 +155,7 @@ struct BatchModel {
   const Law<S>* law = nullptr;  // null: exact rows, J v = -bias
   std::vector<RowKind> kinds;   // [rows]
   size_t source = 0;            // of the work of these rows, in Model::sources
+  bool own = false;             // rows of joints, not of what acts on their coordinates
 };
 
 // Arrays by slot. Slots change places when a joint breaks.
@@ -160,7 +173,8 @@ struct BatchState {
   // event.
   StateArray<Mode> mode;
   StateArray<T> softness, lower, upper;
-  StateArray<T> constants;  // [slot][law->constants]
+  StateArray<T> constants;     // [slot][law->constants]
+  StateArray<Event> happened;  // [slot], of laws with events
 };
 
 template <class S>
@@ -173,6 +187,7 @@ struct BatchWorkspace {
   std::vector<T> rate;       // J v of the last velocities
   std::vector<T> error;      // the part of C that a projection removes
   std::vector<T> impulse;    // of one round of a projection, or a known force
+  std::vector<T> load;       // [slot] force that bounds grow with (runtime/solve/loads.hpp), at acceleration level
   T time = 0;                // of C
 };
 

@@ -3,10 +3,17 @@
 //   Row::bounds (C, p, t, B)   the ends, or the bounds of the force and the rate (cdot/kernel.hpp)
 //   Row::of_rate               B bounds a force
 //   Row::in_time               B depends on the time
+//   Row::of_value              B depends on C
+//   Row::load_of               the bounds grow with the force of that one of Effect::Bounded, or, if it is -1, with the
+//                              resultant force of the joint's own rows; missing: they do not
+//   Row::by_load (C, p, t, B)  what each newton of the load adds to the bounds
+//   Row::after, Row::until (C, rate, p, t, load, D)   how far the row is from its begin and its end, as a share of what
+//                              is compared; `load` is its own |force|; missing: it acts from the start, or for ever
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <cdot/detail/effect_law.hpp>
 
@@ -37,9 +44,40 @@ struct BoundedLaw {
     return B;
   }
 
-  // J v = rate, its impulse within h times the bounds.
+  static constexpr bool waits = requires { &Row::template after<T>; };
+  static constexpr bool is_ended = requires { &Row::template until<T>; };
+  static constexpr bool has_events = waits || is_ended;
+  static bool acts(const Batch<S>& batch, int slot) {
+    if constexpr (!has_events) return true;
+    else return batch.happened[slot] == (waits ? Event::began : Event::none);
+  }
+  static void distance(const Batch<S>& batch, int slot, T rate, T force, T (&from)[2]) {
+    from[0] = from[1] = T(unbounded);
+    const T rates[1] = {rate};
+    [[maybe_unused]] const auto find = [&](auto condition, T& D) {
+      condition(reinterpret_cast<const T(&)[1]>(batch.C[slot]), rates, parameters_of<S, Effect, where>(batch, slot),
+                batch.time, std::abs(force), D);
+    };
+    if constexpr (waits) find([](auto&&... numbers) { Row::after(numbers...); }, from[0]);
+    if constexpr (is_ended) find([](auto&&... numbers) { Row::until(numbers...); }, from[1]);
+  }
+
+  static constexpr bool has_load = requires { Row::load_of; };
+  static void by_load(const Batch<S>& batch, int slot, T* lower, T* upper) {
+    RowBounds<T> B;
+    if constexpr (has_load)
+      Row::by_load(reinterpret_cast<const T(&)[1]>(batch.C[slot]), parameters_of<S, Effect, where>(batch, slot),
+                   batch.time, B);
+    *lower = B.lower, *upper = B.upper;
+  }
+
+  // J v = rate, its impulse within h times the bounds. The solver adds those of the load.
   static void fill_rate(Batch<S>& batch, int begin, int end, T h, const Settings&) {
     for (int i = begin; i < end; ++i) {
+      if (!acts(batch, i)) {
+        batch.lower[i] = batch.upper[i] = T(0);
+        continue;
+      }
       const RowBounds<T> B = bounds(batch, i);
       batch.bias[i] -= B.rate;
       batch.lower[i] = h * B.lower;
@@ -48,13 +86,26 @@ struct BoundedLaw {
   }
 
   static void guard_rate(const Batch<S>& batch, int slot, Guard<T>* guard) {
-    const RowBounds<T> B = bounds(batch, slot);
+    if (!acts(batch, slot)) {
+      *guard = {.off_by = T(0), .rate = T(0), .lower = T(0), .upper = T(0), .acceleration = T(0), .of_rate = true};
+      return;
+    }
+    RowBounds<T> B = bounds(batch, slot);
+    if constexpr (has_load) {
+      T lower, upper;
+      by_load(batch, slot, &lower, &upper);
+      B.lower += lower * batch.load[slot], B.upper += upper * batch.load[slot];
+    }
     *guard = {T(0), B.rate, B.lower, B.upper, B.acceleration, true};
   }
 
   // One row serves the nearer end. Equal ends hold the coordinate.
   static void fill_ends(Batch<S>& batch, int begin, int end, T h, const Settings& settings) {
     for (int i = begin; i < end; ++i) {
+      if (!acts(batch, i)) {
+        batch.lower[i] = batch.upper[i] = T(0);
+        continue;
+      }
       const RowBounds<T> B = bounds(batch, i);
       const bool held = B.lower == B.upper, low = nearer_to_lower(batch.C[i], B);
       batch.lower[i] = low && !held ? T(0) : T(-unbounded);
@@ -70,18 +121,24 @@ struct BoundedLaw {
   static void error_ends(const Batch<S>& batch, int slot, T* error) {
     const RowBounds<T> B = bounds(batch, slot);
     const T C = batch.C[slot];
-    if (B.lower == B.upper) *error = C - B.lower;
+    if (!acts(batch, slot)) *error = T(0);
+    else if (B.lower == B.upper) *error = C - B.lower;
     else *error = nearer_to_lower(C, B) ? std::fmin(C - B.lower, T(0)) : std::fmax(C - B.upper, T(0));
   }
 
   static void guard_ends(const Batch<S>& batch, int slot, Guard<T>* guard) {
     const RowBounds<T> B = bounds(batch, slot);
     const T C = batch.C[slot];
-    if (B.lower == B.upper) *guard = {C - B.lower, T(0), T(-unbounded), T(unbounded)};
+    if (!acts(batch, slot)) *guard = {T(0), T(0), T(0), T(0)};
+    else if (B.lower == B.upper) *guard = {C - B.lower, T(0), T(-unbounded), T(unbounded)};
     else if (nearer_to_lower(C, B)) *guard = {C - B.lower, T(0), T(0), T(unbounded)};
     else *guard = {C - B.upper, T(0), T(-unbounded), T(0)};
   }
 };
+
+// The law of the row that carries the load of Row. Null: the joint's own rows, or none.
+template <class S, class Effect, class Row, ParametersAt where>
+constexpr const Law<S>* law_of_load();
 
 template <class S, class Effect, class Row, ParametersAt where = ParametersAt::joint>
 inline constexpr Law<S> bounded_law{
@@ -94,6 +151,16 @@ inline constexpr Law<S> bounded_law{
     .guard =
         Row::of_rate ? BoundedLaw<S, Effect, Row, where>::guard_rate : BoundedLaw<S, Effect, Row, where>::guard_ends,
     .in_time = Row::in_time,
-    .of_spec = true};
+    .moving = Row::in_time || Row::of_value || BoundedLaw<S, Effect, Row, where>::has_load,
+    .by_load = BoundedLaw<S, Effect, Row, where>::has_load ? BoundedLaw<S, Effect, Row, where>::by_load : nullptr,
+    .load_of = law_of_load<S, Effect, Row, where>(),
+    .distance = BoundedLaw<S, Effect, Row, where>::has_events ? BoundedLaw<S, Effect, Row, where>::distance : nullptr};
+
+template <class S, class Effect, class Row, ParametersAt where>
+constexpr const Law<S>* law_of_load() {
+  if constexpr (requires { requires Row::load_of >= 0; })
+    return &bounded_law<S, Effect, std::tuple_element_t<Row::load_of, typename Effect::Bounded>, where>;
+  else return nullptr;
+}
 
 }  // namespace cdot

@@ -8,6 +8,12 @@
 //   E::limits   (C, p, t, lower, upper)   of the force, on some rows; missing: none           [rows]
 //   E::acts     false for rows that only tell where a direction points                         [rows]
 //   E::law_in_time   the force depends on the time
+//
+// Of an effect on the coordinate of any joint:
+//
+//   E::reads_mass    the functions take the effective mass 1/K too, after the other numbers
+//   E::linear        k and d read neither C nor its rate nor the time, and are not negative
+//   E::slopes_vanish   k = d = 0
 #pragma once
 
 #include <algorithm>
@@ -42,11 +48,22 @@ struct EffectLaw {
   static const auto& parameters(const Batch<S>& batch, int slot) {
     return parameters_of<S, Effect, where>(batch, slot);
   }
+  // f(numbers..., mass) or f(numbers...)
+  template <class F, class... Numbers>
+  static void with_mass(const Batch<S>& batch, int slot, F f, const Numbers&... numbers) {
+    if constexpr (requires { requires Effect::reads_mass; }) f(numbers..., inverse(batch.factor[slot]));
+    else f(numbers...);
+  }
   static Row C(const Batch<S>& batch, int slot) { return reinterpret_cast<Row>(batch.C[slot * rows]); }
 
   static void force_without_limits(const Batch<S>& batch, int slot, const T* rate, T* force) {
-    Effect::force(C(batch, slot), reinterpret_cast<Row>(*rate), parameters(batch, slot), batch.time,
-                  reinterpret_cast<T(&)[rows]>(*force));
+    const auto f = [force](const auto&... numbers) { Effect::force(numbers..., reinterpret_cast<T(&)[rows]>(*force)); };
+    with_mass(batch, slot, f, C(batch, slot), reinterpret_cast<Row>(*rate), parameters(batch, slot), batch.time);
+  }
+
+  static void slopes(const Batch<S>& batch, int slot, const T (&rate)[rows], T (&k)[rows][rows], T (&d)[rows][rows]) {
+    const auto f = [&](const auto&... numbers) { Effect::slopes(numbers..., k, d); };
+    with_mass(batch, slot, f, C(batch, slot), rate, parameters(batch, slot), batch.time);
   }
 
   static constexpr bool has_limits = requires { &Effect::template limits<T>; };
@@ -70,17 +87,21 @@ struct EffectLaw {
   }
 
   static void unstored(const Batch<S>& batch, int slot, const T* rate, T* force) {
-    if constexpr (requires { &Effect::template unstored<T>; })
-      Effect::unstored(C(batch, slot), reinterpret_cast<Row>(*rate), parameters(batch, slot), batch.time,
-                       reinterpret_cast<T(&)[rows]>(*force));
-    else if constexpr (has_energy) std::fill_n(force, rows, T(0));
+    if constexpr (requires { &Effect::template unstored<T>; }) {
+      const auto f = [force](const auto&... numbers) {
+        Effect::unstored(numbers..., reinterpret_cast<T(&)[rows]>(*force));
+      };
+      with_mass(batch, slot, f, C(batch, slot), reinterpret_cast<Row>(*rate), parameters(batch, slot), batch.time);
+    } else if constexpr (has_energy) std::fill_n(force, rows, T(0));
     else EffectLaw::force(batch, slot, rate, force);
   }
 
   static constexpr bool has_energy = requires { &Effect::template energy<T>; };
   static double energy(const Batch<S>& batch, int slot) {
     T E = 0;
-    if constexpr (has_energy) Effect::energy(C(batch, slot), parameters(batch, slot), E);
+    if constexpr (has_energy)
+      with_mass(
+          batch, slot, [&](const auto&... n) { Effect::energy(n..., E); }, C(batch, slot), parameters(batch, slot));
     return double(E);
   }
 
@@ -93,7 +114,7 @@ struct EffectLaw {
   // is at least as stiff as the whole one. Never negative: a force that drives a body away is taken as it is.
   static void bounds(const Batch<S>& batch, int slot, const T (&rate)[rows], SpringNumbers<T> (&bound)[rows]) {
     T k[rows][rows], d[rows][rows];
-    Effect::slopes(C(batch, slot), rate, parameters(batch, slot), batch.time, k, d);
+    slopes(batch, slot, rate, k, d);
     for (int r = 0; r < rows; ++r) {
       bound[r] = {k[r][r], d[r][r]};
       for (int c = 0; c < rows; ++c)

@@ -1,0 +1,58 @@
+// Effects of specs that act on the coordinate of any joint: their laws and functions, in the order of
+// coordinate_effects(). A program's own come after those of the catalogue (cdot/detail/add_joints.hpp).
+#pragma once
+
+#include <tuple>
+#include <vector>
+
+#include <cdot/detail/bounded_law.hpp>
+#include <cdot/detail/describe_joint.hpp>
+#include <cdot/detail/linear_law.hpp>
+
+namespace cdot {
+
+// The functions of an effect in doubles, without poses.
+struct FunctionsOnCoordinate {
+  void (*default_value)(int index, double* parameters, double time);
+  void (*bounds)(double C, const double* parameters, double time, RowBounds<double>&);  // null: no bounds
+};
+
+std::vector<JointType>& registered_coordinate_effects();
+std::vector<FunctionsOnCoordinate>& functions_on_coordinates();
+template <class S>
+std::vector<const Law<S>*>& laws_on_coordinates();
+
+template <class Effect>
+using BoundedOnCoordinate = std::tuple_element_t<0, typename Effect::Bounded>;
+
+template <class S, class Effect>
+constexpr const Law<S>* law_on_coordinate() {
+  if constexpr (requires { typename Effect::Bounded; })
+    return &bounded_law<S, Effect, BoundedOnCoordinate<Effect>, ParametersAt::row>;
+  else if constexpr (requires { requires Effect::linear; }) return &linear_law<S, Effect>;
+  else return &effect_law<S, Effect, ParametersAt::row>;
+}
+
+// Pose is that of the effect's space in doubles; of effects without bodies any.
+template <class Effect, class Pose>
+FunctionsOnCoordinate functions_on_coordinate() {
+  using Numbers = typename Effect::template Parameters<double>;
+  FunctionsOnCoordinate functions{[](int index, double* parameters, double time) {
+                                    auto& numbers = *reinterpret_cast<Numbers*>(parameters);
+                                    if constexpr (Effect::bodies == 0) {
+                                      Effect::default_value(index, numbers, time);
+                                    } else {
+                                      const Pose nowhere[Effect::bodies] = {};
+                                      Effect::default_value(index, nowhere, numbers, time);
+                                    }
+                                  },
+                                  nullptr};
+  if constexpr (requires { typename Effect::Bounded; })
+    functions.bounds = [](double C, const double* parameters, double time, RowBounds<double>& B) {
+      const double value[1] = {C};
+      BoundedOnCoordinate<Effect>::bounds(value, *reinterpret_cast<const Numbers*>(parameters), time, B);
+    };
+  return functions;
+}
+
+}  // namespace cdot

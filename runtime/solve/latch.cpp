@@ -1,0 +1,80 @@
+#include "runtime/solve/latch.hpp"
+
+#include <algorithm>
+
+#include <cdot/spaces.hpp>
+
+namespace cdot {
+namespace {
+
+template <class S>
+bool has_events(const Segment<S>& segment) {
+  return segment.batch->law && segment.batch->law->distance && segment.begin < segment.end;
+}
+
+// A hook of Model::after_substep.
+template <class S>
+void latch_after_substep(WorldData<S>& world, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  for (const int index : world.awake) {
+    Island<S>& island = world.islands[index];
+    bool any = false;
+    for (const Segment<S>& segment : island.segments) {
+      if (!has_events(segment)) continue;
+      Batch<S>& batch = *segment.batch;
+      any = true;
+      batch.ops->position(batch, segment.begin, segment.end, world.bodies, T(world.time) + h);
+      batch.ops->velocity(batch, segment.begin, segment.end, world.bodies.velocity.data(), batch.rate.data());
+    }
+    if (!any || !latch_events(island, h)) continue;
+    island.evaluated = island.factored = false;
+    island.rested = 0.0;
+    island.flow.forget();
+  }
+}
+
+}  // namespace
+
+template <class S>
+bool latch_events(Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  bool any = false;
+  for (const Segment<S>& segment : island.segments) {
+    if (!has_events(segment)) continue;
+    Batch<S>& batch = *segment.batch;
+    for (int i = segment.begin; i < segment.end; ++i) {  // a coordinate has one row
+      T from[2];
+      batch.law->distance(batch, i, batch.rate[i], (batch.lambda[i] + batch.correction[i]) / h, from);
+      const int before = static_cast<int>(batch.happened[i]);
+      const int now = before | (from[0] <= at_event<T> ? 1 : 0) | (from[1] <= at_event<T> ? 2 : 0);
+      batch.happened[i] = static_cast<Event>(now);  // where a time is unlimited, `from` is NaN: no event
+      any |= now != before;
+    }
+  }
+  return any;
+}
+
+template <class S>
+void watch_events(WorldData<S>& world) {
+  const auto has_some = [](const auto& batch) { return batch->law && batch->law->distance; };
+  auto& hooks = world.after_substep;
+  if (std::ranges::any_of(world.batches, has_some) && std::ranges::find(hooks, &latch_after_substep<S>) == hooks.end())
+    hooks.push_back(latch_after_substep<S>);
+  for (Island<S>& island : world.islands) {
+    for (const Segment<S>& segment : island.segments) {
+      if (!has_events(segment)) continue;
+      Batch<S>& batch = *segment.batch;
+      batch.ops->evaluate(batch, segment.begin, segment.end, world.bodies, typename S::Scalar(world.time));
+      batch.ops->velocity(batch, segment.begin, segment.end, world.bodies.velocity.data(), batch.rate.data());
+    }
+    latch_events(island, typename S::Scalar(1));
+  }
+}
+
+#define CDOT_INSTANTIATE(S)                          \
+  template bool latch_events(Island<S>&, S::Scalar); \
+  template void watch_events(WorldData<S>&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

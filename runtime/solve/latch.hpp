@@ -1,0 +1,21 @@
+// Events of rows: a row that waits for its `after`, or acts until its `until`. Batch::happened keeps what happened.
+#pragma once
+
+#include "runtime/state/world_data.hpp"
+
+namespace cdot {
+
+// Relative distance from a condition that counts as none.
+template <class T>
+inline constexpr T at_event = T(by_precision<T>(1e-5, 1e-10));
+
+// Notes the events of the island's rows at the present C, for impulses over h, or forces if h is 1. Batch::rate must
+// have J v. True if there was one.
+template <class S>
+bool latch_events(Island<S>& island, typename S::Scalar h);
+
+// Lets the World look for events after every substep, if any row has some.
+template <class S>
+void watch_events(WorldData<S>& world);
+
+}  // namespace cdot

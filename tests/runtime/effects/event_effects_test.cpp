@@ -1,0 +1,129 @@
+// Events of effects: rows that act after a condition, and until another.
+#include <cdot/snapshot.hpp>
+
+#include "tests/runtime/effects/generated_effects.hpp"
+
+namespace cdot::test {
+namespace {
+
+using effects::advance, effects::with;
+
+// The methods of higher order meet an event in time, the others within a step.
+double allowed(const IntegratorRow& row, double by_steps, double located = 1e-8) {
+  return row.order > 2 ? located : by_steps;
+}
+
+TEST(EventEffects, AMotorIsSwitchedOnAndOff) {
+  for (const IntegratorRow& row : integrator_rows) {
+    World<double> world(with(row.integrator));
+    const int wheel = world.add_body({.mass = 1, .inertia = 0.5});
+    const int axle = revolute(world, world.ground(), wheel, 0, 0, 0, 0);
+    add_effect(world, axle, "angle",
+               SpecEffect{"timed_motor", {{"speed", {2}}, {"max", {4}}, {"start", {0.203}}, {"stop", {0.407}}}});
+    advance(world, 0.2, 0.01);
+    EXPECT_EQ(world.velocity(wheel).w, 0) << row.name;
+    advance(world, 0.3, 0.01);
+    // By 8 rad/s^2 from `start` on until `stop`, then free.
+    EXPECT_NEAR(world.velocity(wheel).w, 8 * 0.204, allowed(row, 0.1)) << row.name;
+    const double w = world.velocity(wheel).w;
+    advance(world, 0.3, 0.01);
+    EXPECT_NEAR(world.velocity(wheel).w, w, 1e-12) << row.name;
+  }
+}
+
+TEST(EventEffects, ASwitchAtTheEndOfTheWayStopsTheDrive) {
+  for (const IntegratorRow& row : integrator_rows) {
+    World<double> world(with(row.integrator));
+    const int wheel = world.add_body({.mass = 1, .inertia = 0.5});
+    const int axle = revolute(world, world.ground(), wheel, 0, 0, 0, 0);
+    add_effect(world, axle, "angle", SpecEffect{"limit_switch", {{"speed", {100}}, {"max", {4}}, {"end", {0.777}}}});
+    advance(world, 1, 0.01);
+    // 8 rad/s^2 over 0.777 rad
+    EXPECT_NEAR(world.velocity(wheel).w, std::sqrt(2 * 8 * 0.777), allowed(row, 0.1)) << row.name;
+  }
+}
+
+TEST(EventEffects, ALatchClosesAndHolds) {
+  for (const IntegratorRow& row : integrator_rows) {
+    World<double> world(with(row.integrator));
+    const int wheel = world.add_body({.w = 1.3, .mass = 1, .inertia = 0.5});
+    const int axle = revolute(world, world.ground(), wheel, 0, 0, 0, 0);
+    add_effect(world, axle, "angle", SpecEffect{"latch", {{"at", {0.5}}}});
+    advance(world, 0.3, 0.01);
+    EXPECT_NEAR(world.pose(wheel).angle, 0.39, 1e-9) << row.name;
+    advance(world, 0.3, 0.01);
+    EXPECT_NEAR(world.pose(wheel).angle, 0.5, 1e-6) << row.name;
+    EXPECT_NEAR(world.velocity(wheel).w, 0, 1e-9) << row.name;
+    world.set_force(wheel, {0, 0, -20});
+    advance(world, 0.5, 0.01);
+    EXPECT_NEAR(world.pose(wheel).angle, 0.5, 1e-6) << row.name << ": it is closed for good";
+  }
+}
+
+// A spring whose far end leaves at v pulls a pinned slider: the pin shears at F = k v t, and then, with y the stretch,
+// y'' = -(k/m) y from y = F/k, y' = v.
+TEST(EventEffects, AShearPinBreaksAtItsStrength) {
+  constexpr double k = 40, m = 2, v = 0.5, strength = 9.03, breaks = strength / (k * v), after = 0.1;
+  for (const IntegratorRow& row : integrator_rows) {
+    World<double> world(with(row.integrator));
+    const std::vector<NamedValue> rail_points = {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0, 1}}};
+    const int slide = world.add_body({.mass = m, .inertia = 1});
+    const int rail = world.add_joint({"prismatic", {slide, world.ground()}, rail_points, {}});
+    const int puller = world.add_body({.vx = v, .mass = 1, .inertia = 1});
+    const int drive = world.add_joint({"prismatic", {puller, world.ground()}, rail_points, {}});
+    add_motor(world, drive, "slide", {.speed = v});
+    add_effect(world, rail, "slide", SpecEffect{"shear_pin", {{"strength", {strength}}}});
+    world.add_joint({"spring", {puller, slide}, {{"pa", {3, 0}}, {"pb", {0, 0}}, {"rest", {3}}, {"k", {k}}}, {}});
+    advance(world, breaks + after, (breaks + after) / 100);
+    const double W = std::sqrt(k / m), y = strength / k * std::cos(W * after) + v / W * std::sin(W * after);
+    EXPECT_NEAR(v * (breaks + after) - world.pose(slide).x, y, allowed(row, 0.01, 1e-7)) << row.name;
+  }
+}
+
+// A pendulum on a rope tears it where the tension m g (3 cos(angle) - 2 cos(start)) reaches the strength; then it flies
+// with a constant speed across.
+TEST(EventEffects, APendulumTearsItsRope) {
+  constexpr double g = 9.81, m = 1.5, l = 0.8, start = 1.1, tears = 0.2;
+  const double strength = m * g * (3 * std::cos(tears) - 2 * std::cos(start));
+  for (const IntegratorRow& row : integrator_rows) {
+    World<double> world(with(row.integrator, -g));
+    const int ball = world.add_body({.x = l * std::sin(start), .y = -l * std::cos(start), .mass = m, .inertia = 1});
+    world.add_joint({"tearing_rope",
+                     {ball, world.ground()},
+                     {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {l}}, {"strength", {strength}}},
+                     {}});
+    const double h = 0.001;
+    int steps = 0;
+    while (std::hypot(world.pose(ball).x, world.pose(ball).y) < l + 1e-3 && ++steps < 2000) ASSERT_TRUE(world.step(h));
+    ASSERT_LT(steps, 2000) << row.name << ": it does not tear";
+    const double speed = std::sqrt(2 * g * l * (std::cos(tears) - std::cos(start)));
+    EXPECT_NEAR(world.velocity(ball).x, -speed * std::cos(tears), allowed(row, 0.02, 1e-7)) << row.name;
+    const double across = world.velocity(ball).x;
+    advance(world, 0.1, h);
+    EXPECT_NEAR(world.velocity(ball).x, across, 1e-12) << row.name;
+  }
+}
+
+// What happened is part of the State.
+TEST(EventEffects, ASnapshotBeforeAnEventUndoesIt) {
+  for (const IntegratorRow& row : integrator_rows) {
+    World<double> world(with(row.integrator));
+    const int wheel = world.add_body({.w = 1, .mass = 1, .inertia = 0.5});
+    const int axle = revolute(world, world.ground(), wheel, 0, 0, 0, 0);
+    add_effect(world, axle, "angle", SpecEffect{"latch", {{"at", {0.25}}}});
+    advance(world, 0.2, 0.01);
+    const Snapshot before = world.snapshot();
+    advance(world, 0.2, 0.01);
+    EXPECT_NEAR(world.velocity(wheel).w, 0, 1e-9) << row.name;
+    const Snapshot closed = world.snapshot();
+    world.restore(before);
+    EXPECT_NEAR(world.velocity(wheel).w, 1, 1e-9) << row.name;
+    advance(world, 0.03, 0.01);
+    EXPECT_NEAR(world.velocity(wheel).w, 1, 1e-9) << row.name << ": the latch is open again";
+    advance(world, 0.17, 0.01);
+    EXPECT_EQ(world.snapshot(), closed) << row.name;
+  }
+}
+
+}  // namespace
+}  // namespace cdot::test

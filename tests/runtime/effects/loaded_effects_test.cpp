@@ -1,0 +1,174 @@
+// Friction in proportion to a load: of a contact that the same effect has, or of the joint on whose coordinate it acts.
+#include "tests/runtime/effects/generated_effects.hpp"
+
+namespace cdot::test {
+namespace {
+
+using effects::advance, effects::with;
+
+constexpr double weight = 9.81;  // of 1 kg
+
+// The normal force is not given, but found: m g cos(slope).
+TEST(LoadedEffects, ABlockOnAnInclineSlipsAtItsAngleOfFriction) {
+  constexpr double mu = 0.4, m = 3;
+  for (const IntegratorRow& row : integrator_rows) {
+    for (const double off : {-0.02, 0.02}) {
+      const double slope = std::atan(mu) + off, c = std::cos(slope), s = std::sin(slope);
+      World<double> world(with(row.integrator, -weight));
+      const int block = world.add_body({.mass = m, .inertia = 1, .fixed_rotation = true});
+      world.add_joint({"rough_line", {block, world.ground()}, {{"pb", {0, 0}}, {"n", {s, c}}, {"mu", {mu}}}, {}});
+      advance(world, 1, 0.01);
+      const double right = off < 0 ? 0 : weight * (s - mu * c);
+      const auto v = world.velocity(block);
+      EXPECT_NEAR(c * v.x - s * v.y, right, 1e-8) << row.name << ", " << off;
+      EXPECT_NEAR(s * v.x + c * v.y, 0, 1e-8) << row.name;
+      if (off < 0) EXPECT_NEAR(std::hypot(world.pose(block).x, world.pose(block).y), 0, 1e-4) << row.name;
+    }
+  }
+}
+
+// It slides with v = v0 - mu g t and w = -(5/2) mu g t / r, and rolls from t = 2 v0 / (7 mu g) on with v = 5/7 v0.
+TEST(LoadedEffects, ASlidingBallStartsToRoll) {
+  constexpr double mu = 0.2, m = 1.5, r = 0.3, v0 = 3, rolls = 2 * v0 / (7 * mu * weight);
+  for (const IntegratorRow& row : integrator_rows) {
+    World<double> world(with(row.integrator, -weight));
+    const int ball = world.add_body({.y = r, .vx = v0, .mass = m, .inertia = 0.4 * m * r * r});
+    world.add_joint(
+        {"rough_line", {ball, world.ground()}, {{"pb", {0, 0}}, {"n", {0, 1}}, {"radius", {r}}, {"mu", {mu}}}, {}});
+    ASSERT_GT(rolls, 0.2);
+    advance(world, 0.2, 0.01);
+    EXPECT_NEAR(world.velocity(ball).x, v0 - mu * weight * 0.2, 1e-8) << row.name;
+    EXPECT_NEAR(world.velocity(ball).w, -2.5 * mu * weight * 0.2 / r, 1e-7) << row.name;
+    advance(world, 0.8, 0.01);
+    EXPECT_NEAR(world.velocity(ball).x, 5 * v0 / 7, 1e-7) << row.name;
+    EXPECT_NEAR(world.velocity(ball).w, -5 * v0 / 7 / r, 1e-6) << row.name;
+    const double way = v0 * rolls - mu * weight * rolls * rolls / 2 + 5 * v0 / 7 * (1 - rolls);
+    EXPECT_NEAR(world.pose(ball).x, way, row.order > 2 ? 1e-8 : 0.02) << row.name;
+    double friction = 0;
+    for (const WorkOfSource& work : world.work_by_source())
+      if (work.name == "rough_line") friction = work.work;
+    EXPECT_NEAR(friction, -m * v0 * v0 / 7, row.order > 2 ? 1e-8 : 0.1) << row.name;
+  }
+}
+
+TEST(LoadedEffects, ASliderOnARailSlowsByItsWeight) {
+  constexpr double mu = 0.15, v0 = 2;
+  for (const IntegratorRow& row : integrator_rows) {
+    World<double> world(with(row.integrator, -weight));
+    const int slide = world.add_body({.vx = v0, .mass = 2, .inertia = 1});
+    const int rail =
+        world.add_joint({"prismatic", {slide, world.ground()}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0, 1}}}, {}});
+    add_effect(world, rail, "slide", SpecEffect{"rail_friction", {{"mu", {mu}}}});
+    advance(world, 1, 0.01);
+    EXPECT_NEAR(world.velocity(slide).x, v0 - mu * weight, 1e-8) << row.name;
+    advance(world, 1, 0.01);
+    EXPECT_NEAR(world.velocity(slide).x, 0, 1e-9) << row.name;
+    EXPECT_NEAR(world.pose(slide).x, v0 * v0 / (2 * mu * weight), row.order > 2 ? 1e-8 : 0.02) << row.name;
+  }
+}
+
+// A balanced wheel: the pin carries its weight, at any speed.
+TEST(LoadedEffects, APinBrakesAWheelByItsWeight) {
+  constexpr double mu = 0.2, radius = 0.05, m = 4, I = 0.5, w0 = 3;
+  for (const IntegratorRow& row : integrator_rows) {
+    World<double> world(with(row.integrator, -weight));
+    const int wheel = world.add_body({.w = w0, .mass = m, .inertia = I});
+    const int axle = revolute(world, world.ground(), wheel, 0, 0, 0, 0);
+    add_effect(world, axle, "angle", SpecEffect{"pin_friction", {{"mu", {mu}}, {"radius", {radius}}}});
+    advance(world, 1, 0.01);
+    EXPECT_NEAR(world.velocity(wheel).w, w0 - mu * radius * m * weight / I, 1e-8) << row.name;
+  }
+}
+
+struct Swing {
+  double angle, rate;
+};
+
+// A rod on a rough pin. The force of the pin depends on the acceleration, and that on the friction: mu radius |N| with
+// N = m (a - g) of the centre, solved here by bisection of the acceleration, and integrated by Runge-Kutta of order 4.
+Swing rod_on_rough_pin(double mu_radius, double m, double l, double I, Swing s, double duration, int steps) {
+  const auto acceleration = [&](double angle, double rate) {
+    const auto missing = [&](double a) {
+      const double radial = m * (l * rate * rate + weight * std::cos(angle)),
+                   across = m * (l * a + weight * std::sin(angle));
+      const double friction = mu_radius * std::hypot(radial, across) * (rate > 0 ? 1 : -1);
+      return (I + m * l * l) * a + m * weight * l * std::sin(angle) + friction;
+    };
+    double low = -1e3, high = 1e3;
+    for (int k = 0; k < 80; ++k) (missing(0.5 * (low + high)) < 0 ? low : high) = 0.5 * (low + high);
+    return 0.5 * (low + high);
+  };
+  const double h = duration / steps;
+  for (int n = 0; n < steps; ++n) {
+    const double k1 = acceleration(s.angle, s.rate), v2 = s.rate + h / 2 * k1;
+    const double k2 = acceleration(s.angle + h / 2 * s.rate, v2), v3 = s.rate + h / 2 * k2;
+    const double k3 = acceleration(s.angle + h / 2 * v2, v3), v4 = s.rate + h * k3;
+    const double k4 = acceleration(s.angle + h * v3, v4);
+    s.angle += h / 6 * (s.rate + 2 * v2 + 2 * v3 + v4), s.rate += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+  }
+  return s;
+}
+
+TEST(LoadedEffects, ARodOnARoughPinSwingsAsIntegratedByHand) {
+  constexpr double mu = 0.3, radius = 0.2, m = 2, l = 0.5, I = 0.1, start = 1.2, duration = 0.3;
+  const Swing right = rod_on_rough_pin(mu * radius, m, l, I, {start, -1e-3}, duration, 4000);
+  ASSERT_LT(right.rate, -0.5);
+  for (const IntegratorRow& row : integrator_rows) {
+    const auto error_at = [&](double h) {
+      World<double> world(with(row.integrator, -weight));
+      const double s = std::sin(start), c = std::cos(start), w = -1e-3;
+      const int rod = world.add_body(
+          {.x = l * s, .y = -l * c, .angle = start, .vx = l * c * w, .vy = l * s * w, .w = w, .mass = m, .inertia = I});
+      const int pin = world.add_joint({"revolute", {world.ground(), rod}, {{"pa", {0, 0}}, {"pb", {0, l}}}, {}});
+      add_effect(world, pin, "angle", SpecEffect{"pin_friction", {{"mu", {mu}}, {"radius", {radius}}}});
+      advance(world, duration, h);
+      return std::abs(world.velocity(rod).w - right.rate);
+    };
+    const double coarse = error_at(0.01), fine = error_at(0.005);
+    fmt::print("  {}: off by {:.1e} and {:.1e}\n", row.name, coarse, fine);
+    EXPECT_LT(fine, row.order > 2 ? 1e-7 : 0.03) << row.name;
+    if (row.order <= 2) EXPECT_GT(coarse / fine, 1.7) << row.name;
+  }
+}
+
+TEST(LoadedEffects, TheirBalanceCloses) {
+  for (const IntegratorRow& row : integrator_rows) {
+    World<double> world(with(row.integrator, -weight));
+    const int ball = world.add_body({.y = 0.3, .vx = 3, .mass = 1, .inertia = 0.036});
+    world.add_joint(
+        {"rough_line", {ball, world.ground()}, {{"pb", {0, 0}}, {"n", {0, 1}}, {"radius", {0.3}}, {"mu", {0.2}}}, {}});
+    EXPECT_LT(effects::unaccounted(world, 1, 0.005), row.order > 2 ? 1e-9 : 2e-2) << row.name;
+  }
+}
+
+// Painlevé's rod: with tan(angle) = 2 and mu = 2 > 4/3 no finite force keeps the sliding rod from sinking into the
+// line. It jams: an impulse stops the slip at once. No step may sink, gain energy or fail.
+TEST(LoadedEffects, PainlevesRodJams) {
+  constexpr double mu = 2, m = 1, l = 1, I = m * l * l / 3, v0 = 4;
+  const double tilt = std::atan(2.0), s = std::sin(tilt), c = std::cos(tilt);
+  for (const IntegratorRow& row : integrator_rows) {
+    World<double> world(with(row.integrator, -weight));
+    // The lower end slides ahead of the centre, which pushes it into the line.
+    const int rod = world.add_body({.x = -l * c, .y = l * s, .vx = v0, .mass = m, .inertia = I});
+    world.add_joint({"rough_line",
+                     {rod, world.ground()},
+                     {{"pa", {l * c, -l * s}}, {"pb", {0, 0}}, {"n", {0, 1}}, {"mu", {mu}}},
+                     {}});
+    double energy = world.energy();
+    const double first = energy;
+    for (int n = 0; n < 20; ++n) {
+      ASSERT_TRUE(world.step(0.005)) << row.name;
+      const auto p = world.pose(rod);
+      const double end = p.y + l * c * std::sin(p.angle) - l * s * std::cos(p.angle);
+      EXPECT_GT(end, -1e-3) << row.name;
+      const double now = world.energy();
+      EXPECT_LT(now, energy + 1e-3 * first) << row.name << " at " << world.time();
+      energy = now;
+    }
+    fmt::print("  {}: {:.4f} of {:.4f} J left\n", row.name, energy, first);
+    EXPECT_LT(energy, 0.9 * first) << row.name;
+  }
+}
+
+}  // namespace
+}  // namespace cdot::test
