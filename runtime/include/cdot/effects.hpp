@@ -2,7 +2,8 @@
 // bounds. In a World without effects step() spends no time on them. `coordinate` is a name from the joint's spec
 // ("angle", "slide"). All functions throw cdot::Error on misuse.
 //
-// A kind of effect consists of a struct here, an entry in each list below, and one file, effects/<kind>.cpp.
+// The structs here are short forms of effects in specs/coordinate; effects/shorthand.cpp names the spec of each. Every
+// other effect of a spec is a SpecEffect.
 #pragma once
 
 #include <limits>
@@ -89,8 +90,7 @@ template <class S>
 void set_effect(BasicWorld<S>& world, int joint, int number, const SpecEffect& effect);
 
 // Changes the constants of an effect from the next step on and wakes the joint's island. max_force = 0 switches a motor
-// off; the ends -unlimited and unlimited switch a limit off. A limit with two ends cannot become a lock, nor a lock a
-// limit.
+// off; the ends -unlimited and unlimited switch a limit off.
 template <class S, class Effect>
 void set_effect(BasicWorld<S>& world, int joint, int number, const Effect& effect);
 

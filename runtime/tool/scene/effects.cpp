@@ -62,13 +62,14 @@ std::string example_of(const JointType& type) {
   return text;
 }
 
-// An effect of a spec: { k = 50, most = 3 }, or the number of its only parameter.
-void read_spec(Entry& entry, const JointType& type, CoordinateEffects& effects) {
+// An effect of a spec: { k = 50, most = 3 }, or the number of its only parameter. `turns`: on an angle.
+void read_spec(Entry& entry, const JointType& type, bool turns, CoordinateEffects& effects) {
   const std::string key(type.name);
   SpecEffect effect{key};
   std::vector<const ParameterInfo*> needed;
-  const auto quantity = [](const ParameterInfo& info) {
-    return Quantity{info.above >= 0 ? Sign::positive : Sign::any, info.unit == "rad"};
+  const auto quantity = [turns](const ParameterInfo& info) {
+    const Sign sign = !(info.above >= 0) ? Sign::any : info.from ? Sign::not_negative : Sign::positive;
+    return Quantity{sign, info.unit == "rad" || (turns && (info.unit == "any" || info.unit == "any/s"))};
   };
   for (std::size_t k = 0; k < type.parameters.size(); ++k)
     if (type.coordinate_uses[k] == CoordinateUse::required) needed.push_back(&type.parameters[k]);
@@ -92,7 +93,7 @@ void read_specs(Entry& entry, const CoordinateInfo& coordinate, CoordinateEffect
   for (const JointType& type : coordinate_effects()) {
     const std::string key(type.name);
     if (is_key_of_kind(key) || !entry.has(key)) continue;
-    if (type.acts_on(coordinate.unit)) read_spec(entry, type, effects);
+    if (type.acts_on(coordinate.unit)) read_spec(entry, type, coordinate.unit == "rad", effects);
     else
       entry.error(entry.where(key),
                   fmt::format("`{}` acts on coordinates in {}; `{}` is in {}", key, type.coordinate_unit,
@@ -136,12 +137,15 @@ std::optional<Softness> read_softness(Entry& joint, const char* key) {
 KeyTable keys_of_effects() {
   KeyTable table{"Effects on a coordinate of a joint: angle.motor = { speed = 2 }", {}};
   for (const EffectKind* kind : effect_kinds) table.rows.push_back({kind->key, kind->meaning, ""});
-  for (const JointType& type : coordinate_effects())
+  for (const JointType& type : coordinate_effects()) {
+    const bool any = type.coordinate_unit == "any";
     if (!is_key_of_kind(type.name))
       table.rows.push_back(
           {std::string(type.name),
-           fmt::format("`{{ {} }}` on a coordinate in {}: {}", example_of(type), type.coordinate_unit, type.title),
+           fmt::format("`{{ {} }}` on {}{}: {}", example_of(type), any ? "any coordinate" : "a coordinate in ",
+                       any ? "" : type.coordinate_unit, type.title),
            ""});
+  }
   return table;
 }
 

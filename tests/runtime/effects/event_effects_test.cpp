@@ -104,6 +104,24 @@ TEST(EventEffects, APendulumTearsItsRope) {
   }
 }
 
+TEST(EventEffects, InSpaceARopeTearsAsInThePlane) {
+  constexpr double g = 9.81, m = 1.5, l = 0.8, start = 1.1, tears = 0.2;
+  const double strength = m * g * (3 * std::cos(tears) - 2 * std::cos(start));
+  for (const IntegratorRow& row : integrator_rows) {
+    SpatialWorld<double> world(with(row.integrator, -g));
+    SpatialBodyDefinition d;
+    d.x = l * std::sin(start), d.y = -l * std::cos(start), d.mass = m, d.inertia = {1, 1, 1};
+    const int ball = world.add_body(d);
+    world.add_joint({"tearing_rope",
+                     {ball, world.ground()},
+                     {{"pa", {0, 0, 0}}, {"pb", {0, 0, 0}}, {"l", {l}}, {"strength", {strength}}},
+                     {}});
+    for (int n = 0; n < 700; ++n) ASSERT_TRUE(world.step(0.001));
+    const double speed = std::sqrt(2 * g * l * (std::cos(tears) - std::cos(start)));
+    EXPECT_NEAR(world.velocity(ball).x, -speed * std::cos(tears), allowed(row, 0.02, 1e-7)) << row.name;
+  }
+}
+
 // What happened is part of the State.
 TEST(EventEffects, ASnapshotBeforeAnEventUndoesIt) {
   for (const IntegratorRow& row : integrator_rows) {

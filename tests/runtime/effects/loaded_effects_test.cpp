@@ -22,7 +22,8 @@ TEST(LoadedEffects, ABlockOnAnInclineSlipsAtItsAngleOfFriction) {
       const auto v = world.velocity(block);
       EXPECT_NEAR(c * v.x - s * v.y, right, 1e-8) << row.name << ", " << off;
       EXPECT_NEAR(s * v.x + c * v.y, 0, 1e-8) << row.name;
-      if (off < 0) EXPECT_NEAR(std::hypot(world.pose(block).x, world.pose(block).y), 0, 1e-4) << row.name;
+      const double way = off < 0 ? 0 : right / 2;
+      EXPECT_NEAR(std::hypot(world.pose(block).x, world.pose(block).y), way, row.order == 1 ? 2e-2 : 1e-3) << row.name;
     }
   }
 }
@@ -80,6 +81,27 @@ TEST(LoadedEffects, APinBrakesAWheelByItsWeight) {
   }
 }
 
+TEST(LoadedEffects, InSpaceAHingeAndASliderDoAsInThePlane) {
+  constexpr double mu = 0.2, radius = 0.05, m = 4, I = 0.5;
+  for (const IntegratorRow& row : integrator_rows) {
+    SpatialWorld<double> world(with(row.integrator, -weight));
+    SpatialBodyDefinition d;
+    d.wx = 3, d.mass = m, d.inertia = {I, 0.7, 0.7};
+    const int wheel = world.add_body(d);
+    d.wx = 0, d.vx = 2, d.z = 1;
+    const int slide = world.add_body(d);
+    const int hinge = world.add_joint(
+        {"hinge", {world.ground(), wheel}, {{"pa", {0, 0, 0}}, {"fa", {1, 0, 0}}, {"pb", {0, 0, 0}}}, {}});
+    const int rail = world.add_joint(
+        {"slider", {world.ground(), slide}, {{"pa", {0, 0, 1}}, {"fa", {1, 0, 0}}, {"pb", {0, 0, 0}}}, {}});
+    add_effect(world, hinge, "angle", SpecEffect{"pin_friction", {{"mu", {mu}}, {"radius", {radius}}}});
+    add_effect(world, rail, "slide", SpecEffect{"rail_friction", {{"mu", {mu}}}});
+    for (int n = 0; n < 50; ++n) ASSERT_TRUE(world.step(0.01));
+    EXPECT_NEAR(world.velocity(wheel).wx, 3 - 0.5 * mu * radius * m * weight / I, 1e-8) << row.name;
+    EXPECT_NEAR(world.velocity(slide).x, 2 - 0.5 * mu * weight, 1e-8) << row.name;
+  }
+}
+
 struct Swing {
   double angle, rate;
 };
@@ -127,7 +149,7 @@ TEST(LoadedEffects, ARodOnARoughPinSwingsAsIntegratedByHand) {
     const double coarse = error_at(0.01), fine = error_at(0.005);
     fmt::print("  {}: off by {:.1e} and {:.1e}\n", row.name, coarse, fine);
     EXPECT_LT(fine, row.order > 2 ? 1e-7 : 0.03) << row.name;
-    if (row.order <= 2) EXPECT_GT(coarse / fine, 1.7) << row.name;
+    EXPECT_TRUE(row.order > 2 || coarse / fine > 1.7) << row.name << ": " << coarse / fine;
   }
 }
 
