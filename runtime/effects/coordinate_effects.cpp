@@ -65,6 +65,8 @@ const std::vector<const Law<S>*>& laws_on_coordinates() {
 struct Functions {
   void (*default_value)(int index, double* parameters, double time);
   void (*bounds)(double C, const double* parameters, double time, RowBounds<double>&);  // null: no bounds
+  // True if force and energy are finite at rest; null: it has bounds.
+  bool (*has_value)(double C, const double* parameters, double time);
 };
 
 template <class Effect, class Pose>
@@ -74,11 +76,20 @@ Functions functions_of() {
                         const Pose nowhere[Effect::bodies] = {};
                         Effect::default_value(index, nowhere, *reinterpret_cast<Numbers*>(parameters), time);
                       },
-                      nullptr};
+                      nullptr, nullptr};
   if constexpr (requires { typename Effect::Bounded; })
     functions.bounds = [](double C, const double* parameters, double time, RowBounds<double>& B) {
       const double value[1] = {C};
       RowOf<Effect>::bounds(value, *reinterpret_cast<const Numbers*>(parameters), time, B);
+    };
+  else
+    functions.has_value = [](double C, const double* parameters, double time) {
+      const double value[1] = {C}, rate[1] = {0};
+      const Numbers& p = *reinterpret_cast<const Numbers*>(parameters);
+      double force[1], energy = 0;
+      Effect::force(value, rate, p, time, force);
+      if constexpr (requires { &Effect::template energy<double>; }) Effect::energy(value, p, energy);
+      return std::isfinite(force[0]) && std::isfinite(energy);
     };
   return functions;
 }
@@ -101,10 +112,11 @@ std::size_t index_of(const std::string& name) {
   throw Error(fmt::format("there is no effect `{}` for the coordinate of a joint", name));
 }
 
-void check_bounds(std::size_t index, double C, const std::vector<double>& numbers, double time) {
-  const auto bounds = functions_on_coordinates()[index].bounds;
-  if (!bounds) return;
+void check_law(std::size_t index, double C, const std::vector<double>& numbers, double time) {
+  const auto& [default_value, bounds, has_value] = functions_on_coordinates()[index];
   const JointType& type = coordinate_effects()[index];
+  if (has_value && !has_value(C, numbers.data(), time)) throw effect_without_value(type, numbers);
+  if (!bounds) return;
   RowBounds<double> B;
   bounds(C, numbers.data(), time, B);
   if (!(B.lower <= B.upper) || !std::isfinite(B.rate))
@@ -142,7 +154,7 @@ std::vector<double> complete(std::size_t index, const std::vector<NamedValue>& g
     if (use == CoordinateUse::value) numbers[static_cast<std::size_t>(info.offset)] = C;
     else functions_on_coordinates()[index].default_value(static_cast<int>(k), numbers.data(), time);
   }
-  check_bounds(index, C, numbers, time);
+  check_law(index, C, numbers, time);
   return numbers;
 }
 
@@ -202,7 +214,7 @@ void set_effect(BasicWorld<S>& world, int joint, int number, const SpecEffect& e
   const auto* const now = batch->constants.data() + slot * named.law.constants;
   std::vector<double> numbers(now, now + named.law.constants);
   take_given(coordinate_effects()[index], effect.parameters, numbers);
-  check_bounds(index, double(batch->C[slot]), numbers, data.time);
+  check_law(index, double(batch->C[slot]), numbers, data.time);
   set_constants(world, joint, number, named, numbers);
 }
 
