@@ -73,6 +73,15 @@ typename System<S>::Real System<S>::largest_b() const {
   return largest;
 }
 
+// The bound at which a free row has to stay: that which it lies beyond, or, for a redundant row, at which elimination
+// leaves it (a slack rope beside a rod pulls nothing). `excess`: J v + bias after it.
+template <class S>
+char System<S>::bound_for(int r, Real excess, Real tolerance) const {
+  if (lambda[r] < lower[r] || (ldlt_.dependent(r) && lambda[r] == lower[r] && excess > tolerance)) return at_lower;
+  if (lambda[r] > upper[r] || (ldlt_.dependent(r) && lambda[r] == upper[r] && excess < -tolerance)) return at_upper;
+  return free;
+}
+
 // Fixes rows outside their bounds at the bound, and frees rows whose bound has the wrong sign. True if nothing changed.
 template <class S>
 bool System<S>::revise_active_set(bool one_by_one) {
@@ -82,12 +91,12 @@ bool System<S>::revise_active_set(bool one_by_one) {
   bool settled = true;
   for (int r = rows_ - 1; r >= 0; --r) {
     if (broken[r]) continue;
+    const Real excess = product_[r] + softness[r] * lambda[r] - b[r];
     if (!fixed[r]) {
-      if (lambda[r] >= lower[r] && lambda[r] <= upper[r]) continue;
-      fixed[r] = lambda[r] < lower[r] ? at_lower : at_upper;
+      fixed[r] = bound_for(r, excess, tolerance);
+      if (fixed[r] == free) continue;
       lambda[r] = fixed[r] == at_lower ? lower[r] : upper[r];
     } else {
-      const Real excess = product_[r] + softness[r] * lambda[r] - b[r];  // J v + bias after it
       const bool holds = fixed[r] == at_lower ? excess >= -tolerance : excess <= tolerance;
       if (holds || lower[r] == upper[r]) continue;
       fixed[r] = free;
@@ -104,7 +113,8 @@ namespace {
 template <class Real>
 constexpr double missed = by_precision<Real>(1e-9);
 // Share of the diagonal that makes a redundant row independent.
-constexpr double slight_softness = 1e-8;
+template <class T>
+constexpr double slight_softness = std::max(1e-8, 10 * Ldlt::pivot_share<T>);
 
 // The softness of a motor that others hold, as a share of its diagonal: it pushes with what would bring the bodies to
 // its speed.
@@ -141,7 +151,7 @@ bool System<S>::part_contradicting_rows() {
   share_contradictions();
   if (hold_motors(*this, slight(scale))) return true;
   for (int r = 0; any && r < rows_; ++r)
-    if (bounded(r)) softness[r] += slight_softness * ldlt_.diagonal(r);
+    if (bounded(r)) softness[r] += slight_softness<T> * ldlt_.diagonal(r);
   return any;
 }
 

@@ -166,6 +166,7 @@ class System {
   void list_products(const Bodies<S>& bodies);
   std::vector<int> movable_bodies(const Block& block, const Bodies<S>& bodies) const;
   Real largest_b() const;
+  char bound_for(int row, Real excess, Real tolerance) const;
   bool revise_active_set(bool one_by_one);
   int find_active_set();
   bool part_contradicting_rows();

@@ -12,6 +12,7 @@
 
 #include "runtime/effects/effect.hpp"
 #include "runtime/rows/parameters.hpp"
+#include "runtime/state/drives.hpp"
 #include "runtime/state/probe.hpp"
 
 namespace cdot {
@@ -51,10 +52,11 @@ std::size_t index_of(const std::string& name) {
   throw Error(fmt::format("there is no effect `{}` for the coordinate of a joint", name));
 }
 
-void check_bounds(std::size_t index, double C, const std::vector<double>& numbers, double time) {
-  const auto bounds = functions_on_coordinates()[index].bounds;
-  if (!bounds) return;
+void check_law(std::size_t index, double C, const std::vector<double>& numbers, double time) {
+  const auto& [default_value, bounds, has_value] = functions_on_coordinates()[index];
   const JointType& type = coordinate_effects()[index];
+  if (has_value && !has_value(C, numbers.data(), time)) throw effect_without_value(type, numbers);
+  if (!bounds) return;
   RowBounds<double> B;
   bounds(C, numbers.data(), time, B);
   if (!(B.lower <= B.upper) || !std::isfinite(B.rate))
@@ -92,7 +94,7 @@ std::vector<double> complete(std::size_t index, const std::vector<NamedValue>& g
     if (use == CoordinateUse::value) numbers[static_cast<std::size_t>(info.offset)] = C;
     else functions_on_coordinates()[index].default_value(static_cast<int>(k), numbers.data(), time);
   }
-  check_bounds(index, C, numbers, time);
+  check_law(index, C, numbers, time);
   return numbers;
 }
 
@@ -134,7 +136,9 @@ const JointType* find_coordinate_effect(std::string_view name) {
   return found == types.end() ? nullptr : &*found;
 }
 
-bool SpecEffect::acts_one_way() const { return coordinate_effects()[index_of(type)].without_energy; }
+bool SpecEffect::acts_one_way() const {
+  return coordinate_effects()[index_of(type)].without_energy || in_time(parameters);
+}
 #endif
 
 template <class S>
@@ -161,9 +165,14 @@ int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, con
   if (!type.acts_on(unit))
     throw Error(fmt::format("effect `{}` acts on a coordinate in {}; `{}` of joint `{}` is in {}", type.name,
                             type.coordinate_unit, coordinate, of_joint.name, unit));
-  const auto constants = complete(index, effect.parameters, world.coordinate(joint, coordinate), data.time);
+  const std::vector<NamedValue> given = at_time(effect.parameters, data.time);
+  const auto constants = complete(index, given, world.coordinate(joint, coordinate), data.time);
+  const Law<S>* const law = &law_of<S>(index).law;
+  check_functions<S>(type, given, std::span(&law, law->guard ? 1 : 0));
   note_change(data);
-  return add_coordinate_row(data, joint, coordinate, &law_of<S>(index).law, constants, type.name);
+  const int number = add_coordinate_row(data, joint, coordinate, law, constants, type.name);
+  if (number >= 0) add_drives(data, joint, number, type, given);
+  return number;
 }
 
 template <class S>
@@ -173,11 +182,13 @@ void set_effect(BasicWorld<S>& world, int joint, int number, const SpecEffect& e
   const NamedLaw<S> named = law_of<S>(index);
   const Batch<S>* const batch = batch_of_effect(world, joint, number, named);
   if (!batch) return;
+  refuse_functions(effect.parameters, "set_effect()");
+  refuse_driven(data.joints[joint], coordinate_effects()[index], number, effect.parameters);
   const int slot = slot_of(data, data.joints[joint].places[static_cast<std::size_t>(number)]);
   const auto* const now = batch->constants.data() + slot * named.law.constants;
   std::vector<double> numbers(now, now + named.law.constants);
   take_given(coordinate_effects()[index], effect.parameters, numbers);
-  check_bounds(index, double(batch->C[slot]), numbers, data.time);
+  check_law(index, double(batch->C[slot]), numbers, data.time);
   set_constants(world, joint, number, named, numbers);
 }
 

@@ -44,9 +44,22 @@ void apply_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                    \
-  template void push_free_bodies(WorldData<S>&, Island<S>&);   \
-  template void free_accelerations(WorldData<S>&, Island<S>&); \
+template <class S>
+void halt_immovable_bodies(WorldData<S>& world, const Island<S>& island) {
+  Bodies<S>& all = world.bodies;
+  for (const Segment<S>& segment : island.segments) {
+    const Batch<S>& batch = *segment.batch;
+    const int bodies = batch.ops->bodies;
+    for (int i = segment.begin * bodies; i < segment.whole_end * bodies; ++i)
+      if (const int k = batch.body[i]; all.immovable(k))
+        all.velocity[k] = all.velocity_rate[k] = all.displacement[k] = all.increment[k] = {};
+  }
+}
+
+#define CDOT_INSTANTIATE(S)                                             \
+  template void push_free_bodies(WorldData<S>&, Island<S>&);            \
+  template void free_accelerations(WorldData<S>&, Island<S>&);          \
+  template void halt_immovable_bodies(WorldData<S>&, const Island<S>&); \
   template void apply_forces(WorldData<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -16,6 +16,11 @@ void push_free_bodies(WorldData<S>& world, Island<S>& island);
 template <class S>
 void free_accelerations(WorldData<S>& world, Island<S>& island);
 
+// Immovable bodies of the island's joints stand still. Impulses add 0 to them, but infinite ones add NaN, for good. Call
+// it after an attempt at a step that was given up.
+template <class S>
+void halt_immovable_bodies(WorldData<S>& world, const Island<S>& island);
+
 // q += h v; bodies with a turning inertia tensor keep L = I w.
 template <class S>
 void integrate(WorldData<S>& world, Island<S>& island, typename S::Scalar h);

@@ -22,11 +22,6 @@ constexpr double enough = 0.2, enough_at_acceleration_level = 0.5;
 template <class T>
 constexpr double rough = by_precision<T>(1e-5, 1e-12);
 constexpr int most_refinements = 4;
-// An error that differs by less of itself from the one that the last projection left is that one. In float round-off
-// leaves errors too, and these are to be corrected.
-template <class T>
-constexpr double unchanged = by_precision<T>(-1, 1e-9);
-
 template <class S>
 bool is_held(const Batch<S>& batch, int i) {
   return !batch.law || batch.mode[i] == Mode::held;
@@ -216,7 +211,6 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   System<S>& system = island.at_work();
   T before = std::numeric_limits<T>::infinity();
   bool renewed = false;
-  const T left = island.residual;
   // Near a loss of rank the error is magnified, so nothing but round-off may stay.
   const T tolerance = island.flow.projects_stages ? std::numeric_limits<T>::epsilon() : converged<T>;
   // Known forces do not act in a projection.
@@ -225,9 +219,8 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   const bool other_rows = system.lawful() && !island.acceleration_level;
   for (int round = 0;; ++round) {
     const T worst = find_errors(world, island, time);
+    if (round == 0 && stays_misfit(world, island, worst)) return;
     island.residual = worst;
-    // Joints that contradict each other would creep, were they corrected again and again.
-    if (round == 0 && worst > tolerance * island.scale && std::abs(worst - left) <= unchanged<T> * worst) return;
     if (round == 0) island.misfit = 0;
     if (!(worst > tolerance * island.scale) || round == newton_rounds) return;
     // Adds rows that passed their bound since the selection. Selected rows stay.

@@ -61,6 +61,15 @@ typename S::Scalar round_off_of(const WorldData<S>& world, const Island<S>& isla
 }
 
 template <class S>
+bool stays_misfit(const WorldData<S>& world, const Island<S>& island, typename S::Scalar error) {
+  using T = typename S::Scalar;
+  constexpr T unchanged = T(1e-9), of_round_off = T(1) / 16;
+  const T left = island.residual;
+  return left > converged<T> * island.scale &&
+         std::abs(error - left) <= std::max(unchanged * error, of_round_off * round_off_of(world, island));
+}
+
+template <class S>
 void clear_correction(WorldData<S>& world, Island<S>& island) {
   for (int i : island.bodies) world.bodies.displacement[i] = {};
   for (const Segment<S>& segment : island.segments) {
@@ -216,6 +225,7 @@ void project_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
 }
 
 #define CDOT_INSTANTIATE(S)                                                         \
+  template bool stays_misfit(const WorldData<S>&, const Island<S>&, S::Scalar);     \
   template S::Scalar round_off_of(const WorldData<S>&, const Island<S>&);           \
   template void clear_correction(WorldData<S>&, Island<S>&);                        \
   template S::Scalar find_errors(WorldData<S>&, Island<S>&, S::Scalar);             \

@@ -54,6 +54,14 @@ class Probe {
     return batch_.rate;
   }
 
+  // True if the law of an effect has a force and an energy here. Call Cdot() first.
+  bool has_value(const Law<S>& law) const {
+    T force[most_rows];
+    law.force(batch_, 0, batch_.rate.data(), force);
+    return std::all_of(force, force + rows(), [](T F) { return std::isfinite(F); }) &&
+           (!law.energy || std::isfinite(law.energy(batch_, 0)));
+  }
+
   // True if C = 0 is a kink of C, as at a distance of length 0. A step along the row's M^-1 J^T then changes C by as
   // much as the opposite step, so J does not predict the change of C.
   bool at_kink(int row) {
@@ -262,14 +270,14 @@ inline std::string scalars_of(const JointType& type, const std::vector<double>& 
   return text.empty() ? text : " (" + text + ")";
 }
 
-// Throws Error if a row has no value here, or if no pose satisfies it.
+// Throws Error if a row has no value here, or if no pose satisfies it. Rows of effects are no constraints.
 template <class S>
 void check_values(Probe<S>& probe, const JointType& type, const JointRecord& record) {
   for (const ParameterInfo& info : type.parameters)
     if (info.kind == ParameterKind::scalar && probe.jumps_at_zero(info.offset))
       throw Error(fmt::format("joint `{}` has no meaning at {} = 0, by which it divides. Likely fix: {} = 1", type.name,
                               info.name, info.name));
-  for (int r = 0; r < probe.rows(); ++r) {
+  for (int r = 0; r < probe.rows() && !type.is_effect; ++r) {
     const double C = probe.C(r);
     const bool one_sided = type.row_kinds[r] == RowKind::inequality;
     if (type.row_kinds[r] == RowKind::velocity || std::abs(C) <= 1e-4 || (one_sided && C > 0)) continue;
@@ -301,6 +309,13 @@ void check_bounds(const WorldData<S>& world, const JointRecord& record) {
   }
 }
 
+inline Error effect_without_value(const JointType& type, const std::vector<double>& numbers) {
+  return Error(
+      fmt::format("effect `{}` has no finite force and energy here{}. Likely fix: the sign of a parameter, or "
+                  "another place at the start",
+                  type.name, scalars_of(type, numbers)));
+}
+
 // Throws Error if a row has no value here, jumps here, has its kink at C = 0, or holds nowhere. Velocity rows have no
 // C. A soft row is a spring and may have a kink.
 template <class S>
@@ -311,6 +326,10 @@ void check_rows(const WorldData<S>& world, const JointRecord& record, bool soft)
   check_values(probe, type, record);
   check_bounds(world, record);
   probe.look_at(record);
+  if (const Law<S>* law = joint_entries<S>()[record.type].law) {
+    probe.Cdot();
+    if (!probe.has_value(*law)) throw effect_without_value(type, record.parameters);
+  }
   if (const int row = probe.jumping_row(); row >= 0)
     throw Error(fmt::format("row {} of joint `{}` has no value here: {}", row + 1, type.name, why_it_jumps));
   if (soft) return;

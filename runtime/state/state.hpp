@@ -57,7 +57,7 @@ template <class S>
 struct IslandState {
   using T = typename S::Scalar;
   StateNumber<T> size = T(1);  // longest arm or distance between joined bodies [m]
-  // min(1, 10 size): factor of the thresholds for C.
+  // min(1, 10 size), times the least slope of a row if that is below 1: factor of the thresholds for C.
   StateNumber<T> scale = T(1);
   StateNumber<T> residual = std::numeric_limits<T>::infinity();  // largest C after the last projection
   StateNumber<T> evaluated_at = T(0);                            // [s]

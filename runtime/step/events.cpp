@@ -74,7 +74,7 @@ void find_resolution(const WorldData<S>& world, const Island<S>& island, const B
       }
       inverse_mass += all.inverse_mass[body].m;
     }
-    const T k = c > T(0) ? T(K[r * rows + r]) : inverse_mass;
+    const T k = K[r * rows + r] > 0 ? T(K[r * rows + r]) : inverse_mass;  // no motion: bodies that never turn
     if (!(c > T(0))) c = island.size;
     acceleration = std::max(acceleration, k * std::abs(batch.lambda[slot * rows + r]));
     rate = std::max({rate, std::sqrt(acceleration * c), std::numeric_limits<T>::epsilon() / slight<T> * c / h});

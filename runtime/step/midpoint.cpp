@@ -181,6 +181,7 @@ void go_back_to_kept(WorldData<S>& world, Island<S>& island) {
     world.bodies.increment[i] = {};
   }
   restore_turns(island);
+  halt_immovable_bodies(world, island);
   if constexpr (S::has_gyroscopes) set_inertias(world, island);
   restore_masses(world, island);
   island.evaluated = island.factored = false;

@@ -84,10 +84,13 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
   System<S>& system = island.at_work();
   island.flow.search.begin([&](size_t row) { return system.diagonal(static_cast<int>(row)); });
   T least = std::numeric_limits<T>::infinity();
-  bool astray = false;
+  bool astray = false, first = true;
   for (int vain = 0;;) {
     drift(world, island, h);
-    island.residual = find_errors(world, island, time);
+    const T error = find_errors(world, island, time);
+    if (first && stays_misfit(world, island, error)) return true;
+    first = false;
+    island.residual = error;
     if (!(island.residual > round_off<T> * island.scale)) return !astray || !turned_round(world, island);
     if (island.residual < T(0.7) * least) least = island.residual, vain = 0;
     else if (island.residual <= converged<T> * island.scale)  // round-off may end the rounds early
@@ -179,7 +182,11 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   start_half(world, island, h, share);
   const bool by_sweeps = !island.solver->exact;
   if (by_sweeps || !drift_onto_joints(world, island, h)) {
-    if (!by_sweeps) start_half(world, island, h, share), island.residual = at_start;
+    if (!by_sweeps) {
+      halt_immovable_bodies(world, island);
+      start_half(world, island, h, share);
+      island.residual = at_start;
+    }
     drift_with_renewed_directions(world, island, h, at_start, share);
   }
   book_start(world, island, h / 2);

@@ -266,6 +266,7 @@ void go_back(WorldData<S>& world, Island<S>& island) {
   set_numbers(world, island, island.flow.start.data());
   island.residual = island.flow.start_residual;
   restore_turns(island);
+  halt_immovable_bodies(world, island);
 }
 
 #define CDOT_INSTANTIATE(S)                                                                               \

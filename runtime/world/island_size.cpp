@@ -1,6 +1,7 @@
 // The size of a mechanism, which scales the tolerance of C.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <cdot/spaces.hpp>
@@ -17,26 +18,34 @@ double distance(const typename S::Pose& a, const typename S::Pose& b) {
   else return std::hypot(p.x - q.x, p.y - q.y, p.z - q.z);
 }
 
-// The longest arm of a slot's rows: |dC/d rotation| / |dC/d displacement| of a movable body; 0 for rows without
-// displacements.
+struct Lengths {
+  double longest_arm = 0;  // |dC/d rotation| / |dC/d displacement| of a movable body; 0 for rows without displacements
+  // The least |dC/d displacement| of a row, or |dC/d rotation| of one without displacements; infinite: no row moves.
+  double least_slope = std::numeric_limits<double>::infinity();
+};
+
+// Of a slot's rows.
 template <class S>
-double longest_arm(const Batch<S>& batch, int slot, const Bodies<S>& all) {
+void measure_rows(const Batch<S>& batch, int slot, const Bodies<S>& all, Lengths& lengths) {
   const int bodies = batch.ops->bodies, width = S::freedom * bodies;
   using Real = ExactNumber<typename S::Scalar>;
   std::vector<Real> J(static_cast<size_t>(batch.ops->rows * width)), weighted(J);
   Real K[most_rows * most_rows];
   batch.ops->dense(batch, slot, all, J.data(), weighted.data(), K, most_rows);
-  double longest = 0;
   for (int r = 0; r < batch.ops->rows; ++r) {
+    double slope = 0, turning_slope = 0;
     for (int k = 0; k < bodies; ++k) {
       if (all.immovable(batch.body[slot * bodies + k])) continue;
       const Real* row = J.data() + r * width + S::freedom * k;
       Real straight = 0, turning = 0;
       for (int c = 0; c < S::freedom; ++c) (c < S::lengths ? straight : turning) += row[c] * row[c];
-      if (straight > 0) longest = std::max(longest, double(std::sqrt(turning / straight)));
+      slope = std::max(slope, double(std::sqrt(straight)));
+      turning_slope = std::max(turning_slope, double(std::sqrt(turning)));
+      if (straight > 0) lengths.longest_arm = std::max(lengths.longest_arm, double(std::sqrt(turning / straight)));
     }
+    if (slope == 0) slope = turning_slope;
+    if (slope > 0 && (!batch.law || batch.law->reported)) lengths.least_slope = std::min(lengths.least_slope, slope);
   }
-  return longest;
 }
 
 // The longest distance between two movable bodies of a slot.
@@ -59,15 +68,19 @@ template <class S>
 void measure_size(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   double size = 0;
+  Lengths lengths;
   for (const Segment<S>& segment : island.segments) {
     const Batch<S>& batch = *segment.batch;
     batch.ops->evaluate(*segment.batch, segment.begin, segment.end, world.bodies, T(world.time));
-    for (int slot = segment.begin; batch.ops->rows > 0 && slot < segment.end; ++slot)
-      size = std::max({size, longest_arm(batch, slot, world.bodies), longest_distance(batch, slot, world.bodies)});
+    for (int slot = segment.begin; batch.ops->rows > 0 && slot < segment.end; ++slot) {
+      measure_rows(batch, slot, world.bodies, lengths);
+      size = std::max({size, lengths.longest_arm, longest_distance(batch, slot, world.bodies)});
+    }
   }
   island.evaluated = false;
   island.size = size > 0 ? T(size) : T(1);
-  island.scale = std::min(T(10) * island.size, T(1));
+  // Small are not only mechanisms, but also slopes, as that of a squared distance [m^2].
+  island.scale = std::min(T(10) * island.size, T(1)) * T(std::min(lengths.least_slope, 1.0));
 }
 
 #define CDOT_INSTANTIATE(S) template void measure_size(WorldData<S>&, Island<S>&);

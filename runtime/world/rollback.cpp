@@ -5,6 +5,7 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/motion/motion.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/step/integrators.hpp"
 
@@ -69,10 +70,7 @@ void roll_back(WorldData<S>& world) {
     compute_again(world, world.islands[index]);
   }
   copy_awake(world, world.before, world.block.bytes);
-  // Impulses add 0 to an immovable body; infinite ones have added NaN.
-  Bodies<S>& all = world.bodies;
-  for (int i = 0; i < all.count(); ++i)
-    if (all.immovable(i)) all.velocity[i] = all.velocity_rate[i] = all.displacement[i] = all.increment[i] = {};
+  for (int index : world.awake) halt_immovable_bodies(world, world.islands[index]);
 }
 
 template <class S>
@@ -90,6 +88,7 @@ void roll_back_island(WorldData<S>& world, int index) {
   restore();
   compute_again(world, world.islands[index]);
   restore();  // computing again changed the State
+  halt_immovable_bodies(world, world.islands[index]);
 }
 
 template <class S>

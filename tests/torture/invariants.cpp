@@ -19,6 +19,9 @@ constexpr int dear = 300;  // evaluations of an island's accelerations in a step
 
 template <class T>
 constexpr double start_tolerance = std::is_same_v<T, double> ? 1e-9 : 1e-4;
+// The World tells of a start beyond it that it could not project.
+template <class T>
+constexpr double velocity_tolerance = std::is_same_v<T, double> ? 1e-6 : 1e-3;
 // The largest C after a step with Newton, as a share of the row's size.
 template <class T>
 constexpr double held_tolerance = std::is_same_v<T, double> ? 1e-10 : 1e-4;
@@ -75,6 +78,7 @@ class Trial {
   std::optional<Verdict> look(BasicWorld<S>& world, int k);
   // The reason why methods may fail on this mechanism now; nullptr if there is none.
   const char* excuse(BasicWorld<S>& world) const;
+  double velocity_off(BasicWorld<S>& world) const;
   Gap gap_now(BasicWorld<S>& world) const;
   std::optional<Verdict> look_at_momentum(const Motion& now, const BasicWorld<S>& world, double gap, int k);
   std::optional<Verdict> look_at_energy(double energy, int k) const;
@@ -290,6 +294,20 @@ Verdict Trial<S>::bits() const {
   return {};
 }
 
+// The largest Cdot, as a share of that by the fastest body along each row.
+template <class S>
+double Trial<S>::velocity_off(BasicWorld<S>& world) const {
+  double speed = 0, worst = 0;
+  for (const BodyMotion& body : motion_of(world).bodies)
+    speed = std::max(speed, norm(body.w) + norm(body.v) / sizes_.length);
+  for (const Inconsistency& row : world.inconsistencies(0)) {
+    const auto& sizes = sizes_.of_joint[static_cast<std::size_t>(row.joint)];
+    if (!row.velocity || sizes.empty() || !(speed > 0)) continue;
+    worst = std::max(worst, std::abs(row.value) / (speed * sizes[static_cast<std::size_t>(row.row)]));
+  }
+  return worst;
+}
+
 template <class S>
 Verdict Trial<S>::run() {
   BasicWorld<S> world = started();
@@ -297,6 +315,8 @@ Verdict Trial<S>::run() {
   const Gap gap = gap_of(world, *scene_, sizes_);
   if (!(gap.share <= start_tolerance<T>))
     return verdict(Outcome::refused, "the start is not on the joints", "", gap.share, start_tolerance<T>);
+  if (const double share = velocity_off(world); !(share <= velocity_tolerance<T>))
+    return verdict(Outcome::refused, "the start does not move along the joints", "", share, velocity_tolerance<T>);
   laws_ = laws_of(*scene_);
   if (asked_->changes || asked_->forces) laws_.forget_what_is_kept();
   independence_ = independence(system_matrix(world), 8 * std::numeric_limits<T>::epsilon());

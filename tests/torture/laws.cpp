@@ -16,6 +16,15 @@ bool one_sided(const JointType& type) {
   return std::count(type.row_kinds.begin(), type.row_kinds.end(), RowKind::inequality) > 0;
 }
 
+// An effect of a spec is bounded, as a brake or a stop, or a force.
+bool bounded(const JointType& effect) { return effect.row_kinds.empty(); }
+
+bool bounded(const CoordinateEffects& effects) {
+  return effects.limit || effects.motor || effects.friction ||
+         std::any_of(effects.specs.begin(), effects.specs.end(),
+                     [](const SpecEffect& spec) { return bounded(*find_coordinate_effect(spec.type)); });
+}
+
 bool immovable(const Scene& scene, int body) {
   return body == world_body || scene.bodies[static_cast<std::size_t>(body)].is_static;
 }
@@ -42,8 +51,10 @@ bool pushed_from_outside(const Scene& scene) {
 }
 
 bool is_free(const Scene& scene) {
-  for (const SceneJoint& joint : scene.joints)
-    if (holds_the_world(scene, joint)) return false;
+  for (const SceneJoint& joint : scene.joints) {
+    const JointType& type = type_of(scene, joint);
+    if (holds_the_world(scene, joint) || (type.is_effect && type.bodies == 1)) return false;
+  }
   for (const SpringDefinition& spring : scene.springs)
     if (immovable(scene, spring.body_a) || immovable(scene, spring.body_b)) return false;
   return !pushed_from_outside(scene);
@@ -88,7 +99,13 @@ struct Exchange {
   void spring(const Softness& s) { gives |= s.by_frequency, takes |= has_damping(s); }
 };
 
+void add_effect(const JointType& type, Exchange& exchange) {
+  const bool any = bounded(type) || type.without_energy;
+  exchange.gives |= any || type.explicit_time, exchange.takes |= any;
+}
+
 void add_effects(const CoordinateEffects& effects, Exchange& exchange) {
+  for (const SpecEffect& spec : effects.specs) add_effect(*find_coordinate_effect(spec.type), exchange);
   exchange.gives |= effects.motor && effects.motor->speed != 0;
   exchange.takes |= effects.motor || effects.limit || effects.friction;
   for (const CoordinateSpring& spring : effects.springs) exchange.spring(spring.softness);
@@ -105,6 +122,7 @@ Exchange exchange_of(const Scene& scene) {
   for (const SceneJoint& joint : scene.joints) {
     const JointType& type = type_of(scene, joint);
     exchange.gives |= type.explicit_time;
+    if (type.is_effect) add_effect(type, exchange);
     exchange.takes |= one_sided(type) || joint.breaking.has_value();
     if (joint.definition.soft) {
       exchange.spring(*joint.definition.soft);
@@ -132,10 +150,10 @@ bool has_soft_rows(const Scene& scene) {
 
 bool is_smooth(const Scene& scene) {
   return std::none_of(scene.joints.begin(), scene.joints.end(), [&](const SceneJoint& joint) {
-    if (one_sided(type_of(scene, joint)) || joint.breaking) return true;
-    return std::any_of(joint.effects.begin(), joint.effects.end(), [](const CoordinateEffects& effects) {
-      return effects.limit || effects.motor || effects.friction;
-    });
+    const JointType& type = type_of(scene, joint);
+    if (one_sided(type) || joint.breaking || (type.is_effect && bounded(type))) return true;
+    return std::any_of(joint.effects.begin(), joint.effects.end(),
+                       [](const CoordinateEffects& effects) { return bounded(effects); });
   });
 }
 
@@ -143,7 +161,7 @@ bool is_smooth(const Scene& scene) {
 bool prescribes_motion(const Scene& scene) {
   return std::any_of(scene.joints.begin(), scene.joints.end(), [&](const SceneJoint& joint) {
     const JointType& type = type_of(scene, joint);
-    if (type.explicit_time) return true;
+    if (type.explicit_time && !type.is_effect) return true;
     if (std::count(type.row_kinds.begin(), type.row_kinds.end(), RowKind::velocity) > 0) return true;
     return std::any_of(joint.effects.begin(), joint.effects.end(), [](const CoordinateEffects& effects) {
       return effects.motor && effects.motor->max_force == unlimited;
@@ -159,9 +177,11 @@ bool may_stop_a_motion(const Scene& scene) {
   for (std::size_t k = 0; k < group.size(); ++k) group[k] = static_cast<int>(k);
   const auto node = [&](int body) { return immovable(scene, body) ? std::size_t(0) : std::size_t(body + 1); };
   for (const SceneJoint& joint : scene.joints) {
-    if (one_sided(type_of(scene, joint))) return true;
+    const JointType& type = type_of(scene, joint);
+    if (type.is_effect && !bounded(type)) continue;
+    if (one_sided(type) || type.is_effect) return true;
     for (const CoordinateEffects& effects : joint.effects)
-      if (effects.limit) return true;
+      if (effects.limit || !effects.specs.empty()) return true;
     const std::vector<int>& bodies = joint.definition.bodies;
     for (std::size_t k = 1; k < bodies.size(); ++k) {
       const int from = group[node(bodies[k])], to = group[node(bodies[0])];

@@ -59,6 +59,9 @@ void each_number(CoordinateEffects& effects, F f) {
     f(effects.motor->speed);
     if (effects.motor->max_force != unlimited) f(effects.motor->max_force);
   }
+  for (SpecEffect& spec : effects.specs)
+    for (NamedValue& value : spec.parameters)
+      for (double& x : value.numbers) f(x);
   for (CoordinateSpring& spring : effects.springs) {
     each_number(spring.softness, f);
     if (spring.rest) f(*spring.rest);

@@ -74,7 +74,9 @@ Gap gap_of(const BasicWorld<S>& world, const Scene& scene, const RowSizes& sizes
   Gap gap;
   for (int j = 0; j < static_cast<int>(scene.joints.size()); ++j) {
     const auto& size = sizes.of_joint[static_cast<std::size_t>(j)];
-    if (size.empty() || world.broken(j) || scene.joints[static_cast<std::size_t>(j)].definition.soft) continue;
+    if (size.empty() || world.broken(j) || world.joint_type(j).is_effect ||
+        scene.joints[static_cast<std::size_t>(j)].definition.soft)
+      continue;
     const std::vector<double> C = world.position_error(j);
     const auto& kinds = world.joint_type(j).row_kinds;
     for (std::size_t r = 0; r < C.size(); ++r) {

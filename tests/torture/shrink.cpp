@@ -98,6 +98,11 @@ class Shrinker {
       smaller |= each(best_.scene.joints[j].effects.size(), [&](Scene& s, std::size_t k) {
         s.joints[j].effects.erase(s.joints[j].effects.begin() + long(k));
       });
+      for (std::size_t e = 0; e < best_.scene.joints[j].effects.size(); ++e)
+        smaller |= each(best_.scene.joints[j].effects[e].specs.size(), [&](Scene& s, std::size_t k) {
+          auto& specs = s.joints[j].effects[e].specs;
+          specs.erase(specs.begin() + long(k));
+        });
     }
     return smaller;
   }

@@ -66,6 +66,13 @@ int Tally::drawn(Dimension dimension, const std::string& joint) const {
   return sum;
 }
 
+std::string Tally::outcomes() const {
+  std::string text;
+  for (const auto& [outcome, count] : outcomes_)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", word(outcome), count);
+  return text;
+}
+
 std::string Tally::text() const {
   std::string text = fmt::format(
       "{} mechanisms, {} steps held; energy judged in {}, momentum in {}; joints left out for want of a pose {}\n",

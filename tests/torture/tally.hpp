@@ -19,8 +19,8 @@ class Tally {
   int count(Outcome outcome) const;
   // The number of mechanisms with that joint.
   int drawn(Dimension dimension, const std::string& joint) const;
-  // All counts as tables.
-  std::string text() const;
+  std::string outcomes() const;  // "held 1839, limited 160, BROKEN 1"
+  std::string text() const;      // all counts as tables
 
  private:
   using Counts = std::map<std::string, int>;

@@ -19,7 +19,7 @@ namespace {
 
 struct Options {
   std::uint64_t seed = 1;
-  int count = 1000;
+  int count = 1000, every = 0;
   double seconds = 0;
   Wish wish;
   std::string method, keep, scene;
@@ -110,6 +110,10 @@ int torture(const Options& options) {
     if (verdict.broken()) report(options, seed, mechanism.scene, verdict);
     else if (options.count == 1) say(verdict);
     if (k % 100 == 99) fmt::print(stderr, "\r{} mechanisms, {} broken", k + 1, tally.count(Outcome::broken));
+    if (options.every > 0 && (k + 1) % options.every == 0) {  // a long run may be stopped at any time
+      fmt::print("up to seed {:#x}: {}\n", seed, tally.outcomes());
+      std::fflush(stdout);
+    }
   }
   fmt::print(stderr, "\r{:60}\r", "");
   if (options.count > 1) fmt::print("{}", tally.text());
@@ -125,6 +129,7 @@ int main(int count, char** arguments) {
   CLI::App app("Random mechanisms, run in all ways, and what must hold of them. Exit 1: an invariant broke.");
   app.add_option("--seed", options.seed, "of the first mechanism; the next has the next");
   app.add_option("--count", options.count, "so many mechanisms");
+  app.add_option("--every", options.every, "a line with the counts after so many mechanisms");
   app.add_option("--seconds", options.seconds, "in place of --count");
   app.add_option("--steps", options.wish.steps, "of each");
   app.add_option("--joint", options.wish.joint, "is part of each; of the space where it is known");
@@ -136,6 +141,7 @@ int main(int count, char** arguments) {
   app.add_flag("--varying", options.varying, "the lengths of the steps vary");
   app.add_flag("--changes", options.changes, "impulses, forces and the loss of a joint, while running");
   app.add_flag("--forces", options.forces, "a force on each body that is a function of time");
+  app.add_flag("--effects", options.wish.effects, "effects of specs, on bodies and on coordinates");
   app.add_flag("--advice", options.advice, "runs each by cdot-run, and follows its advice; judges nothing else");
   app.add_flag("--misfit", options.misfit, "mechanisms at rest with a joint that is a little off; judges nothing else");
   app.add_flag("--no-bits", options.no_bits, "without repetitions: three times as fast");

@@ -174,6 +174,9 @@ TEST(CoordinateEffects, WrongUsesAreRefused) {
       "effect `end_stops` has bounds from 2 to 1: the lower one must not lie above the upper one (lower = 2, upper "
       "= 1)");
   EXPECT_EQ(refusal({"brake", {{"torque", {1}}}}), "");
+  EXPECT_EQ(refusal({"gas_spring", {{"F", {2}}, {"rest", {-1}}}}, "prismatic", "slide"),
+            "effect `gas_spring` has no finite force and energy here (F = 2, rest = -1, kappa = 1.4). Likely fix: the "
+            "sign of a parameter, or another place at the start");
 }
 
 // By default the target is the angle that the joint has.

@@ -208,6 +208,21 @@ TEST(GeneratedEffects, StiffSpringsAndHeavyDragStayStable) {
   }
 }
 
+// A coordinate need not be able to vanish, as the row of a joint; a law needs a value.
+TEST(GeneratedEffects, AreRefusedWhereTheirLawHasNoValue) {
+  for (int k = 0; k < 300; ++k) {
+    World<double> world(with(Integrator::euler));
+    const int a = world.add_body({.x = 3.0 + k, .angle = 0.7 * k, .mass = 1, .inertia = 1e-3});
+    const int b = world.add_body({.y = -0.4 * k, .angle = 2.3 * k, .mass = 1e3, .inertia = 10});
+    const std::vector<NamedValue> points = {{"pa", {0.3, -0.4}}, {"pb", {-2, 0.01 * k}}};
+    std::vector<NamedValue> spring = points, gas = points;
+    spring.insert(spring.end(), {{"k", {10}}, {"rest", {-1}}});
+    gas.insert(gas.end(), {{"F", {10}}, {"rest", {-1}}});
+    EXPECT_NO_THROW(world.add_joint({"spring", {a, b}, spring, {}})) << k;
+    EXPECT_THROW(world.add_joint({"gas_spring", {a, b}, gas, {}}), Error) << k;
+  }
+}
+
 TEST(GeneratedEffects, AnEffectCannotBeASpring) {
   World<double> world(with(Integrator::euler));
   const int body = ball(world, 0, 0);

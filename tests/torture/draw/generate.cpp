@@ -7,6 +7,7 @@
 
 #include "tests/torture/draw/draw.hpp"
 #include "tests/torture/draw/scene_text.hpp"
+#include "tests/torture/draw/spec_effects.hpp"
 
 namespace cdot::torture {
 namespace {
@@ -216,6 +217,7 @@ void Growth::grow() {
   add_loops(world);
   settle<S>();
   if (random_.chance(0.4)) add_effects<S>(random_, scales_, made_.scene);
+  if (wish_.effects) add_spec_effects<S>(random_, scales_, made_.scene, made_.refused);
 }
 
 Mechanism Growth::grown() {

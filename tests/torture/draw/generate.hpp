@@ -18,6 +18,7 @@ struct Wish {
   std::optional<Integrator> integrator = {};
   std::optional<Drift> drift = {};
   std::optional<bool> single = {};
+  bool effects = false;  // of specs too
   int steps = 200;
 };
 

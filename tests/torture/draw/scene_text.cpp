@@ -126,6 +126,12 @@ void write_effects(const CoordinateEffects& effects, Lines lines) {
     lines.raw(key("motor"), motor->max_force == unlimited
                                 ? fmt::format("{{ speed = {} }}", motor->speed)
                                 : fmt::format("{{ speed = {}, max = {} }}", motor->speed, motor->max_force));
+  for (const SpecEffect& spec : effects.specs) {
+    std::string numbers;
+    for (const NamedValue& value : spec.parameters)
+      numbers += fmt::format("{}{} = {}", numbers.empty() ? "" : ", ", value.name, value.numbers[0]);
+    lines.raw(key(spec.type), fmt::format("{{ {} }}", numbers));
+  }
   for (const CoordinateSpring& spring : effects.springs) {
     if (is_damper(spring)) lines.number(key("damper"), spring.softness.damping);
     else

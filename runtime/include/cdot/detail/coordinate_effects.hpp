@@ -2,6 +2,7 @@
 // coordinate_effects(). A program's own come after those of the catalogue (cdot/detail/add_joints.hpp).
 #pragma once
 
+#include <cmath>
 #include <tuple>
 #include <vector>
 
@@ -15,6 +16,8 @@ namespace cdot {
 struct FunctionsOnCoordinate {
   void (*default_value)(int index, double* parameters, double time);
   void (*bounds)(double C, const double* parameters, double time, RowBounds<double>&);  // null: no bounds
+  // True if force and energy are finite at rest; null: it has bounds.
+  bool (*has_value)(double C, const double* parameters, double time);
 };
 
 std::vector<JointType>& registered_coordinate_effects();
@@ -46,11 +49,24 @@ FunctionsOnCoordinate functions_on_coordinate() {
                                       Effect::default_value(index, nowhere, numbers, time);
                                     }
                                   },
-                                  nullptr};
+                                  nullptr, nullptr};
   if constexpr (requires { typename Effect::Bounded; })
     functions.bounds = [](double C, const double* parameters, double time, RowBounds<double>& B) {
       const double value[1] = {C};
       BoundedOnCoordinate<Effect>::bounds(value, *reinterpret_cast<const Numbers*>(parameters), time, B);
+    };
+  else
+    functions.has_value = [](double C, const double* parameters, double time) {
+      const double value[1] = {C}, rate[1] = {0};
+      const Numbers& p = *reinterpret_cast<const Numbers*>(parameters);
+      double force[1], energy = 0;
+      const auto find = [&](const auto&... mass) {
+        Effect::force(value, rate, p, time, mass..., force);
+        if constexpr (requires { &Effect::template energy<double>; }) Effect::energy(value, p, mass..., energy);
+      };
+      if constexpr (requires { requires Effect::reads_mass; }) find(1.0);
+      else find();
+      return std::isfinite(force[0]) && std::isfinite(energy);
     };
   return functions;
 }

@@ -21,6 +21,7 @@
 #include <limits>
 
 #include <cdot/detail/block.hpp>
+#include <cdot/detail/drives.hpp>
 
 namespace cdot {
 
@@ -49,9 +50,9 @@ struct EffectLaw {
     return parameters_of<S, Effect, where>(batch, slot);
   }
   // f(numbers..., mass) or f(numbers...)
-  template <class F, class... Numbers>
+  template <class Number = T, class F, class... Numbers>
   static void with_mass(const Batch<S>& batch, int slot, F f, const Numbers&... numbers) {
-    if constexpr (requires { requires Effect::reads_mass; }) f(numbers..., inverse(batch.factor[slot]));
+    if constexpr (requires { requires Effect::reads_mass; }) f(numbers..., Number(inverse(batch.factor[slot])));
     else f(numbers...);
   }
   static Row C(const Batch<S>& batch, int slot) { return reinterpret_cast<Row>(batch.C[slot * rows]); }
@@ -103,6 +104,20 @@ struct EffectLaw {
       with_mass(
           batch, slot, [&](const auto&... n) { Effect::energy(n..., E); }, C(batch, slot), parameters(batch, slot));
     return double(E);
+  }
+
+  // What the parameters add to the energy as they follow functions of time.
+  static double power(const Batch<S>& batch, int slot) {
+    Jet<T> E = 0;
+    if constexpr (has_energy) {
+      if (batch.drives_of(slot).empty()) return 0;
+      using Jets = typename Effect::template Parameters<Jet<T>>;
+      Jet<T> at[rows];
+      for (int r = 0; r < rows; ++r) at[r] = batch.C[slot * rows + r];
+      const auto f = [&](const auto&... n) { Effect::energy(n..., E); };
+      with_mass<Jet<T>>(batch, slot, f, at, jets_of<Jets>(batch, slot, where == ParametersAt::row));
+    }
+    return double(E.first);
   }
 
   // J v + dC/dt, from Batch::rate and the bias before a law adds to it.
@@ -186,6 +201,7 @@ inline constexpr Law<S> effect_law{
     .spring = EffectLaw<S, Effect, where>::spring,
     .unstored = EffectLaw<S, Effect, where>::unstored,
     .in_time = Effect::law_in_time,
-    .within_limits = EffectLaw<S, Effect, where>::has_limits ? EffectLaw<S, Effect, where>::within_limits : nullptr};
+    .within_limits = EffectLaw<S, Effect, where>::has_limits ? EffectLaw<S, Effect, where>::within_limits : nullptr,
+    .power = EffectLaw<S, Effect, where>::has_energy ? EffectLaw<S, Effect, where>::power : nullptr};
 
 }  // namespace cdot

@@ -65,6 +65,7 @@ inline constexpr Law<S> linear_law{
     .force = LinearLaw<S, Effect>::force,
     .guard = nullptr,
     .spring = Effect::slopes_vanish ? nullptr : LinearLaw<S, Effect>::spring,
-    .by_mass = Effect::reads_mass ? LinearLaw<S, Effect>::by_mass : nullptr};
+    .by_mass = Effect::reads_mass ? LinearLaw<S, Effect>::by_mass : nullptr,
+    .power = LinearLaw<S, Effect>::Force::has_energy ? LinearLaw<S, Effect>::Force::power : nullptr};
 
 }  // namespace cdot
