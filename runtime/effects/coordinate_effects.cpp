@@ -12,6 +12,7 @@
 
 #include "runtime/effects/effect.hpp"
 #include "runtime/rows/parameters.hpp"
+#include "runtime/state/drives.hpp"
 #include "runtime/state/probe.hpp"
 
 namespace cdot {
@@ -171,7 +172,9 @@ const JointType* find_coordinate_effect(std::string_view name) {
   return found == types.end() ? nullptr : &*found;
 }
 
-bool SpecEffect::acts_one_way() const { return coordinate_effects()[index_of(type)].without_energy; }
+bool SpecEffect::acts_one_way() const {
+  return coordinate_effects()[index_of(type)].without_energy || in_time(parameters);
+}
 #endif
 
 template <class S>
@@ -186,9 +189,14 @@ int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, con
   if (unit != type.coordinate_unit)
     throw Error(fmt::format("effect `{}` acts on a coordinate in {}; `{}` of joint `{}` is in {}", type.name,
                             type.coordinate_unit, coordinate, of_joint.name, unit));
-  const auto constants = complete(index, effect.parameters, world.coordinate(joint, coordinate), data.time);
+  const std::vector<NamedValue> given = at_time(effect.parameters, data.time);
+  const auto constants = complete(index, given, world.coordinate(joint, coordinate), data.time);
+  const Law<S>* const law = &law_of<S>(index).law;
+  check_functions<S>(type, given, std::span(&law, law->of_spec ? 1 : 0));
   note_change(data);
-  return add_coordinate_row(data, joint, coordinate, &law_of<S>(index).law, constants, type.name);
+  const int number = add_coordinate_row(data, joint, coordinate, law, constants, type.name);
+  if (number >= 0) add_drives(data, joint, number, type, given);
+  return number;
 }
 
 template <class S>
@@ -198,6 +206,8 @@ void set_effect(BasicWorld<S>& world, int joint, int number, const SpecEffect& e
   const NamedLaw<S> named = law_of<S>(index);
   const Batch<S>* const batch = batch_of_effect(world, joint, number, named);
   if (!batch) return;
+  refuse_functions(effect.parameters, "set_effect()");
+  refuse_driven(data.joints[joint], coordinate_effects()[index], number, effect.parameters);
   const int slot = slot_of(data, data.joints[joint].places[static_cast<std::size_t>(number)]);
   const auto* const now = batch->constants.data() + slot * named.law.constants;
   std::vector<double> numbers(now, now + named.law.constants);

@@ -76,6 +76,7 @@ void add_rows(WorldData<S>& world, int joint, const BlockOps<S>* ops, const Law<
     grow(batch.upper, ops->rows, std::numeric_limits<T>::infinity());
     grow(batch.mode, ops->rows, Mode::bounded);
     for (double constant : constants) batch.constants.push_back(T(constant));
+    if (!batch.spans.empty()) batch.spans.push_back(-unbounded), batch.spans.push_back(unbounded);
   }
   if (ops->start_counting) {
     grow(batch.counters, ops->counters);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runtime/tool/scene/keys.hpp"
+#include "runtime/tool/scene/profile.hpp"
 #include "runtime/tool/scene/read.hpp"
 
 namespace cdot {
@@ -63,7 +64,7 @@ std::string example_of(const JointType& type) {
 }
 
 // An effect of a spec: { k = 50, most = 3 }, or the number of its only parameter.
-void read_spec(Entry& entry, const JointType& type, CoordinateEffects& effects) {
+void read_spec(Entry& entry, const JointType& type, double duration, CoordinateEffects& effects) {
   const std::string key(type.name);
   SpecEffect effect{key};
   std::vector<const ParameterInfo*> needed;
@@ -72,27 +73,31 @@ void read_spec(Entry& entry, const JointType& type, CoordinateEffects& effects) 
   };
   for (std::size_t k = 0; k < type.parameters.size(); ++k)
     if (type.coordinate_uses[k] == CoordinateUse::required) needed.push_back(&type.parameters[k]);
+  const auto read = [&](Entry& from, const std::string& name, const ParameterInfo& info) {
+    const NumberNeed need{info.unit, info.above, info.below, duration};
+    if (const auto number = read_numbers_in_time(from, name, {}, quantity(info), need))
+      effect.parameters.push_back(named_value(std::string(info.name), *number));
+  };
   if (needed.size() == 1 && !entry.is_table(key)) {
-    if (const auto number = entry.number(key.c_str(), quantity(*needed[0])))
-      effect.parameters.push_back({std::string(needed[0]->name), {*number}});
+    read(entry, key, *needed[0]);
   } else if (auto table = entry.table(key, fmt::format("{{ {} }}", example_of(type)))) {
     for (std::size_t k = 0; k < type.parameters.size(); ++k) {
       const ParameterInfo& info = type.parameters[k];
       const std::string name(info.name);
       if (type.coordinate_uses[k] == CoordinateUse::none) continue;
       if (type.coordinate_uses[k] == CoordinateUse::required) table->required(name, name + " = 1");
-      if (const auto number = table->number(name, quantity(info))) effect.parameters.push_back({name, {*number}});
+      read(*table, name, info);
     }
     table->close();
   }
   effects.specs.push_back(std::move(effect));
 }
 
-void read_specs(Entry& entry, const CoordinateInfo& coordinate, CoordinateEffects& effects) {
+void read_specs(Entry& entry, const CoordinateInfo& coordinate, double duration, CoordinateEffects& effects) {
   for (const JointType& type : coordinate_effects()) {
     const std::string key(type.name);
     if (is_key_of_kind(key) || !entry.has(key)) continue;
-    if (type.coordinate_unit == coordinate.unit) read_spec(entry, type, effects);
+    if (type.coordinate_unit == coordinate.unit) read_spec(entry, type, duration, effects);
     else
       entry.error(entry.where(key),
                   fmt::format("`{}` acts on coordinates in {}; `{}` is in {}", key, type.coordinate_unit,
@@ -103,7 +108,7 @@ void read_specs(Entry& entry, const CoordinateInfo& coordinate, CoordinateEffect
 
 }  // namespace
 
-void read_effects(Entry& joint, const JointType& type, std::vector<CoordinateEffects>& to) {
+void read_effects(Entry& joint, const JointType& type, double duration, std::vector<CoordinateEffects>& to) {
   for (const CoordinateInfo& coordinate : type.coordinates) {
     const std::string key(coordinate.name);
     std::optional<Entry> entry = joint.table(key);
@@ -116,7 +121,7 @@ void read_effects(Entry& joint, const JointType& type, std::vector<CoordinateEff
     }
     CoordinateEffects effects{key};
     for (const EffectKind* kind : effect_kinds) read_effect(*entry, *kind, coordinate.unit == "rad", effects);
-    read_specs(*entry, coordinate, effects);
+    read_specs(*entry, coordinate, duration, effects);
     entry->close();
     to.push_back(std::move(effects));
   }

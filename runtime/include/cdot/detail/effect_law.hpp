@@ -15,6 +15,7 @@
 #include <limits>
 
 #include <cdot/detail/block.hpp>
+#include <cdot/detail/drives.hpp>
 
 namespace cdot {
 
@@ -82,6 +83,19 @@ struct EffectLaw {
     T E = 0;
     if constexpr (has_energy) Effect::energy(C(batch, slot), parameters(batch, slot), E);
     return double(E);
+  }
+
+  // What the parameters add to the energy as they follow functions of time.
+  static double power(const Batch<S>& batch, int slot) {
+    Jet<T> E = 0;
+    if constexpr (has_energy) {
+      if (batch.drives_of(slot).empty()) return 0;
+      using Jets = typename Effect::template Parameters<Jet<T>>;
+      Jet<T> at[rows];
+      for (int r = 0; r < rows; ++r) at[r] = batch.C[slot * rows + r];
+      Effect::energy(at, jets_of<Jets>(batch, slot, where == ParametersAt::row), E);
+    }
+    return double(E.first);
   }
 
   // J v + dC/dt, from Batch::rate and the bias before a law adds to it.
@@ -165,6 +179,7 @@ inline constexpr Law<S> effect_law{
     .spring = EffectLaw<S, Effect, where>::spring,
     .unstored = EffectLaw<S, Effect, where>::unstored,
     .in_time = Effect::law_in_time,
-    .within_limits = EffectLaw<S, Effect, where>::has_limits ? EffectLaw<S, Effect, where>::within_limits : nullptr};
+    .within_limits = EffectLaw<S, Effect, where>::has_limits ? EffectLaw<S, Effect, where>::within_limits : nullptr,
+    .power = EffectLaw<S, Effect, where>::has_energy ? EffectLaw<S, Effect, where>::power : nullptr};
 
 }  // namespace cdot
