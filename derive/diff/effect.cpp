@@ -100,7 +100,9 @@ double half_difference(Expr after, Expr before, const Sample& sample) {
 
 // Along row i: -dE/ds and what has no energy.
 Side force_side(const Entry& entry, const std::vector<std::size_t>& rows) {
-  Side side{{static_cast<int>(rows.size()), 1, {}}, {}, entry.law->energy ? "the slope of the energy" : "the law of the spec"};
+  Side side{{static_cast<int>(rows.size()), 1, {}},
+            {},
+            entry.law->energy ? "the slope of the energy" : "the law of the spec"};
   for (const std::size_t i : rows) side.generated.entries.push_back(force_along(entry, i));
   side.measured = [&entry, rows](int r, int, const Sample& sample) {
     const std::size_t i = rows[static_cast<std::size_t>(r)];
@@ -138,8 +140,7 @@ Side wrench_side(const Entry& entry) {
   Side side{{width, 1, {}}, {}, "virtual work"};
   for (int c = 0; c < width; ++c) {
     Expr sum = zero_of(entry);
-    for (std::size_t i = 0; i < J.size(); ++i)
-      sum = sum + J[i][static_cast<std::size_t>(c)] * force_along(entry, i);
+    for (std::size_t i = 0; i < J.size(); ++i) sum = sum + J[i][static_cast<std::size_t>(c)] * force_along(entry, i);
     side.generated.entries.push_back(sum);
   }
   ScalarRow energy;
@@ -236,8 +237,8 @@ void judge_energy(Entry& entry, const HandItem& item) {
                                        entry.as_assumed(generated), entry.poses());
     ScalarRow row;
     row.C = generated;
-    d.confirmed = entry.confirm().against([&](const Sample& sample) { return entry.confirm().rate(row, sample); },
-                                          rate, claimed, "its rate by central differences of the energy");
+    d.confirmed = entry.confirm().against([&](const Sample& sample) { return entry.confirm().rate(row, sample); }, rate,
+                                          claimed, "its rate by central differences of the energy");
     return finished(entry, item, std::move(d), published, generated);
   });
 }

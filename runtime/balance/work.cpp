@@ -109,7 +109,8 @@ enum class Kick : char { only, first, second };
 // A rate of 0 by a force that may be 0 is friction, which can only take.
 template <class S>
 void work_of_rate(const Batch<S>& batch, const Guard<typename S::Scalar>& guard, double done, Work& work) {
-  if (guard.rate != 0 || batch.law->in_time || batch.driven() || guard.lower > 0 || guard.upper < 0) work.put(batch.source, done);
+  if (guard.rate != 0 || batch.law->in_time || batch.driven() || guard.lower > 0 || guard.upper < 0)
+    work.put(batch.source, done);
   else work.take(batch.source, done);
 }
 

@@ -1,6 +1,4 @@
 // Tables and functions of time.
-#include <cdot/profile.hpp>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -8,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cdot/kernel.hpp>
+#include <cdot/profile.hpp>
 #include <cdot/settings.hpp>
 
 #include "runtime/rows/spline.hpp"

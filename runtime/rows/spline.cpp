@@ -80,8 +80,7 @@ std::vector<double> periodic_slopes(const Rows& rows) {
   system.diagonal[0] -= gamma, system.diagonal[n - 1] -= first * last / gamma;
   corner[0] = gamma, corner[n - 1] = last;
   system.solve(slope), system.solve(corner);
-  const double share =
-      (slope[0] + first * slope[n - 1] / gamma) / (1 + corner[0] + first * corner[n - 1] / gamma);
+  const double share = (slope[0] + first * slope[n - 1] / gamma) / (1 + corner[0] + first * corner[n - 1] / gamma);
   for (std::size_t k = 0; k < n; ++k) slope[k] -= share * corner[k];
   slope.push_back(slope[0]);
   return slope;

@@ -50,9 +50,9 @@ bool leaves_its_range(const Island<S>& island) {
   return false;
 }
 
-#define CDOT_INSTANTIATE(S)                                                            \
-  template double begin_piece(WorldData<S>&, Island<S>&, double, double, int);         \
-  template double begin_pieces(WorldData<S>&, double, double);                         \
+#define CDOT_INSTANTIATE(S)                                                    \
+  template double begin_piece(WorldData<S>&, Island<S>&, double, double, int); \
+  template double begin_pieces(WorldData<S>&, double, double);                 \
   template bool leaves_its_range(const Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

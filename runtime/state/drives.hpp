@@ -21,8 +21,8 @@ void refuse_functions(const std::vector<NamedValue>& given, const char* where);
 // JointDrive.
 void refuse_driven(const JointModel& joint, const JointType& type, int place, const std::vector<NamedValue>& given);
 
-// Throws Error if these values of a joint or an effect of this type cannot follow their functions. The laws are those of
-// its bounded rows.
+// Throws Error if these values of a joint or an effect of this type cannot follow their functions. The laws are those
+// of its bounded rows.
 template <class S>
 void check_functions(const JointType& type, const std::vector<NamedValue>& given, std::span<const Law<S>* const> laws);
 

@@ -219,9 +219,10 @@ class HandParser {
     const bool empty = std::none_of(e.items.begin(), e.items.end(), says);
     if (e.id.empty() || p_.failed()) return;
     if (empty && e.listed.empty())
-      out_.diagnostics.error(e.where, "the entry " + quote(e.id) + " has nothing to compare",
-                             "give C, Cdot, J, K, b, an update or a claim, of an effect energy, force, stiffness, damping "
-                             "or wrench, or the reason: listed \"...\"");
+      out_.diagnostics.error(
+          e.where, "the entry " + quote(e.id) + " has nothing to compare",
+          "give C, Cdot, J, K, b, an update or a claim, of an effect energy, force, stiffness, damping "
+          "or wrench, or the reason: listed \"...\"");
     if (e.source.empty())
       out_.diagnostics.warning(e.where, "the entry " + quote(e.id) + " has no source",
                                "name its publication: source \"...\"");

@@ -1,11 +1,12 @@
-// A number as a function of time: a force, a target, a speed, a length. A parameter of a joint or of an effect may follow
-// one: NamedValue::in_time. Steps allocate nothing for it, and the same time gives the same bits.
+// A number as a function of time: a force, a target, a speed, a length. A parameter of a joint or of an effect may
+// follow one: NamedValue::in_time. Steps allocate nothing for it, and the same time gives the same bits.
 //
 //   Profile ramp = Profile::table({.times = {0, 1, 5}, .values = {0, 2, 2}});
 //   Profile swing = Profile::function([](double t) -> ProfileValue {
 //     return {std::sin(t), std::cos(t), -std::sin(t)};
 //   });
-//   world.add_joint({.type = "push", .bodies = {rod}, .parameters = {{"pa", {0, 0}}, in_time("F", {swing, 0.0})}, ...});
+//   world.add_joint({.type = "push", .bodies = {rod}, .parameters = {{"pa", {0, 0}}, in_time("F", {swing, 0.0})},
+//   ...});
 #pragma once
 
 #include <cstdint>

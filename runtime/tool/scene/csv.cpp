@@ -68,8 +68,7 @@ Csv read_csv(const std::string& path) {
       continue;
     }
     if (cells.size() != csv.heads_.size())
-      throw Error(
-          fmt::format("line {} has {} numbers for {} columns", number, cells.size(), csv.heads_.size()));
+      throw Error(fmt::format("line {} has {} numbers for {} columns", number, cells.size(), csv.heads_.size()));
     for (std::size_t k = 0; k < cells.size(); ++k) csv.columns_[k].push_back(number_of(cells[k], number));
   }
   if (csv.heads_.empty()) throw Error("the file is empty: it needs a line of heads, \"time, F\", and lines of numbers");

@@ -60,7 +60,7 @@ class Entry {
   // The elements of a list of this size, or without a size the value itself.
   std::optional<std::vector<Written>> written_numbers(const std::string& key, std::optional<std::size_t> size,
                                                       Quantity = {});
-  Entry at(const Written& table) const;  // as an entry of its own
+  Entry at(const Written& table) const;               // as an entry of its own
   std::string beside(const std::string& path) const;  // a path from the folder of the file
 
   // `count` lists of three numbers, one after the other.

@@ -92,8 +92,8 @@ bool means_coordinates(Entry& joint, const JointType& type, const std::string& k
 }
 
 // The numbers of one parameter in the frame of its body. Nothing if it is wrong or takes its default.
-std::optional<NamedValue> read_parameter(Entry& joint, const ParameterInfo& parameter, int body,
-                                         std::optional<Vec3> at, const BodyNames& names) {
+std::optional<NamedValue> read_parameter(Entry& joint, const ParameterInfo& parameter, int body, std::optional<Vec3> at,
+                                         const BodyNames& names) {
   const std::string key(parameter.name);
   const bool in_space = names.dimension() == Dimension::spatial, scalar = parameter.kind == ParameterKind::scalar;
   const bool vector = parameter.kind == ParameterKind::point || parameter.kind == ParameterKind::vector;

@@ -71,8 +71,8 @@ std::optional<SceneNumber> read_table_of_numbers(Entry& table, const std::string
   table.required("column", fmt::format("column = \"{}\", the head of a column", key));
   const auto file = table.text("table"), column = table.text("column");
   const auto time = table.has("time") ? table.text("time") : std::optional<std::string>("time");
-  const auto interpolate =
-      table.has("interpolate") ? table.choice("interpolate", names_in(interpolations)) : std::optional<std::string>("linear");
+  const auto interpolate = table.has("interpolate") ? table.choice("interpolate", names_in(interpolations))
+                                                    : std::optional<std::string>("linear");
   const auto beyond = table.has("beyond") ? table.choice("beyond", names_in(ends)) : std::optional<std::string>("hold");
   table.close();
   if (!file || !column || !time || !interpolate || !beyond) return {};

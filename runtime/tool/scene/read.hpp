@@ -53,6 +53,7 @@ std::optional<Softness> read_softness(Entry& joint, const char* key);
 
 void read_settings(Entry& top, Scene& scene);                         // tool/scene/settings.cpp
 void read_bodies(Entry& top, Scene& scene);                           // tool/scene/bodies.cpp
+void find_forces_in_time(Scene& scene);                               // tool/scene/bodies.cpp
 void read_joints(Entry& top, const BodyNames& names, Scene& scene);   // tool/scene/joints.cpp
 void read_springs(Entry& top, const BodyNames& names, Scene& scene);  // tool/scene/joints.cpp
 void read_sensors(Entry& top, Scene& scene);                          // tool/scene/sensors.cpp

@@ -1,4 +1,5 @@
-// `cdot diff` on the laws of effects: energies, forces, slopes and wrenches, with the mistakes that people make in them.
+// `cdot diff` on the laws of effects: energies, forces, slopes and wrenches, with the mistakes that people make in
+// them.
 #include <algorithm>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -31,13 +32,15 @@ void expect_found(const LawMistake& m) {
 
 TEST(EffectDiff, MistakesAreNamed) {
   for (const LawMistake& m : {
-           LawMistake{"spring", "  energy = k*(length - rest)^2\n", "factor", "energy: it is 2 times what it should be"},
+           LawMistake{"spring", "  energy = k*(length - rest)^2\n", "factor",
+                      "energy: it is 2 times what it should be"},
            {"spring", "  energy = k/2*(length + rest)^2\n", "sign", "energy"},
            {"spring", "  force = k*(length - rest) + d*rate(length)\n", "sign", "force, row length: the sign is wrong"},
            {"spring", "  force = -k*(length - rest)\n", "missing term", "force, row length"},
            {"spring", "  stiffness = -k\n", "sign", "stiffness, row length, length: the sign is wrong"},
            {"spring", "  damping = 2*d\n", "factor", "damping, row length, length: it is 2 times"},
-           {"bushing", "  stiffness = [ kx, 0, 0; 0, kx, 0; 0, 0, k_turn ]\n", "factor", "stiffness, row across, across: it has kx where ky belongs"},
+           {"bushing", "  stiffness = [ kx, 0, 0; 0, kx, 0; 0, 0, k_turn ]\n", "factor",
+            "stiffness, row across, across: it has kx where ky belongs"},
            {"dc_motor", "  force = stall*(1 + rate(turn)/idle)\n", "wrong body", "w_a and w_b are exchanged"},
            {"torsion_spring",
             "  wrench = [ 0; 0; -k*(angle_between - rest) - d*rate(angle_between); 0; 0; -k*(angle_between - rest) - "
@@ -52,8 +55,9 @@ TEST(EffectDiff, RightFormulasAgree) {
   for (const auto& [effect, items] : {
            std::pair{"spring", "  energy = k/2*(norm(pa - pb) - rest)^2\n"},
            {"spring", "  force = k*(rest - length) - d*dot(unit(pa - pb), v(pa) - v(pb))\n"},
-           {"spatial/spring", "  let f = -(k*(norm(pa - pb) - rest) + d*dot(v(pa) - v(pb), unit(pa - pb)))*unit(pa - pb)\n"
-                              "  wrench = [ f; cross(ra, f); -f; -cross(rb, f) ]\n"},
+           {"spatial/spring",
+            "  let f = -(k*(norm(pa - pb) - rest) + d*dot(v(pa) - v(pb), unit(pa - pb)))*unit(pa - pb)\n"
+            "  wrench = [ f; cross(ra, f); -f; -cross(rb, f) ]\n"},
            {"spatial/thruster", "  wrench = [ F*n; cross(ra, F*n) ]\n"},
            {"servo", "  let e = k*(turn - target)\n  force = -e*most/sqrt(most^2 + e^2) - d*rate(turn)\n"},
            {"position_drive", "  stiffness = k\n  damping = d\n"},

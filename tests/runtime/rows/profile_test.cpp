@@ -1,17 +1,14 @@
 // Tables and functions of time: values and derivatives between rows, jumps, what lies beyond the ends, mistakes.
-#include <cdot/profile.hpp>
-
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include <cdot/profile.hpp>
 #include <cdot/settings.hpp>
 
 namespace cdot::test {
 namespace {
 
-ProfileValue cubic_at(double t) {
-  return {2 - t + 0.5 * t * t - 0.25 * t * t * t, -1 + t - 0.75 * t * t, 1 - 1.5 * t};
-}
+ProfileValue cubic_at(double t) { return {2 - t + 0.5 * t * t - 0.25 * t * t * t, -1 + t - 0.75 * t * t, 1 - 1.5 * t}; }
 
 TEST(Profiles, ACubicTableIsExactForCubics) {
   ProfileTable table;
@@ -53,17 +50,16 @@ TEST(Profiles, ACubicTableThatRepeatsHasNoSeam) {
   };
   EXPECT_LT(worst(20), 1e-4);
   EXPECT_GT(worst(20) / worst(40), 0.9 * 16);
-  const Profile two = Profile::table({.times = {0, 1, 3},
-                                      .values = {0, 1, 0},
-                                      .interpolation = Interpolation::cubic,
-                                      .beyond = Beyond::repeat});
+  const Profile two = Profile::table(
+      {.times = {0, 1, 3}, .values = {0, 1, 0}, .interpolation = Interpolation::cubic, .beyond = Beyond::repeat});
   EXPECT_NEAR(two.at(3 - 1e-9).rate, two.at(1e-9).rate, 1e-7);
   EXPECT_NEAR(two.at(1 - 1e-9).acceleration, two.at(1 + 1e-9).acceleration, 1e-7);
   EXPECT_NEAR(two.at(3 - 1e-9).acceleration, two.at(1e-9).acceleration, 1e-7);
 }
 
 TEST(Profiles, StepsHoldUntilTheNextRow) {
-  const Profile profile = Profile::table({.times = {1, 2, 4}, .values = {5, 7, 6}, .interpolation = Interpolation::step});
+  const Profile profile =
+      Profile::table({.times = {1, 2, 4}, .values = {5, 7, 6}, .interpolation = Interpolation::step});
   EXPECT_EQ(profile.at(0).value, 5);
   EXPECT_EQ(profile.at(1.999).value, 5);
   EXPECT_EQ(profile.at(2).value, 7);
@@ -79,8 +75,8 @@ TEST(Profiles, BreaksHaveTheOrderOfTheDerivativeThatJumps) {
   EXPECT_EQ(linear.next_break(-1, 1), 0);
   EXPECT_TRUE(std::isinf(linear.next_break(1, 0)));
   EXPECT_EQ(linear.next_break(1, 1), 3);
-  const Profile spline = Profile::table(
-      {.times = {0, 1, 2, 3}, .values = {0, 2, 1, 5}, .interpolation = Interpolation::cubic});
+  const Profile spline =
+      Profile::table({.times = {0, 1, 2, 3}, .values = {0, 2, 1, 5}, .interpolation = Interpolation::cubic});
   EXPECT_EQ(spline.next_break(0.5, 2), 3);  // it holds its last value: a kink
   EXPECT_EQ(spline.next_break(0.5, 3), 1);
 }
@@ -122,8 +118,9 @@ TEST(Profiles, WrongTablesAreRefused) {
   expect_refused({.times = {0, 1, 1, 1}, .values = {1, 1, 1, 1}}, "rows 2 to 4");
   expect_refused({.times = {0, 1, 1}, .values = {1, 1, 1}, .interpolation = Interpolation::step}, "only a linear");
   expect_refused({.times = {0, NAN}, .values = {1, 1}}, "row 2 of a table is not finite");
-  expect_refused({.times = {0, 1, 2}, .values = {1, 1, 2}, .interpolation = Interpolation::cubic, .beyond = Beyond::repeat},
-                 "begins with 1 and ends with 2");
+  expect_refused(
+      {.times = {0, 1, 2}, .values = {1, 1, 2}, .interpolation = Interpolation::cubic, .beyond = Beyond::repeat},
+      "begins with 1 and ends with 2");
 }
 
 }  // namespace
