@@ -31,7 +31,8 @@ fs::path hand_beside(fs::path spec) { return spec.replace_extension(".hand"); }
 Pairing pair_of_hand(const fs::path& hand, const SpecsFolder& folder) {
   if (!fs::exists(hand)) throw NoSuchSpec(fmt::format("no such file: {}", hand.string()));
   fs::path spec = hand;
-  spec.replace_extension(".joint");
+  for (const char* const extension : {".joint", ".effect"})
+    if (spec.replace_extension(extension); fs::exists(spec)) break;
   if (!fs::exists(spec)) spec = folder.find(hand.stem().string());
   return {hand, spec, ""};
 }

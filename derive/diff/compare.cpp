@@ -65,6 +65,8 @@ std::optional<std::vector<int>> further_rows(const Matrix& larger, const Matrix&
   return further;
 }
 
+}  // namespace
+
 // Matrices of different sizes: transposed, or with missing or extra rows.
 void compare_sizes(Entry& entry, const HandItem& item, const std::string& what, const Matrix& hand,
                    const Matrix& generated) {
@@ -98,6 +100,8 @@ void compare_sizes(Entry& entry, const HandItem& item, const std::string& what, 
             none + (more ? "; without that row both sides agree at 12 poses"
                          : "; the rows that are there agree at 12 poses"));
 }
+
+namespace {
 
 // Each leaf of C that moves with a body, and the term of the product rule that it brings into `quantity`, which picks
 // an entry of J or all of Cdot.

@@ -154,8 +154,8 @@ Confirm::Measure Confirm::error(const Measure& measured, Expr e) const {
   };
 }
 
-std::string Confirm::against(const Measure& measured, Expr generated, Expr published) const {
-  return worst("central differences of C", poses_, error(measured, generated), error(measured, published));
+std::string Confirm::against(const Measure& measured, Expr generated, Expr published, const std::string& how) const {
+  return worst(how, poses_, error(measured, generated), error(measured, published));
 }
 
 double Confirm::mass(const ScalarRow& row, const ScalarRow& other, const Sample& sample) const {

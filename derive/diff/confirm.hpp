@@ -41,7 +41,8 @@ class Confirm {
   Motion columns(const ScalarRow& row, const Sample& sample) const { return in_form(gradient(row, sample), sample); }
   double mass(const ScalarRow& row, const ScalarRow& other, const Sample& sample) const;
   double rate(const ScalarRow& row, const Sample& sample) const;
-  std::string against(const Measure& measured, Expr generated, Expr published) const;
+  std::string against(const Measure& measured, Expr generated, Expr published,
+                      const std::string& how = "central differences of C") const;
   // `fulfilled`: poses with C = 0. The published C must vanish there, unless the row is a coordinate.
   std::string value_of_C(const ScalarRow& row, const Poses& fulfilled, Expr generated, Expr published) const;
   std::string claim(Expr left, Expr right) const;

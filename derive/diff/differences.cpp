@@ -68,7 +68,7 @@ Differences merged(Differences entries, const Sides& sides, const Group& rows, c
     for (std::string Difference::*formula : formulas) all += "\n" + without_component(d.*formula, i);
     return all;
   };
-  if (kinds && entries.size() == 3 && all_same(entries, vector_formulas)) {
+  if (kinds && entries.size() == static_cast<std::size_t>(joint.dimension) && all_same(entries, vector_formulas)) {
     set_reason(one, without_component(reason_of(entries[0]), 0));
     for (std::string Difference::*formula : formulas) one.*formula = without_component(one.*formula, 0);
     return {one};

@@ -100,7 +100,9 @@ void prepare_poses(Entry& entry, const std::vector<Part>& parts) {
   }
   for (const Parameter& p : entry.joint.parameters) take_any(p.symbol);
   for (const Let& let : entry.joint.lets) take_any(let.value);
-  for (const ScalarRow& row : entry.block.rows) take_any(row.C);
+  for (const ScalarRow& row : entry.block.rows) take_any(row.C), take_any(row.Cdot);
+  if (entry.law)
+    for (const Expr e : expressions_of_law(entry)) take_any(e);
   entry.anywhere.emplace(entry.joint, all);
   if (equations.empty()) return;
   entry.assumed = entry.anywhere->where(equations);
@@ -156,6 +158,7 @@ void judge_item(Entry& entry, const Part& part, const HandItem& item) {
   if (item.kind == HandItem::Kind::bound) return judge_bound(entry, part, item);
   if (item.kind == HandItem::Kind::claim) return judge_claim(entry, item);
   if (item.kind != HandItem::Kind::quantity) return;
+  if (is_of_law(item.what)) return judge_law(entry, part, item);
   const std::size_t before = entry.verdict.differences.size(), told = entry.verdict.remarks.size();
   const bool others_need_assumptions = std::exchange(entry.needs_assumptions, false);
   if (item.what == "C") judge_C(entry, part, item);
@@ -260,7 +263,13 @@ Entry read_entry(const HandEntryAst& ast, const HandFile& file, const ReadResult
   const auto generated = [&](const std::vector<std::string>& names) {
     return generated_for(entry, rows_named(entry, names));
   };
+  if (joint.law) {
+    Derivation derivation(joint);
+    derive_law(derivation);
+    entry.law = derivation.law;
+  }
   entry.hand = elaborate_entry(ast, file, read, generated, diagnostics);
+  if (entry.law) read_over_bodies(entry);
   Judgement& verdict = entry.verdict;
   verdict.id = entry.hand.id;
   verdict.joint = joint.name;

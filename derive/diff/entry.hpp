@@ -30,6 +30,7 @@ struct Entry {
   Form form = Form::global;  // of J's columns
   Block block;
   std::vector<Block> coordinates;
+  std::optional<DerivedLaw> law;  // of an effect
   std::map<std::string, std::string> changed_anchors;
   HandEntry hand;
   std::optional<Poses> anywhere, assumed, on_constraint;
@@ -73,6 +74,13 @@ void judge_claim(Entry& entry, const HandItem& item);
 void judge_problem(Entry& entry, const Part& part, const HandItem& item);  // a formula without a value
 void judge_updates(Entry& entry, const Part& part);
 void judge_bound(Entry& entry, const Part& part, const HandItem& item);
+// Of an effect: its formulas over the bodies, without the leaves of its law (effect.cpp).
+void read_over_bodies(Entry& entry);
+std::vector<Expr> expressions_of_law(const Entry& entry);
+void judge_law(Entry& entry, const Part& part, const HandItem& item);  // energy, force, stiffness, damping, wrench
+// Two matrices of different sizes.
+void compare_sizes(Entry& entry, const HandItem& item, const std::string& what, const Matrix& hand,
+                   const Matrix& generated);
 // Judges a published Jacobian alone: J v = 0 for a common motion of all bodies. Adds remarks.
 void judge_momentum(Entry& entry, const Part& part, const Matrix& J);
 

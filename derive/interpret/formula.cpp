@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "derive/derivation/derivation.hpp"
 #include "derive/expression/components.hpp"
 #include "derive/expression/symbols.hpp"
 #include "derive/interpret/tape.hpp"
@@ -166,6 +167,21 @@ void check_unit(const SourceFile& file, const Value& value, std::string_view uni
                     "numbers take their unit in brackets: 10 [" + std::string(unit) + "], 2 [rad/s] * time");
 }
 
+// The value of a text, or its mistakes.
+Value read_value(std::string_view text, Names& names, Pool& pool, std::string_view unit,
+                 std::vector<FormulaMistake>& mistakes) {
+  const SourceFile file("", std::string(text));
+  Diagnostics diagnostics;
+  const Value value = value_of(file, names, pool, diagnostics);
+  check_unit(file, value, unit, diagnostics);
+  diagnostics.sort();
+  for (const Diagnostic& d : diagnostics.list)
+    if (d.severity == Severity::error) mistakes.push_back({d.where.begin, d.where.end, d.message, d.fix});
+  return value;
+}
+
+constexpr std::size_t most_registers = 512;  // of a formula of the time, on the stack
+
 }  // namespace
 
 struct Formula::Program {
@@ -174,19 +190,11 @@ struct Formula::Program {
 };
 
 Formula::Reading Formula::read(std::string_view text, const Vocabulary& vocabulary, std::string_view unit) {
-  const SourceFile file("", std::string(text));
-  Diagnostics diagnostics;
   Pool pool(vocabulary.dimension);
   Names names(pool, vocabulary);
-  const Value value = value_of(file, names, pool, diagnostics);
-  check_unit(file, value, unit, diagnostics);
   Reading reading;
-  if (diagnostics.has_errors()) {
-    diagnostics.sort();
-    for (const Diagnostic& d : diagnostics.list)
-      if (d.severity == Severity::error) reading.mistakes.push_back({d.where.begin, d.where.end, d.message, d.fix});
-    return reading;
-  }
+  const Value value = read_value(text, names, pool, unit, reading.mistakes);
+  if (!reading.mistakes.empty()) return reading;
   Components components;
   const Expr e = components.of(value.e);
   Formula formula;
@@ -204,6 +212,46 @@ double Formula::operator()(std::span<const double> inputs) const {
   double value = 0;
   program_->tape.run(inputs, program_->registers, {&value, 1});
   return value;
+}
+
+struct FormulaInTime::Program {
+  Tape tape;
+};
+
+FormulaInTime::Reading FormulaInTime::read(std::string_view text, std::string_view unit) {
+  const auto pool = std::make_shared<Pool>(2);
+  const Vocabulary no_words;
+  Names names(*pool, no_words);
+  Reading reading;
+  const Value value = read_value(text, names, *pool, unit, reading.mistakes);
+  if (!reading.mistakes.empty()) return reading;
+  Joint nothing;
+  nothing.pool = pool;
+  const Expr rate = time_derivative(value.e, nothing), acceleration = time_derivative(rate, nothing);
+  Components components;
+  auto program = std::make_shared<Program>();
+  program->tape = Tape(assemble({{"value", components.of(value.e)},
+                                 {"rate", components.of(rate)},
+                                 {"acceleration", components.of(acceleration)}}));
+  const int length = static_cast<int>(text.size());
+  if (program->tape.registers().size() > most_registers)
+    reading.mistakes.push_back({0, length, "the expression with its derivatives has more than 512 operations",
+                                "a table: { table = \"profile.csv\", column = \"F\" }"});
+  if (!reading.mistakes.empty()) return reading;
+  FormulaInTime formula;
+  formula.constant_ = program->tape.inputs().empty();
+  formula.program_ = std::move(program);
+  reading.formula = std::move(formula);
+  return reading;
+}
+
+std::array<double, 3> FormulaInTime::at(double time) const {
+  const Tape& tape = program_->tape;
+  std::array<double, most_registers> registers;
+  std::ranges::copy(tape.registers(), registers.begin());
+  std::array<double, 3> values{};
+  tape.run(std::span(&time, constant_ ? 0 : 1), registers, values);
+  return values;
 }
 
 }  // namespace cdot

@@ -2,6 +2,7 @@
 // that do not link it otherwise. No compiler, no GiNaC; this header includes no other of derive/.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -60,6 +61,29 @@ class Formula {
 
 struct Formula::Reading {
   std::optional<Formula> formula;
+  std::vector<FormulaMistake> mistakes;
+};
+
+// A scalar expression of the time alone, with its derivatives.
+class FormulaInTime {
+ public:
+  struct Reading;  // a formula or its mistakes
+
+  // `unit` is the one that the value must have.
+  static Reading read(std::string_view text, std::string_view unit);
+
+  bool constant() const { return constant_; }  // does not name the time
+  // The value, its first and its second derivative. Allocates nothing; several threads may call it.
+  std::array<double, 3> at(double time) const;
+
+ private:
+  struct Program;
+  std::shared_ptr<const Program> program_;
+  bool constant_ = true;
+};
+
+struct FormulaInTime::Reading {
+  std::optional<FormulaInTime> formula;
   std::vector<FormulaMistake> mistakes;
 };
 

@@ -11,6 +11,7 @@
 #include <cdot/planar/buoyancy.hpp>
 #include <cdot/planar/bushing.hpp>
 #include <cdot/planar/conveyor.hpp>
+#include <cdot/planar/couple.hpp>
 #include <cdot/planar/damper.hpp>
 #include <cdot/planar/dc_motor.hpp>
 #include <cdot/planar/detent.hpp>
@@ -40,6 +41,7 @@
 #include <cdot/planar/press_fit.hpp>
 #include <cdot/planar/prismatic.hpp>
 #include <cdot/planar/pulley.hpp>
+#include <cdot/planar/push.hpp>
 #include <cdot/planar/rack_and_pinion.hpp>
 #include <cdot/planar/revolute.hpp>
 #include <cdot/planar/rolling.hpp>
@@ -98,6 +100,7 @@ using Effects = std::tuple<
     buoyancy,
     bushing,
     conveyor,
+    couple,
     damper,
     dc_motor,
     detent,
@@ -115,6 +118,7 @@ using Effects = std::tuple<
     magnetic_field,
     position_drive,
     press_fit,
+    push,
     rotational_drag,
     rough_line,
     servo,

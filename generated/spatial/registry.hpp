@@ -6,6 +6,7 @@
 #include <cdot/spatial/cone.hpp>
 #include <cdot/spatial/constant_velocity.hpp>
 #include <cdot/spatial/conveyor.hpp>
+#include <cdot/spatial/couple.hpp>
 #include <cdot/spatial/cylindrical.hpp>
 #include <cdot/spatial/distance.hpp>
 #include <cdot/spatial/drag.hpp>
@@ -26,6 +27,7 @@
 #include <cdot/spatial/press_fit.hpp>
 #include <cdot/spatial/prismatic.hpp>
 #include <cdot/spatial/pulley.hpp>
+#include <cdot/spatial/push.hpp>
 #include <cdot/spatial/rack_and_pinion.hpp>
 #include <cdot/spatial/relative_orientation.hpp>
 #include <cdot/spatial/revolute.hpp>
@@ -86,9 +88,11 @@ using Effects = std::tuple<
     ball_on_plane,
     brake,
     conveyor,
+    couple,
     drag,
     end_stops,
     press_fit,
+    push,
     spindle,
     spring,
     tearing_rope,

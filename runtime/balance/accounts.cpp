@@ -13,14 +13,14 @@ template <class S>
 bool may_work(const Island<S>& island) {
   if (S::has_gyroscopes || !island.drags.empty()) return true;
   for (const Segment<S>& segment : island.segments)
-    if (segment.batch->law || segment.batch->ops->explicit_time) return true;
+    if (segment.batch->law || segment.batch->explicit_time()) return true;
   return false;
 }
 
 template <class S>
 bool is_driven(const Island<S>& island) {
   for (const Segment<S>& segment : island.segments)
-    if (!segment.batch->law && segment.batch->ops->explicit_time) return true;
+    if (!segment.batch->law && segment.batch->explicit_time()) return true;
   return false;
 }
 

@@ -23,6 +23,14 @@ void copy_slot(const Batch<S>& from, int slot, Batch<S>& to) {
   copy(from.parameters, from.ops->parameter_size, to.parameters);
   copy(from.counters, from.counters.empty() ? 0 : from.ops->counters, to.counters);
   copy(from.constants, from.law->constants, to.constants);
+  to.drives.clear();
+  if (from.driven()) {
+    const auto drives = from.drives_of(slot);
+    to.drives.assign(drives.begin(), drives.end());
+    to.first_drive = {0, static_cast<int>(drives.size())};
+    to.home.assign(1, 0);
+    copy(from.spans, 2, to.spans);
+  }
   to.jacobian.resize(static_cast<size_t>(from.ops->jacobian_size));
   to.factor.resize(static_cast<size_t>(from.triangle()));
   to.C.resize(static_cast<size_t>(from.ops->rows));
@@ -80,7 +88,8 @@ double power_of_stiffness(const WorldData<S>& world, const Batch<S>& batch, int 
 template <class S>
 void reserve(const WorldData<S>& world, Batch<S>& one_slot) {
   for (const auto& batch : world.batches)
-    if (batch->law && batch->law->energy && batch->count() > 0) copy_slot(*batch, 0, one_slot);
+    if (batch->law && batch->law->energy && batch->count() > 0)
+      for (int slot = 0; slot < (batch->driven() ? batch->count() : 1); ++slot) copy_slot(*batch, slot, one_slot);
 }
 
 template <class S>

@@ -53,7 +53,7 @@ template <class S, class Lambda>
 void work_of_parted_springs(const WorldData<S>& world, Batch<S>& batch, int slot, Lambda lambda, bool dampers,
                             typename S::Scalar time, Work& work) {
   typename S::Scalar drift[most_rows] = {};
-  if (batch.ops->explicit_time) find_drift(world, batch, slot, time, drift);
+  if (batch.explicit_time()) find_drift(world, batch, slot, time, drift);
   for (int r = 0; r < batch.ops->rows; ++r) {
     const int i = slot * batch.ops->rows + r;
     if (dampers) work.take(batch.source, double(lambda(i)) * double(batch.rate[i] + drift[r]));
@@ -68,7 +68,7 @@ void work_of_parted_effect(const WorldData<S>& world, Batch<S>& batch, int slot,
   using T = typename S::Scalar;
   constexpr T at_rest[most_rows] = {};
   T drift[most_rows] = {}, whole[most_rows], unstored[most_rows];
-  if (batch.ops->explicit_time) find_drift(world, batch, slot, time, drift);
+  if (batch.explicit_time()) find_drift(world, batch, slot, time, drift);
   batch.law->force(batch, slot, at_rest, whole);
   batch.law->unstored(batch, slot, at_rest, unstored);
   double done = 0;
@@ -87,7 +87,7 @@ void work_of_springs(const WorldData<S>& world, Batch<S>& batch, int slot, const
   using T = typename S::Scalar;
   const int rows = batch.ops->rows;
   T drift[most_rows] = {}, rate[most_rows], force[most_rows];
-  if (batch.ops->explicit_time) find_drift(world, batch, slot, time, drift);
+  if (batch.explicit_time()) find_drift(world, batch, slot, time, drift);
   for (int r = 0; r < rows; ++r) rate[r] = acted[r] + drift[r];
   const bool of_effect = batch.law->is_of_effect();
   if (of_effect) batch.law->unstored(batch, slot, rate, force);
@@ -110,7 +110,7 @@ enum class Kick : char { only, first, second };
 template <class S>
 void work_of_rate(const Batch<S>& batch, const Guard<typename S::Scalar>& guard, double done, Work& work) {
   const bool drives = guard.rate != 0 || guard.lower > 0 || guard.upper < 0;
-  if (drives || batch.law->in_time || batch.ops->explicit_time) work.put(batch.source, done);
+  if (drives || batch.law->in_time || batch.explicit_time()) work.put(batch.source, done);
   else work.take(batch.source, done);
 }
 
@@ -127,7 +127,7 @@ void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& 
     const double done = double(lambda(i)) * double(batch.rate[i]) + before;
     if (kick == Kick::first) batch.error[i] = typename S::Scalar(done);
     else if (moves) work_of_rate(batch, guards[r], done, work);
-    else if (batch.ops->explicit_time) work.put(batch.source, done);
+    else if (batch.explicit_time()) work.put(batch.source, done);
     else if (guards[r].one_sided()) work.take(batch.source, done);
   }
 }
@@ -143,7 +143,7 @@ void work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     const int begin = segment.begin, end = segment.end, rows = batch.ops->rows;
-    if (!batch.law && !batch.ops->explicit_time) continue;
+    if (!batch.law && !batch.explicit_time()) continue;
     batch.ops->velocity(batch, begin, end, mean, batch.rate.data());
     const auto of_row = [&](int i) { return lambda(batch, i); };
     if (!batch.law) {
@@ -174,6 +174,15 @@ void work_of_stiffness(WorldData<S>& world, const Island<S>& island, const typen
     for (int slot = segment.begin; slot < segment.end; ++slot)
       if (batch.law->by_mass(batch, slot))
         work.put(batch.source, h * power_of_stiffness(world, batch, slot, v, world.one_slot, world.few));
+  }
+}
+
+// Energies whose parameters follow functions of time, over h from the present C.
+template <class S>
+void work_of_drives(const Island<S>& island, double h, Work& work) {
+  for (const auto& [batch, begin, end, whole] : island.segments) {
+    if (!batch->driven() || !batch->law || !batch->law->power) continue;
+    for (int slot = begin; slot < end; ++slot) work.put(batch->source, h * batch->law->power(*batch, slot));
   }
 }
 
@@ -261,6 +270,7 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
       springs_of(impulses), kick_of(impulses), island.evaluated_at, double(h), work);
   if (impulses == Impulses::rattle_start || impulses == Impulses::rattle_end)
     work_of_stiffness(world, island, start.data(), double(h), work);
+  if (!of_rows) work_of_drives(island, double(h), work);
   add(world, work);
 }
 
@@ -279,6 +289,7 @@ void find_power(WorldData<S>& world, Island<S>& island, typename S::Scalar time,
       },
       Springs::whole, Kick::only, time, 1, work);
   work_of_stiffness(world, island, v, 1, work);
+  work_of_drives(island, 1, work);
   power[0] = T(work.put_in), power[1] = T(work.taken);
   std::copy(world.work_by_source.begin(), world.work_by_source.end(), power + 2);
 }

@@ -113,8 +113,7 @@ template <class S>
 void restore_drift(WorldData<S>& world, const Island<S>& island, const Segment<S>& segment) {
   Batch<S>& batch = *segment.batch;
   const int begin = segment.begin * batch.ops->rows, end = segment.end * batch.ops->rows;
-  if (batch.ops->explicit_time)
-    batch.ops->evaluate(batch, segment.begin, segment.end, world.bodies, island.evaluated_at);
+  if (batch.explicit_time()) batch.ops->evaluate(batch, segment.begin, segment.end, world.bodies, island.evaluated_at);
   else std::fill(batch.bias.begin() + begin, batch.bias.begin() + end, typename S::Scalar(0));
 }
 

@@ -75,6 +75,7 @@ void add_rows(WorldData<S>& world, int joint, const BlockOps<S>* ops, const Law<
     grow(batch.load, 1);
     if (law->distance) grow(batch.happened, 1);
     for (double constant : constants) batch.constants.push_back(T(constant));
+    if (!batch.spans.empty()) batch.spans.push_back(-unbounded), batch.spans.push_back(unbounded);
   }
   if (ops->start_counting) {
     grow(batch.counters, ops->counters);

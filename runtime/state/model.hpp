@@ -29,11 +29,18 @@ struct Place {
   int home;  // BatchState::home of its slot, which is Batch::slot_of[home]
 };
 
+// A number of a joint's rows that follows a function of time.
+struct JointDrive {
+  int place;  // of the effect whose constant it is; -1: a parameter of the joint, in all its places
+  Drive drive;
+};
+
 struct JointModel {
   int type;  // index into joint_types()
   std::vector<int> bodies;
   std::vector<Place> places;  // the joint's rows, then its effects; empty if all bodies are immovable
   Hash added;                 // of its definition and effects at first
+  std::vector<JointDrive> drives{};
 };
 
 // Who puts work in or takes it. Rows of joints and of generated effects have a source for each joint type, after these.
@@ -76,6 +83,8 @@ struct Model {
   std::vector<Hook> after_substep;
   std::vector<Note> notes;
   std::vector<std::string_view> sources{std::begin(source_names), std::end(source_names)};
+
+  bool driven = false;  // numbers follow functions of time
 
   bool prepared = false;       // the members below and the order of slots are current
   std::vector<int> island_of;  // by body; -1: immovable

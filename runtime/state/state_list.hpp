@@ -41,20 +41,21 @@ struct StateList {
   template <class S, class Visitor>
   static void each_slot(Batch<S>& batch, int index, bool breaks, Visitor& visit) {
     auto& [home, joint, body, parameters, counters, lambda, correction, mode, softness, lower, upper, constants,
-           happened] = static_cast<BatchState<S>&>(batch);
-    const bool counts = batch.ops && batch.ops->start_counting;  // whole turns, in parameters too
+            happened, spans] = static_cast<BatchState<S>&>(batch);
+    const bool driven = batch.driven(), counts = batch.ops && batch.ops->start_counting;  // turns, in parameters too
     visit.item("rows.home", index, breaks), visit(home);
     visit.item("rows.joint", index, breaks), visit(joint);
     visit.item("rows.body", index, breaks), visit(body);
-    visit.item("rows.parameters", index, breaks || counts), visit(parameters);
+    visit.item("rows.parameters", index, breaks || counts || driven), visit(parameters);
     visit.item("rows.counters", index, true), visit(counters);
     visit.item("rows.lambda", index, true), visit(lambda);
     visit.item("rows.correction", index, true), visit(correction);
     visit.item("rows.mode", index, true), visit(mode);
     visit.item("rows.softness", index, true), visit(softness);
     visit.item("rows.bounds", index, true), visit(lower), visit(upper);
-    visit.item("rows.constants", index, breaks), visit(constants);
+    visit.item("rows.constants", index, breaks || driven), visit(constants);
     if (batch.law && batch.law->distance) visit.item("rows.happened", index, true), visit(happened);
+    if (!spans.empty()) visit.item("rows.spans", index, true), visit(spans);
   }
 
   // The iterative solver needs no system, but the projection of the start builds one.

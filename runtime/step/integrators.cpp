@@ -44,9 +44,9 @@ constexpr std::array<Stepper<S>, integrator_rows.size()> steppers{{
     {Integrator::euler, euler<S>, prepare_euler<S>, false},
     {Integrator::implicit, implicit<S>, prepare_midpoint<S>, true},
     {Integrator::rattle, step_rattle<S>, prepare_rattle<S>, true},
-    {Integrator::rk4, runge_kutta<S, rk4<Real>>, prepare<S, rk4<Real>>, false},
-    {Integrator::dop853, runge_kutta<S, dop853<Real>>, prepare<S, dop853<Real>>, false},
-    {Integrator::radau5, runge_kutta<S, radau5<Real>>, prepare<S, radau5<Real>>, false},
+    {Integrator::rk4, runge_kutta<S, rk4<Real>>, prepare<S, rk4<Real>>, false, true},
+    {Integrator::dop853, runge_kutta<S, dop853<Real>>, prepare<S, dop853<Real>>, false, true},
+    {Integrator::radau5, runge_kutta<S, radau5<Real>>, prepare<S, radau5<Real>>, false, true},
 }};
 
 }  // namespace

@@ -14,6 +14,8 @@ struct Stepper {
   void (*prepare)(Island<S>&);
   // True if a step begins with the last step's factor of all rows.
   bool starts_from_factor;
+  // True if the method ends its own steps where numbers in time jump.
+  bool finds_pieces = false;
 };
 
 template <class S>

@@ -6,6 +6,7 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/solve/pieces.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
@@ -305,6 +306,50 @@ void count_step(StepCounts& counts, typename S::Scalar h) {
   counts.longest = std::max(counts.longest, double(h));
 }
 
+// The way before a step that begins `done` after the start of step(h).
+template <class T>
+struct Way {
+  T left;      // to the end of step(h), or to a time at which numbers in time jump
+  T end;       // that end, from the start of step(h)
+  T to_break;  // to that time
+};
+
+template <class S>
+Way<typename S::Scalar> way_from(WorldData<S>& world, Island<S>& island, typename S::Scalar done,
+                                 typename S::Scalar h) {
+  using T = typename S::Scalar;
+  if (!world.driven) return {h - done, h, std::numeric_limits<T>::infinity()};
+  const double time = double(T(world.time) + done);
+  const T to_break = T(begin_piece(world, island, time, double(h), 2) - time);
+  return to_break < h - done ? Way<T>{to_break, done + to_break, to_break} : Way<T>{h - done, h, to_break};
+}
+
+// Takes a step as long as its error allows; its length goes to Flow::length. False if there is none: fall_back() has
+// gone all the way.
+template <class S>
+bool take_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+               const Way<typename S::Scalar>& way, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  Flow<S>& flow = island.flow;
+  const bool goes_on = flow.known;
+  begin(world, island, time, h);
+  if (island.jams) {
+    fall_back(world, island, time, way.left, true);
+    return false;
+  }
+  keep_start(world, island, method, time, goes_on);
+  flow.low.assign(flow.margins.begin(), flow.margins.end());
+  flow.end_kept = flow.projects_stages = false;
+  // A hook after the substep may change the World, so no step may pass the end.
+  const T reach = world.after_substep.empty() ? std::min(furthest_reach * h, way.to_break) : way.left;
+  flow.length = world.settings.local_error > 0 ? take_adaptive_step(world, island, method, time, way.left, reach)
+                                               : take_fixed_step(world, island, method, time, way.left, h, reach);
+  if (flow.length > T(0)) return true;
+  const bool costly = method.implicit && std::ssize(island.bodies) > most_to_carry_on;
+  fall_back(world, island, time, way.left, flow.astray || costly);
+  return false;
+}
+
 // Takes steps from `done` on until h is reached or passed. Returns the end.
 template <class S>
 typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
@@ -312,31 +357,17 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
   for (int events = 0; done < h;) {
-    const T time = T(world.time) + done, left = h - done;
-    if (events > most_events || flow.slivers > most_slivers) {
-      fall_back(world, island, time, left, false);
-      return h;
-    }
-    const bool goes_on = flow.known;
-    begin(world, island, time, h);
-    if (island.jams) {
-      fall_back(world, island, time, left, true);
-      return h;
-    }
-    keep_start(world, island, method, time, goes_on);
-    flow.low.assign(flow.margins.begin(), flow.margins.end());
-    flow.end_kept = flow.projects_stages = false;
-    // A hook after the substep may change the World, so no step may pass the end.
-    const T reach = world.after_substep.empty() ? furthest_reach * h : left;
-    flow.length = world.settings.local_error > 0 ? take_adaptive_step(world, island, method, time, left, reach)
-                                                 : take_fixed_step(world, island, method, time, left, h, reach);
-    if (!(flow.length > T(0))) {
-      const bool costly = method.implicit && std::ssize(island.bodies) > most_to_carry_on;
-      fall_back(world, island, time, left, flow.astray || costly);
-      return h;
+    const T time = T(world.time) + done;
+    const Way<T> way = way_from(world, island, done, h);
+    const bool chatters = events > most_events || flow.slivers > most_slivers;
+    if (chatters) fall_back(world, island, time, way.left, false);
+    if (chatters || !take_step(world, island, method, time, way, h)) {
+      done = way.end;
+      continue;
     }
     flow.longest = std::max<T>(flow.longest, flow.length);
     flow.slivers = flow.length < T(sliver) * flow.longest ? flow.slivers + 1 : 0;
+    if (flow.length == way.to_break) flow.known = false;  // the forces jump there
     if (flow.guarded > 0 && furthest(flow.margins_chosen, flow.margins) < passed) {
       flow.length = go_to_event(world, island, method, time, flow.length);
       ++world.counts->events;
@@ -344,7 +375,7 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
       flow.known = false;
     }
     if (flow.length > T(0)) count_step<S>(world.counts, flow.length);
-    done = flow.length == left ? h : done + flow.length;
+    done = flow.length == way.left ? way.end : done + flow.length;
   }
   return done;
 }

@@ -6,6 +6,7 @@
 #include "runtime/balance/balance.hpp"
 #include "runtime/rows/parameters.hpp"
 #include "runtime/state/add_rows.hpp"
+#include "runtime/state/drives.hpp"
 #include "runtime/state/probe.hpp"
 #include "runtime/world/islands.hpp"
 
@@ -52,6 +53,8 @@ void BasicWorld<S>::set_parameters(int joint, const std::vector<NamedValue>& par
   check_joint(*data_, joint);
   JointRecord& record = data_->joints[joint];
   const JointType& type = joint_types(S::dimension)[record.type];
+  refuse_functions(parameters, "set_parameters()");
+  refuse_driven(record, type, -1, parameters);
   std::vector<double> numbers = record.parameters;
   const auto changed = change_parameters(type, parameters, numbers);
   std::vector<double> moved = numbers;

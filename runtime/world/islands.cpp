@@ -117,6 +117,30 @@ void sort_slots(WorldData<S>& world, int index, const std::vector<int>& places) 
       if (place.batch == index) place.home = now[place.home];
 }
 
+// The numbers in time of each slot, from the joints.
+template <class S>
+void hand_out_drives(WorldData<S>& world) {
+  std::vector<std::vector<std::vector<Drive>>> by_home;  // by batch
+  for (const auto& batch : world.batches) by_home.emplace_back(static_cast<size_t>(batch->count()));
+  for (const JointRecord& joint : world.joints)
+    for (const JointDrive& drive : joint.drives)
+      for (size_t k = 0; k < joint.places.size(); ++k)
+        if (drive.place < 0 || static_cast<size_t>(drive.place) == k)
+          by_home[joint.places[k].batch][joint.places[k].home].push_back(drive.drive);
+  for (size_t i = 0; i < world.batches.size(); ++i) {
+    Batch<S>& batch = *world.batches[i];
+    batch.drives.clear(), batch.first_drive.assign(1, 0);
+    for (const std::vector<Drive>& drives : by_home[i]) {
+      batch.drives.insert(batch.drives.end(), drives.begin(), drives.end());
+      batch.first_drive.push_back(static_cast<int>(batch.drives.size()));
+    }
+    for (Drive& drive : batch.drives) drive.now = drive.profile.at(world.time);
+    constexpr ProfileSpan always;
+    while (batch.driven() && batch.spans.size() < 2 * by_home[i].size())
+      batch.spans.push_back(always.from), batch.spans.push_back(always.until);
+  }
+}
+
 // Lists runs of slots of one batch that are consecutive in the sweep. Rows under a law come first: the rows solved last
 // have the smallest error, and these should be the joints.
 template <class S>
@@ -143,7 +167,8 @@ void list_segments(WorldData<S>& world, const std::vector<int>& places) {
     if (!segments.empty() && segments.back().batch == &batch && segments.back().end == run.slot)
       segments.back().whole_end = ++segments.back().end;
     else segments.push_back({&batch, run.slot, run.slot + 1, run.slot + 1});
-    island.restless |= batch.ops->explicit_time || (batch.law && batch.law->in_time);
+    island.restless |= batch.ops->explicit_time || (batch.law && batch.law->in_time) ||
+                       (batch.driven() && !batch.drives_of(run.slot).empty());
   }
 }
 
@@ -184,6 +209,7 @@ void prepare_topology(WorldData<S>& world) {
   const std::vector<int> places =
       sweeps(world.settings.solver) ? sweep_places(world) : std::vector<int>(world.joints.size(), 0);
   for (int i = 0; i < static_cast<int>(world.batches.size()); ++i) sort_slots(world, i, places);
+  hand_out_drives(world);
   list_segments(world, places);
   give_out_forces(world);
   for (Island<S>& island : world.islands) measure_size(world, island);

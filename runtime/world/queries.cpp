@@ -106,6 +106,8 @@ template <class S>
 std::vector<double> BasicWorld<S>::joint_parameters(int joint) const {
   const JointRecord& record = data_->joints.at(joint);
   std::vector<double> numbers = record.parameters;
+  for (const auto& [place, drive] : record.drives)
+    if (place < 0) numbers[static_cast<size_t>(drive.number)] = drive.profile.at(data_->time).value + drive.offset;
   move_world_points(
       joint_types(S::dimension)[record.type], record.bodies, [&](int body) { return body == data_->ground; },
       data_->origin, 1, numbers);

@@ -6,6 +6,7 @@
 #include <cdot/world.hpp>
 
 #include "runtime/balance/balance.hpp"
+#include "runtime/solve/pieces.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/step/integrators.hpp"
 #include "runtime/world/islands.hpp"
@@ -27,29 +28,48 @@ bool finite(const WorldData<S>& world, const Island<S>& island) {
   return std::isfinite(sum);
 }
 
-// Steps over h in `parts` parts. Stops at the first island that fails.
+// One step of all awake islands. Stops at the first one that fails.
+template <class S>
+StepResult advance(WorldData<S>& world, double h) {
+  StepResult result;
+  const auto dt = typename S::Scalar(h);
+  for (int index : world.awake) {
+    Island<S>& island = world.islands[index];
+    stepper_of<S>(world.settings.integrator).step(world, island, dt);
+    const bool lost = !finite(world, island) || (world.driven && leaves_its_range(island));
+    if (island.trouble == StepProblem::none && lost) island.trouble = StepProblem::not_finite;
+    if (island.trouble == StepProblem::none) continue;
+    result.problem = island.trouble;
+    result.island = index;
+    return result;
+  }
+  for (const auto& look : world.after_substep) look(world, dt);
+  world.time += h;
+  world.last_step = h;
+  return result;
+}
+
+// One part of a step, itself in parts that end where numbers in time jump.
+template <class S>
+StepResult advance_by_pieces(WorldData<S>& world, double h) {
+  const double end = world.time + h;
+  for (double left = h;;) {
+    const double length = begin_pieces(world, world.time, h) - world.time;
+    if (!(length < left)) return advance(world, left);
+    if (const StepResult result = advance(world, length); !result) return result;
+    left = end - world.time;
+  }
+}
+
+// Steps over h in `parts` parts.
 template <class S>
 StepResult attempt(WorldData<S>& world, double h, int parts) {
-  StepResult result;
-  const auto& integrator = stepper_of<S>(world.settings.integrator);
-  const double part = h / parts;
+  const bool by_pieces = world.driven && !stepper_of<S>(world.settings.integrator).finds_pieces;
   begin_accounts(world);
-  const auto dt = typename S::Scalar(part);
-  for (int k = 0; k < parts; ++k) {
-    for (int index : world.awake) {
-      Island<S>& island = world.islands[index];
-      integrator.step(world, island, dt);
-      if (island.trouble == StepProblem::none && !finite(world, island)) island.trouble = StepProblem::not_finite;
-      if (island.trouble == StepProblem::none) continue;
-      result.problem = island.trouble;
-      result.island = index;
+  for (int k = 0; k < parts; ++k)
+    if (const StepResult result = by_pieces ? advance_by_pieces(world, h / parts) : advance(world, h / parts); !result)
       return result;
-    }
-    for (const auto& look : world.after_substep) look(world, dt);
-    world.time += part;
-    world.last_step = part;
-  }
-  return result;
+  return {};
 }
 
 // --- failed steps ---
@@ -69,6 +89,13 @@ bool finite(const std::vector<T>& numbers, int begin, int end) {
   return std::all_of(numbers.begin() + begin, numbers.begin() + end, [](T number) { return std::isfinite(number); });
 }
 
+template <class S>
+bool in_range(const Batch<S>& batch, int slot) {
+  const auto drives = batch.driven() ? batch.drives_of(slot) : std::span<const Drive>();
+  return std::ranges::all_of(
+      drives, [](const Drive& drive) { return drive.above < drive.now.value && drive.now.value < drive.below; });
+}
+
 // Finds the joint to blame at the start of the step. A kernel that is not finite comes first, then the largest C, then
 // the largest force.
 template <class S>
@@ -79,7 +106,7 @@ void blame_joint(WorldData<S>& world, Island<S>& island, StepResult& result) {
     batch.ops->evaluate(batch, segment.begin, segment.end, world.bodies, typename S::Scalar(world.time));
     for (int slot = segment.begin; slot < segment.end; ++slot) {
       const int rows = batch.ops->rows, width = batch.ops->jacobian_size;
-      const bool sound = finite(batch.jacobian, slot * width, (slot + 1) * width);
+      const bool sound = finite(batch.jacobian, slot * width, (slot + 1) * width) && in_range(batch, slot);
       for (int i = slot * rows; i < (slot + 1) * rows; ++i) {
         const double off = batch.law ? 0 : std::abs(double(batch.C[i]));
         const double pull = std::abs(double(batch.lambda[i])) + std::abs(double(batch.correction[i]));

@@ -10,6 +10,7 @@
 #include "runtime/rows/laws.hpp"
 #include "runtime/rows/parameters.hpp"
 #include "runtime/state/add_rows.hpp"
+#include "runtime/state/drives.hpp"
 #include "runtime/state/gyroscopes.hpp"
 #include "runtime/state/probe.hpp"
 #include "runtime/world/islands.hpp"
@@ -191,7 +192,11 @@ int BasicWorld<S>::add_joint(const JointDefinition& definition) {
   using InDoubles = typename S::InDoubles;
   std::vector<typename InDoubles::Pose> poses;
   for (int body : record.bodies) poses.push_back(InDoubles::placed(place_in_world(*data_, body)));
-  auto numbers = parameter_numbers<InDoubles>(record.type, definition.parameters, poses.data(), data_->time);
+  const std::vector<NamedValue> given = at_time(definition.parameters, data_->time);
+  auto numbers = parameter_numbers<InDoubles>(record.type, given, poses.data(), data_->time);
+  std::vector<const Law<S>*> laws;
+  for (const BoundedEntry<S>& row : joint_entries<S>()[record.type].bounded) laws.push_back(row.law);
+  check_functions<S>(*type, given, laws);
   move_world_points(
       *type, record.bodies, [&](int body) { return body == data_->ground; }, data_->origin, -1, numbers);
   record.parameters = numbers;
@@ -219,6 +224,7 @@ int BasicWorld<S>::add_joint(const JointDefinition& definition) {
   add_rows(*data_, joint, ops, law, kinds, {spring, definition.soft ? static_cast<size_t>(spring_constants_count) : 0},
            definition.soft ? "spring" : "");
   add_bounded_rows(*data_, joint);
+  add_drives(*data_, joint, -1, *type, given);
   return joint;
 }
 

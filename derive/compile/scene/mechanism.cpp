@@ -38,6 +38,11 @@ void refuse_joint(const SceneJoint& joint, Refusals& refusals) {
     refusals.add(joint.where, fmt::format("{}: cdot compile knows no {}", name, part), "leave it to cdot-run");
   };
   if (joint.breaking) refuse("joints that break");
+  const auto follows = [](const CoordinateEffects& effects) {
+    return std::ranges::any_of(effects.specs, [](const SpecEffect& effect) { return in_time(effect.parameters); });
+  };
+  if (in_time(joint.definition.parameters) || std::ranges::any_of(joint.effects, follows))
+    refuse("numbers that follow functions of time");
   const JointType* type = find_joint_type(Dimension::planar, joint.definition.type);
   if (type && std::ranges::find(type->row_kinds, RowKind::inequality) != type->row_kinds.end())
     refuse(fmt::format("inequality, as {} has: it would end the fixed pattern of the equations", type->name));

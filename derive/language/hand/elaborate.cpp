@@ -238,6 +238,10 @@ void EntryElaborator::assume(const HandItemAst& item) {
 // C, Cdot, J, K, b or lambda = expression
 void EntryElaborator::quantity(const HandItemAst& item) {
   const bool lambda = item.kind == Kind::lambda;
+  if (is_of_law(item.word.text) && (!joint_.law || joint_.law->inputs.empty()))
+    diagnostics_.error(item.word.where, quote(item.word.text) +
+                                            " is a quantity of an effect with a law of forces, and " +
+                                            quote(joint_.name) + " has none");
   HandItem out = begin(item, lambda ? HandItem::Kind::lambda : HandItem::Kind::quantity);
   const std::size_t before = findings();
   const Value v = evaluate(item.right, item.word.text == "J");

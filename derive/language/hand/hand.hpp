@@ -5,6 +5,8 @@
 // way: sums of numbers and vectors, sizes that do not fit, units that do not match. None of this is bad input.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <functional>
 #include <map>
 #include <memory>
@@ -18,6 +20,12 @@
 #include "derive/syntax/ast.hpp"
 
 namespace cdot::derive {
+
+// Quantities of the law of an effect: along its coordinates, and `wrench` on its bodies.
+constexpr std::array<std::string_view, 5> quantities_of_law = {"energy", "force", "stiffness", "damping", "wrench"};
+inline bool is_of_law(std::string_view quantity) {
+  return std::find(quantities_of_law.begin(), quantities_of_law.end(), quantity) != quantities_of_law.end();
+}
 
 struct HandFile {
   std::shared_ptr<const SourceFile> file;

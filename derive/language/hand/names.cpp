@@ -36,6 +36,16 @@ const Value* HandNames::find(const std::string& name) {
   return is_special(name) ? &(said_[name] = quantity(name)) : nullptr;
 }
 
+// The rate of a coordinate of an effect.
+const Value* HandNames::rate_of(const std::string& name) {
+  const auto& law = read_.joint->law;
+  if (!law) return nullptr;
+  const auto input = std::ranges::find(law->inputs, name, &LawInput::name);
+  const auto spec = read_.names.find(name);
+  if (input == law->inputs.end() || spec == read_.names.end() || spec->second.type != Type::scalar) return nullptr;
+  return &(rates_[name] = scalar(input->rate, input->unit / Unit{.s = 1}));
+}
+
 // A quantity that the entry does not define itself.
 Value HandNames::quantity(const std::string& name) {
   if (name == "E") return of_matrix({0, 0, {read_.joint->pool->number(1)}});

@@ -20,6 +20,7 @@ class HandNames final : public Scope {
   void define(const std::string& name, const Value& value) { own_[name] = value; }
 
   const Value* find(const std::string& name) override;
+  const Value* rate_of(const std::string& name) override;
   int body(const std::string& letter) const override;
   void use_body(int, Span) override {}
   void use_world() override {}
@@ -35,7 +36,7 @@ class HandNames final : public Scope {
   const HandFile& file_;
   const ReadResult& read_;
   const GeneratedRows& generated_;
-  std::map<std::string, Value> own_;
+  std::map<std::string, Value> own_, rates_;
   std::vector<std::string> rows_;  // of this part
   std::map<std::string, Value> said_;
   std::optional<Generated> generated_now_;

@@ -13,7 +13,7 @@ using Kind = HandItemAst::Kind;
 constexpr std::array<std::string_view, 5> quantities = {"C", "Cdot", "J", "K", "b"};
 
 bool is_quantity(std::string_view word) {
-  return std::find(quantities.begin(), quantities.end(), word) != quantities.end();
+  return std::find(quantities.begin(), quantities.end(), word) != quantities.end() || is_of_law(word);
 }
 
 class HandParser {
@@ -198,6 +198,7 @@ class HandParser {
     const Token t = p_.take();
     std::vector<std::string> words = statement_words(true);
     for (const std::string_view q : quantities) words.emplace_back(q);
+    for (const std::string_view q : quantities_of_law) words.emplace_back(q);
     const std::string near = t.kind == TokenKind::name ? nearest(t.text, words) : "";
     p_.fail(t.where, "no item of an entry starts with " + quote(t.text),
             near.empty() ? "items are C, Cdot, J, K, b, lambda = ...; let, free, rows, assume, update, bound, claim, "
@@ -218,8 +219,10 @@ class HandParser {
     const bool empty = std::none_of(e.items.begin(), e.items.end(), says);
     if (e.id.empty() || p_.failed()) return;
     if (empty && e.listed.empty())
-      out_.diagnostics.error(e.where, "the entry " + quote(e.id) + " has nothing to compare",
-                             "give C, Cdot, J, K, b, an update or a claim, or the reason: listed \"...\"");
+      out_.diagnostics.error(
+          e.where, "the entry " + quote(e.id) + " has nothing to compare",
+          "give C, Cdot, J, K, b, an update or a claim, of an effect energy, force, stiffness, damping "
+          "or wrench, or the reason: listed \"...\"");
     if (e.source.empty())
       out_.diagnostics.warning(e.where, "the entry " + quote(e.id) + " has no source",
                                "name its publication: source \"...\"");

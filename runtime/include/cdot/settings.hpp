@@ -2,6 +2,7 @@
 // stands apart from cdot/world.hpp: a reader of scenes fills the data without a World.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include <cdot/integrators.hpp>
+#include <cdot/profile.hpp>
 
 namespace cdot {
 
@@ -131,12 +133,34 @@ struct SpatialBodyDefinition {
   double linear_damping = 0, angular_damping = 0;   // [1/s]
 };
 
+// A number of a parameter as a function of time.
+struct NumberInTime {
+  int number;  // of the value's numbers, from 0
+  Profile profile;
+};
+
 struct NamedValue {
   std::string name;
   // Scalar: 1. Point, vector or unit: 2 in the plane, 3 in space. Frame: 2 in the plane; in space its x axis (3), x and
   // y axes (6) or all three (9).
   std::vector<double> numbers;
+  // Functions of time that numbers of this value follow; `numbers` then matters for the others.
+  std::vector<NumberInTime> in_time{};
 };
+
+inline bool in_time(const std::vector<NamedValue>& values) {
+  return std::any_of(values.begin(), values.end(), [](const NamedValue& value) { return !value.in_time.empty(); });
+}
+
+// {"F", {2, swing}}: each number a constant or a function of time.
+inline NamedValue in_time(std::string name, const std::vector<Profile>& profiles) {
+  NamedValue value{std::move(name), {}};
+  for (const Profile& profile : profiles) {
+    value.in_time.push_back({static_cast<int>(value.numbers.size()), profile});
+    value.numbers.push_back(0);
+  }
+  return value;
+}
 
 // Stiffness and damping of a soft row. by_frequency true: frequency [Hz] and damping ratio, referred to the row's
 // effective mass. False: stiffness [N/m, N m/rad] and damping [N s/m, N m s/rad].

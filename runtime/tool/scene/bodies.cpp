@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "runtime/tool/scene/keys.hpp"
+#include "runtime/tool/scene/profile.hpp"
 #include "runtime/tool/scene/read.hpp"
 
 namespace cdot {
@@ -13,6 +14,7 @@ namespace {
 struct Reading {
   Dimension dimension;
   std::map<std::string, Span>& names;
+  double duration;
   SceneBody body{};
   std::optional<Inertia> inertia{};
   std::optional<Vec3> axis{};
@@ -124,6 +126,31 @@ void read_turn(Entry& body, const char* key, Reading& to) {
   }
 }
 
+// Numbers go into the members, functions of time into the value of an effect: F of `push`, M of `couple`.
+template <Member x, Member y, Member z>
+void read_load(Entry& body, const char* key, const char* unit, const char* parameter, bool one,
+               std::optional<NamedValue>& in_time, Reading& to) {
+  const auto size = one ? std::nullopt : std::optional<std::size_t>(to.in_space() ? 3 : 2);
+  NumberNeed need{unit};
+  need.duration = to.duration;
+  const auto read = read_numbers_in_time(body, key, size, {}, need);
+  if (!read) return;
+  if (NamedValue value = named_value(parameter, *read); !value.in_time.empty()) {
+    in_time = std::move(value);
+    return;
+  }
+  constexpr Member members[] = {x, y, z};
+  for (std::size_t k = 0; k < read->size(); ++k) to.body.spatial.*members[k] = (*read)[k].value;
+}
+void read_force(Entry& body, const char* key, Reading& to) {
+  read_load<&Definition::force_x, &Definition::force_y, &Definition::force_z>(body, key, "N", "F", false,
+                                                                              to.body.force_in_time, to);
+}
+void read_torque(Entry& body, const char* key, Reading& to) {
+  read_load<&Definition::torque_x, &Definition::torque_y, &Definition::torque_z>(body, key, "N*m", "M", !to.in_space(),
+                                                                                 to.body.torque_in_time, to);
+}
+
 void read_angle(Entry& body, const char* key, Reading& to) { to.angle = body.number(key, {Sign::any, true}); }
 
 void read_axis(Entry& body, const char* key, Reading& to) { to.axis = read_vector(body, key, to.dimension); }
@@ -158,8 +185,8 @@ constexpr Key<Reading> body_keys[] = {
     {"angle", "of the body's frame at the start [rad]", "0", read_angle},
     {"velocity", "[m/s]", "0", read_vector_of<&Definition::vx, &Definition::vy, &Definition::vz>},
     {"spin", "[rad/s]", "0", read_turn<&Definition::wx, &Definition::wy, &Definition::wz, true>},
-    {"force", "constant, at the centre of mass [N]", "0", read_vector_of<&Definition::force_x, &Definition::force_y, &Definition::force_z>},
-    {"torque", "constant [N m]", "0", read_turn<&Definition::torque_x, &Definition::torque_y, &Definition::torque_z, false>},
+    {"force", "at the centre of mass [N]; its numbers may follow functions of time", "0", read_force},
+    {"torque", "[N m]; likewise", "0", read_torque},
     {"linear_damping", "force = -mass damping velocity [1/s]", "0", read_number<Sign::not_negative, body_part, spatial_part, &Definition::linear_damping>},
     {"angular_damping", "torque = -inertia damping spin [1/s]", "0", read_number<Sign::not_negative, body_part, spatial_part, &Definition::angular_damping>},
     {"trace", "true for the centre, or a point of the body: the viewer draws its path", "the last body's", read_trace},
@@ -280,7 +307,7 @@ SceneBody defined(const Reading& read) {
 void read_bodies(Entry& top, Scene& scene) {
   std::map<std::string, Span> used{{"world", {}}};
   for (Entry& entry : top.list("body")) {
-    Reading read{scene.dimension, used};
+    Reading read{scene.dimension, used, scene.duration};
     read_keys(entry, body_keys, scene.dimension, read);
     find_inertia(entry, read);
     find_orientation(entry, read);
@@ -289,6 +316,19 @@ void read_bodies(Entry& top, Scene& scene) {
     scene.bodies.push_back(defined(read));
   }
   if (!top.has("body")) top.error({}, "a scene needs at least one body", "start with a line [[body]]");
+}
+
+void find_forces_in_time(Scene& scene) {
+  const std::vector<double> centre(scene.dimension == Dimension::planar ? 2 : 3, 0.0);
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
+    const SceneBody& body = scene.bodies[k];
+    const auto add = [&](const char* type, const char* what, std::vector<NamedValue> values) {
+      SceneJoint effect{fmt::format("{}-{}", body.name, what), {type, {static_cast<int>(k)}, std::move(values), {}}};
+      scene.joints.push_back(std::move(effect));
+    };
+    if (body.force_in_time) add("push", "force", {{"pa", centre}, *body.force_in_time});
+    if (body.torque_in_time) add("couple", "torque", {*body.torque_in_time});
+  }
 }
 
 KeyTable keys_of_a_body() { return table_of("[[body]]", body_keys); }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runtime/tool/scene/keys.hpp"
+#include "runtime/tool/scene/profile.hpp"
 #include "runtime/tool/scene/read.hpp"
 
 namespace cdot {
@@ -62,38 +63,41 @@ std::string example_of(const JointType& type) {
   return text;
 }
 
-// An effect of a spec: { k = 50, most = 3 }, or the number of its only parameter. `turns`: on an angle.
-void read_spec(Entry& entry, const JointType& type, bool turns, CoordinateEffects& effects) {
+// An effect of a spec: { k = 50, most = 3 }, or the number of its only parameter.
+void read_spec(Entry& entry, const JointType& type, double duration, CoordinateEffects& effects) {
   const std::string key(type.name);
   SpecEffect effect{key};
   std::vector<const ParameterInfo*> needed;
-  const auto quantity = [turns](const ParameterInfo& info) {
-    const Sign sign = !(info.above >= 0) ? Sign::any : info.from ? Sign::not_negative : Sign::positive;
-    return Quantity{sign, info.unit == "rad" || (turns && (info.unit == "any" || info.unit == "any/s"))};
+  const auto quantity = [](const ParameterInfo& info) {
+    return Quantity{info.above >= 0 ? Sign::positive : Sign::any, info.unit == "rad"};
   };
   for (std::size_t k = 0; k < type.parameters.size(); ++k)
     if (type.coordinate_uses[k] == CoordinateUse::required) needed.push_back(&type.parameters[k]);
+  const auto read = [&](Entry& from, const std::string& name, const ParameterInfo& info) {
+    const NumberNeed need{info.unit, info.above, info.below, duration};
+    if (const auto number = read_numbers_in_time(from, name, {}, quantity(info), need))
+      effect.parameters.push_back(named_value(std::string(info.name), *number));
+  };
   if (needed.size() == 1 && !entry.is_table(key)) {
-    if (const auto number = entry.number(key.c_str(), quantity(*needed[0])))
-      effect.parameters.push_back({std::string(needed[0]->name), {*number}});
+    read(entry, key, *needed[0]);
   } else if (auto table = entry.table(key, fmt::format("{{ {} }}", example_of(type)))) {
     for (std::size_t k = 0; k < type.parameters.size(); ++k) {
       const ParameterInfo& info = type.parameters[k];
       const std::string name(info.name);
       if (type.coordinate_uses[k] == CoordinateUse::none) continue;
       if (type.coordinate_uses[k] == CoordinateUse::required) table->required(name, name + " = 1");
-      if (const auto number = table->number(name, quantity(info))) effect.parameters.push_back({name, {*number}});
+      read(*table, name, info);
     }
     table->close();
   }
   effects.specs.push_back(std::move(effect));
 }
 
-void read_specs(Entry& entry, const CoordinateInfo& coordinate, CoordinateEffects& effects) {
+void read_specs(Entry& entry, const CoordinateInfo& coordinate, double duration, CoordinateEffects& effects) {
   for (const JointType& type : coordinate_effects()) {
     const std::string key(type.name);
     if (is_key_of_kind(key) || !entry.has(key)) continue;
-    if (type.acts_on(coordinate.unit)) read_spec(entry, type, coordinate.unit == "rad", effects);
+    if (type.acts_on(coordinate.unit)) read_spec(entry, type, duration, effects);
     else
       entry.error(entry.where(key),
                   fmt::format("`{}` acts on coordinates in {}; `{}` is in {}", key, type.coordinate_unit,
@@ -104,7 +108,7 @@ void read_specs(Entry& entry, const CoordinateInfo& coordinate, CoordinateEffect
 
 }  // namespace
 
-void read_effects(Entry& joint, const JointType& type, std::vector<CoordinateEffects>& to) {
+void read_effects(Entry& joint, const JointType& type, double duration, std::vector<CoordinateEffects>& to) {
   for (const CoordinateInfo& coordinate : type.coordinates) {
     const std::string key(coordinate.name);
     std::optional<Entry> entry = joint.table(key);
@@ -117,7 +121,7 @@ void read_effects(Entry& joint, const JointType& type, std::vector<CoordinateEff
     }
     CoordinateEffects effects{key};
     for (const EffectKind* kind : effect_kinds) read_effect(*entry, *kind, coordinate.unit == "rad", effects);
-    read_specs(*entry, coordinate, effects);
+    read_specs(*entry, coordinate, duration, effects);
     entry->close();
     to.push_back(std::move(effects));
   }
@@ -137,15 +141,12 @@ std::optional<Softness> read_softness(Entry& joint, const char* key) {
 KeyTable keys_of_effects() {
   KeyTable table{"Effects on a coordinate of a joint: angle.motor = { speed = 2 }", {}};
   for (const EffectKind* kind : effect_kinds) table.rows.push_back({kind->key, kind->meaning, ""});
-  for (const JointType& type : coordinate_effects()) {
-    const bool any = type.coordinate_unit == "any";
+  for (const JointType& type : coordinate_effects())
     if (!is_key_of_kind(type.name))
       table.rows.push_back(
           {std::string(type.name),
-           fmt::format("`{{ {} }}` on {}{}: {}", example_of(type), any ? "any coordinate" : "a coordinate in ",
-                       any ? "" : type.coordinate_unit, type.title),
+           fmt::format("`{{ {} }}` on a coordinate in {}: {}", example_of(type), type.coordinate_unit, type.title),
            ""});
-  }
   return table;
 }
 

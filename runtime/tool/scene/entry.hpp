@@ -50,6 +50,19 @@ class Entry {
   std::string written(const std::string& key);  // the text before {i} is replaced; empty if there is none
   std::optional<std::vector<std::string>> texts(const std::string& key);
   std::optional<std::vector<double>> numbers(const std::string& key, std::size_t size, Quantity = {});
+  // A number, or what stands in its place: a text that is none, or a table.
+  struct Written {
+    std::optional<double> number;
+    std::string text;
+    const toml::table* table = nullptr;
+    Span where;
+  };
+  // The elements of a list of this size, or without a size the value itself.
+  std::optional<std::vector<Written>> written_numbers(const std::string& key, std::optional<std::size_t> size,
+                                                      Quantity = {});
+  Entry at(const Written& table) const;               // as an entry of its own
+  std::string beside(const std::string& path) const;  // a path from the folder of the file
+
   // `count` lists of three numbers, one after the other.
   std::optional<std::vector<double>> rows(const std::string& key, std::size_t count);
   // Nothing if the value is not a table; with an `example` that is a mistake.
@@ -67,6 +80,7 @@ class Entry {
  private:
   const toml::table* of_copies(const char* key) const;  // `shift` or `each` of a repeated entry
   const toml::node* find(const std::string& key);
+  std::optional<Written> written_number(const toml::node& node, const std::string& key, std::size_t index, Quantity);
   std::optional<double> plain_number(const toml::node& node, const std::string& key, Quantity);
   std::optional<std::string> plain_text(const toml::node& node);
   std::optional<double> shifted_number(const toml::node& node, const std::string& key, std::size_t index, Quantity);

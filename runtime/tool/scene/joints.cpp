@@ -6,6 +6,7 @@
 
 #include "runtime/rows/parameters.hpp"
 #include "runtime/tool/scene/keys.hpp"
+#include "runtime/tool/scene/profile.hpp"
 #include "runtime/tool/scene/read.hpp"
 #include "runtime/tool/scene/start.hpp"
 
@@ -91,30 +92,35 @@ bool means_coordinates(Entry& joint, const JointType& type, const std::string& k
 }
 
 // The numbers of one parameter in the frame of its body. Nothing if it is wrong or takes its default.
-std::optional<std::vector<double>> read_parameter(Entry& joint, const ParameterInfo& parameter, int body,
-                                                  std::optional<Vec3> at, const BodyNames& names) {
+std::optional<NamedValue> read_parameter(Entry& joint, const ParameterInfo& parameter, int body, std::optional<Vec3> at,
+                                         const BodyNames& names) {
   const std::string key(parameter.name);
-  if (parameter.kind == ParameterKind::scalar) {
-    const std::optional<double> value = joint.number(key, {Sign::any, parameter.unit == "rad"});
-    return value ? std::optional(std::vector<double>{*value}) : std::nullopt;
+  const bool in_space = names.dimension() == Dimension::spatial, scalar = parameter.kind == ParameterKind::scalar;
+  const bool vector = parameter.kind == ParameterKind::point || parameter.kind == ParameterKind::vector;
+  if (scalar || (vector && joint.is_array(key))) {
+    const NumberNeed need{parameter.unit, parameter.above, parameter.below, names.duration()};
+    const auto size = scalar ? std::nullopt : std::optional<std::size_t>(in_space ? 3 : 2);
+    const auto numbers = read_numbers_in_time(joint, key, size, {Sign::any, parameter.unit == "rad"}, need);
+    return numbers ? std::optional(named_value(key, *numbers)) : std::nullopt;
   }
-  const bool in_space = names.dimension() == Dimension::spatial;
-  if (in_space && parameter.kind == ParameterKind::frame && joint.is_array_of_arrays(key))
-    return read_two_axes(joint, key);
-  std::optional<Vec3> vector;
+  if (in_space && parameter.kind == ParameterKind::frame && joint.is_array_of_arrays(key)) {
+    const auto axes = read_two_axes(joint, key);
+    return axes ? std::optional(NamedValue{key, *axes}) : std::nullopt;
+  }
+  std::optional<Vec3> place;
   if (parameter.kind == ParameterKind::point) {
-    vector = read_of_body(joint, key, body, names, &BodyNames::to_body);
-    if (!joint.has(key) && at) vector = names.to_body(body, *at);
+    place = read_of_body(joint, key, body, names, &BodyNames::to_body);
+    if (!joint.has(key) && at) place = names.to_body(body, *at);
   } else {
-    vector = read_of_body(joint, key, body, names, &BodyNames::turned_to_body);
+    place = read_of_body(joint, key, body, names, &BodyNames::turned_to_body);
     const bool direction = parameter.kind != ParameterKind::vector;
-    if (direction && vector && std::hypot((*vector)[0], (*vector)[1], (*vector)[2]) == 0) {
+    if (direction && place && std::hypot((*place)[0], (*place)[1], (*place)[2]) == 0) {
       joint.error(joint.where(key), fmt::format("the direction `{}` has length 0", key),
                   in_space ? "any other length works: [1, 0, 0]" : "any other length works: [1, 0]");
     }
   }
-  if (!vector) return {};
-  return std::vector<double>(vector->begin(), vector->begin() + (in_space ? 3 : 2));
+  if (!place) return {};
+  return NamedValue{key, {place->begin(), place->begin() + (in_space ? 3 : 2)}};
 }
 
 // `at` and the parameters of the type. `at` gives the points that have no key of their own.
@@ -133,9 +139,9 @@ void read_parameters(Entry& joint, const char* key, JointReading& to) {
     const bool own = !means_coordinates(joint, type, std::string(parameter.name));
     const bool given = (own && joint.has(std::string(parameter.name))) || (point && joint.has("at"));
     has_point = has_point || point;
-    const auto numbers = own ? read_parameter(joint, parameter, body, at, names) : std::nullopt;
-    if (numbers) {
-      definition.parameters.push_back({std::string(parameter.name), *numbers});
+    const auto value = own ? read_parameter(joint, parameter, body, at, names) : std::nullopt;
+    if (value) {
+      definition.parameters.push_back(*value);
     } else if (!given && !parameter.has_default) {
       joint.error(joint.header(), fmt::format("{} has no `{}`: {}", joint.what(), parameter.name, described(parameter)),
                   point    ? fmt::format("{0} = [{1}] in the frame of its body, {0} = {{ world = [{1}] }}, "
@@ -264,7 +270,7 @@ void read_joints(Entry& top, const BodyNames& names, Scene& scene) {
     read_keys(entry, named, scene.dimension, read);
     if (!read.type) continue;
     read_keys(entry, joint_keys, scene.dimension, read);
-    read_effects(entry, *read.type, read.joint.effects);
+    read_effects(entry, *read.type, scene.duration, read.joint.effects);
     refuse_other_coordinates(entry, *read.type, scene.dimension);
     entry.close();
     scene.joints.push_back(std::move(read.joint));

@@ -21,6 +21,7 @@ class Mistakes {
   void add(Span where, std::string cause, std::string fix = {});
   bool none() const { return found_.empty(); }
   int count() const;
+  const std::string& file() const { return file_; }
 
   // All mistakes in the order of the file, each with its line and carets under the wrong part.
   std::string report() const;

@@ -49,6 +49,7 @@ void read_all(const toml::table& table, Mistakes& mistakes, Scene& scene) {
   read_bodies(top, scene);
   const BodyNames names(scene);
   read_joints(top, names, scene);
+  find_forces_in_time(scene);
   read_springs(top, names, scene);
   if (mistakes.none()) read_sensors(top, scene);
   else top.has("sensor");  // their words need joints without mistakes

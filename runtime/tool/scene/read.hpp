@@ -23,6 +23,7 @@ class BodyNames {
   Vec3 turned_to_body(int body, const Vec3& world_direction) const;
   Vec3 to_world(int body, const Vec3& body_position) const;
   Dimension dimension() const { return scene_->dimension; }
+  double duration() const { return scene_->duration; }  // [s] of the run
 
  private:
   const Scene* scene_;
@@ -42,12 +43,17 @@ std::optional<Vec3> read_of_body(Entry& entry, const std::string& key, int body,
 std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& used,
                                      const std::optional<std::string>& fallback);
 
+// The place of a mistake in a text: inside its quotes, if the file has the text as it is.
+Span place_in(Span whole, const std::string& text, const FormulaMistake& mistake);  // tool/scene/profile.cpp
+
 // The effects on the coordinates of a joint, and `soft`, which makes the joint itself a spring.
-void read_effects(Entry& joint, const JointType& type, std::vector<CoordinateEffects>& to);  // tool/scene/effects.cpp
+void read_effects(Entry& joint, const JointType& type, double duration,
+                  std::vector<CoordinateEffects>& to);  // tool/scene/effects.cpp
 std::optional<Softness> read_softness(Entry& joint, const char* key);
 
 void read_settings(Entry& top, Scene& scene);                         // tool/scene/settings.cpp
 void read_bodies(Entry& top, Scene& scene);                           // tool/scene/bodies.cpp
+void find_forces_in_time(Scene& scene);                               // tool/scene/bodies.cpp
 void read_joints(Entry& top, const BodyNames& names, Scene& scene);   // tool/scene/joints.cpp
 void read_springs(Entry& top, const BodyNames& names, Scene& scene);  // tool/scene/joints.cpp
 void read_sensors(Entry& top, Scene& scene);                          // tool/scene/sensors.cpp

@@ -46,6 +46,8 @@ struct SceneBody {
   BodyStart<Planar<double>> planar_start;
   BodyStart<Spatial<double>> spatial_start;
   bool is_static = false;  // of either
+  // A force or a torque that follows functions of time; find_forces_in_time() makes effects of them.
+  std::optional<NamedValue> force_in_time, torque_in_time;
   Shape shape;
   std::vector<Vec3> traces;  // points of the body whose paths the viewer draws
 };

@@ -1,5 +1,4 @@
 // The [[sensor]] entries of a scene -> formulas over what a run measures.
-#include <algorithm>
 #include <fmt/format.h>
 #include <map>
 
@@ -57,20 +56,13 @@ void read_sensor_name(Entry& entry, const char*, SensorReading& to) {
   to.sensor.name = read_name(entry, to.used, std::nullopt).value_or("");
 }
 
-// The place of bytes [begin, end) of a text: inside its quotes, if the file has the text as it is.
-Span place_in(const Entry& entry, const std::string& key, const std::string& text, const FormulaMistake& mistake) {
-  const Span whole = entry.where(key);
-  if (whole.end - whole.begin != static_cast<int>(text.size()) + 2) return whole;
-  return {whole.line, whole.begin + 1 + mistake.begin, whole.begin + 1 + std::max(mistake.end, mistake.begin + 1)};
-}
-
 void read_value(Entry& entry, const char* key, SensorReading& to) {
   entry.required(key, "value = \"energy\"");
   const std::optional<std::string> text = entry.text(key);
   if (!text) return;
   Formula::Reading read = Formula::read(*text, to.all.words);
   for (const FormulaMistake& mistake : read.mistakes)
-    entry.error(place_in(entry, key, *text, mistake), mistake.cause, mistake.fix);
+    entry.error(place_in(entry.where(key), *text, mistake), mistake.cause, mistake.fix);
   if (!read.formula) return;
   to.sensor.formula = std::move(*read.formula);
   for (const Formula::Input& input : to.sensor.formula.inputs())

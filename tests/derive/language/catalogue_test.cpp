@@ -29,8 +29,10 @@ TEST(Catalogue, HandDerivationsAreReadWithoutErrors) {
   int entries = 0;
   for (const auto& f : std::filesystem::directory_iterator(CDOT_SOURCE_DIR "/specs/planar")) {
     if (f.path().extension() != ".hand") continue;
-    const auto joint = library.at(f.path().stem().string());
-    const std::string messages = messages_about_hand(file_of(f.path()), joint, library);
+    const auto joint = library.find(f.path().stem().string());
+    std::filesystem::path effect = f.path();
+    const auto spec = joint != library.end() ? joint->second : file_of(effect.replace_extension(".effect"));
+    const std::string messages = messages_about_hand(file_of(f.path()), spec, library);
     EXPECT_EQ(messages.find(": error:"), std::string::npos) << messages;
     entries += static_cast<int>(read_hand(file_of(f.path())).entries.size());
   }

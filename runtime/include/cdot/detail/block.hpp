@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include <cdot/detail/bodies.hpp>
 #include <cdot/kernel.hpp>
+#include <cdot/profile.hpp>
 #include <cdot/settings.hpp>
 
 namespace cdot {
@@ -145,8 +147,20 @@ struct Law {
   void (*distance)(const Batch<S>&, int slot, T rate, T force, T (&from)[2]) = nullptr;
   // True if the energy of one slot changes with K. Null: never.
   bool (*by_mass)(const Batch<S>&, int slot) = nullptr;
+  // dE/dt of one slot at the present C, as its parameters follow functions of time. Null: as `energy`.
+  double (*power)(const Batch<S>&, int slot) = nullptr;
 
   bool is_of_effect() const { return unstored != nullptr; }
+};
+
+// A number of a slot that follows a function of time.
+struct Drive {
+  int number;   // of its parameters or, of_row, of its constants
+  bool of_row;
+  Profile profile;
+  double offset;        // added to the profile: the origin of a point in the world
+  double above, below;  // its range; outside it becomes NaN, at which the step fails
+  ProfileValue now{};   // without the offset
 };
 
 template <class S>
@@ -175,6 +189,8 @@ struct BatchState {
   StateArray<T> softness, lower, upper;
   StateArray<T> constants;     // [slot][law->constants]
   StateArray<Event> happened;  // [slot], of laws with events
+  // [slot][from, until] the span of the step for numbers in time (cdot/profile.hpp); empty if there are none.
+  StateArray<double> spans;
 };
 
 template <class S>
@@ -189,6 +205,9 @@ struct BatchWorkspace {
   std::vector<T> impulse;    // of one round of a projection, or a known force
   std::vector<T> load;       // [slot] force that bounds grow with (runtime/solve/loads.hpp), at acceleration level
   T time = 0;                // of C
+  // Numbers in time, those of a slot from first_drive[home] to first_drive[home + 1]; both empty if there are none.
+  std::vector<Drive> drives;
+  std::vector<int> first_drive;
 };
 
 // All blocks of one kind under one law, by slot. The slots of an island are contiguous.
@@ -197,6 +216,17 @@ struct Batch : BatchModel<S>, BatchState<S>, BatchWorkspace<S> {
   using T = typename S::Scalar;
   int count() const { return static_cast<int>(this->joint.size()); }
   int triangle() const { return this->ops->rows * (this->ops->rows + 1) / 2; }
+  bool driven() const { return !this->drives.empty(); }
+  bool explicit_time() const { return this->ops->explicit_time || driven(); }
+  std::span<Drive> drives_of(int slot) { return range(this->drives, this->first_drive, slot); }
+  std::span<const Drive> drives_of(int slot) const { return range(this->drives, this->first_drive, slot); }
+
+ private:
+  template <class Drives>
+  auto range(Drives& drives, const std::vector<int>& first, int slot) const {
+    const auto home = static_cast<size_t>(this->home[static_cast<size_t>(slot)]);
+    return std::span(drives.data() + first[home], drives.data() + first[home + 1]);
+  }
 };
 
 // The slots of a batch in one island. Slots of broken joints lie between `end` and `whole_end`.

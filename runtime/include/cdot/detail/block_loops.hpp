@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include <cdot/detail/block.hpp>
+#include <cdot/detail/drives.hpp>
 #include <cdot/detail/kernel_forms.hpp>
 #include <cdot/detail/turns.hpp>
 
@@ -71,8 +72,45 @@ struct BlockLoops {
                  batch.counters.data() + slot * Turns::count);
   }
 
+  // C of a slot as its bodies move and its parameters follow functions of time.
+  [[gnu::noinline]] static void motion(const Batch<S>& batch, int slot, const Pose (&q)[bodies],
+                                       const Velocity (&v)[bodies], T time, Jet<T> (&C)[rows]) {
+    using Moving = decltype(moving(q[0], v[0]));
+    Moving poses[bodies];
+    for (int k = 0; k < bodies; ++k) poses[k] = moving(q[k], v[k]);
+    using Jets = typename Joint::template Parameters<Jet<T>>;
+    Block::position(poses, jets_of<Jets>(batch, slot, false), Jet<T>{time, T(1), T(0)}, C);
+  }
+
+  // dC/dt of the slots whose parameters follow functions of time, into the bias.
+  static void drift_in_time(Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time) {
+    for (int slot = begin; slot < end; ++slot) {
+      if (batch.drives_of(slot).empty()) continue;
+      Pose q[bodies];
+      gather(all.pose, bodies_of(batch, slot), q);
+      Jet<T> C[rows];
+      motion(batch, slot, q, {}, time, C);
+      for (int r = 0; r < rows; ++r) batch.bias[slot * rows + r] = C[r].first;
+    }
+  }
+
+  // gamma of these slots: -d^2C/dt^2 without accelerations.
+  static void gamma_in_time(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time, T* out) {
+    for (int slot = begin; slot < end; ++slot) {
+      if (batch.drives_of(slot).empty()) continue;
+      Pose q[bodies];
+      Velocity v[bodies];
+      gather(all.pose, bodies_of(batch, slot), q);
+      gather(all.velocity, bodies_of(batch, slot), v);
+      Jet<T> C[rows];
+      motion(batch, slot, q, v, time, C);
+      for (int r = 0; r < rows; ++r) out[slot * rows + r] = -C[r].second;
+    }
+  }
+
   static void evaluate(Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time) {
     batch.time = time;
+    if (batch.driven()) follow(batch, begin, end, time);
     for (int slot = begin; slot < end; ++slot) {
       Pose q[bodies];
       gather(all.pose, bodies_of(batch, slot), q);
@@ -86,10 +124,12 @@ struct BlockLoops {
       if constexpr (Block::explicit_time) Block::time_derivative(q, p, time, drift);
       for (int r = 0; r < rows; ++r) batch.bias[slot * rows + r] = drift[r];
     }
+    if (batch.driven()) Inherited::drift_in_time(batch, begin, end, all, time);
   }
 
   static void position(Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time) {
     batch.time = time;
+    if (batch.driven()) follow(batch, begin, end, time);
     for (int slot = begin; slot < end; ++slot) {
       Pose q[bodies];
       gather(all.pose, bodies_of(batch, slot), q);
@@ -111,6 +151,7 @@ struct BlockLoops {
       Block::gamma(q, v, as<Parameters>(batch.parameters.data(), slot), time, g);
       for (int r = 0; r < rows; ++r) out[slot * rows + r] = g[r];
     }
+    if (batch.driven()) gamma_in_time(batch, begin, end, all, time, out);
   }
 
   static void effective_mass(Batch<S>& batch, int begin, int end, const Bodies<S>& all) {

@@ -41,7 +41,17 @@ struct BoundedLaw {
     Row::bounds(reinterpret_cast<const T(&)[1]>(batch.C[slot]), parameters_of<S, Effect, where>(batch, slot),
                 batch.time, B);
     if (!(B.upper > B.lower)) B.upper = B.lower;
+    if (batch.driven() && !batch.drives_of(slot).empty()) B.acceleration = acceleration_in_time(batch, slot);
     return B;
+  }
+
+  // The derivative of the prescribed rate where its parameters follow functions of time.
+  [[gnu::noinline]] static T acceleration_in_time(const Batch<S>& batch, int slot) {
+    using Jets = typename Effect::template Parameters<Jet<T>>;
+    const Jet<T> C[1] = {batch.C[slot]};
+    RowBounds<Jet<T>> B;
+    Row::bounds(C, jets_of<Jets>(batch, slot, where == ParametersAt::row), Jet<T>{batch.time, T(1), T(0)}, B);
+    return B.rate.first;
   }
 
   static constexpr bool waits = requires { &Row::template after<T>; };

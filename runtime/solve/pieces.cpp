@@ -1,0 +1,60 @@
+#include "runtime/solve/pieces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <cdot/spaces.hpp>
+
+namespace cdot {
+
+template <class S>
+double begin_piece(WorldData<S>& world, Island<S>& island, double time, double h, int order) {
+  double until = unbounded;
+  // A jump this near was meant to be at the start.
+  const double near =
+      std::max(1e-9 * h, 4 * double(std::numeric_limits<typename S::Scalar>::epsilon()) * std::abs(time));
+  for (const auto& [batch, begin, end, whole] : island.segments) {
+    if (!batch->driven()) continue;
+    for (int slot = begin; slot < end; ++slot) {
+      const bool effect = joint_types(S::dimension)[world.joints[batch->joint[slot]].type].is_effect;
+      double slot_until = unbounded;
+      for (const Drive& drive : batch->drives_of(slot)) {
+        const int lowest = effect || drive.of_row ? 0 : 1;
+        slot_until = std::min(slot_until, drive.profile.next_break(time + near, std::max(order, lowest)));
+      }
+      // The rows of the last step hold the numbers before the jump.
+      if (batch->spans[2 * slot + 1] <= time + near) island.evaluated = island.factored = false;
+      batch->spans[2 * slot] = time + near, batch->spans[2 * slot + 1] = slot_until;
+      until = std::min(until, slot_until);
+    }
+  }
+  return until;
+}
+
+template <class S>
+double begin_pieces(WorldData<S>& world, double time, double h) {
+  double until = unbounded;
+  for (int index : world.awake) until = std::min(until, begin_piece(world, world.islands[index], time, h, 0));
+  return until;
+}
+
+template <class S>
+bool leaves_its_range(const Island<S>& island) {
+  for (const auto& [batch, begin, end, whole] : island.segments) {
+    if (!batch->driven()) continue;
+    for (int slot = begin; slot < end; ++slot)
+      for (const Drive& drive : batch->drives_of(slot))
+        if (!(drive.above < drive.now.value && drive.now.value < drive.below)) return true;
+  }
+  return false;
+}
+
+#define CDOT_INSTANTIATE(S)                                                    \
+  template double begin_piece(WorldData<S>&, Island<S>&, double, double, int); \
+  template double begin_pieces(WorldData<S>&, double, double);                 \
+  template bool leaves_its_range(const Island<S>&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot
