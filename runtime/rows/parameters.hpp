@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,11 @@ std::vector<double> parameter_numbers(int type, const std::vector<NamedValue>& g
 
 // " above 0", " between 0 and 3.14159"; empty for a parameter without bounds.
 std::string range_of(const ParameterInfo& info);
+
+// The number above which a parameter lies: just below `above` where that itself is allowed.
+inline double open_end(const ParameterInfo& info) {
+  return info.from ? std::nextafter(info.above, -unbounded) : info.above;
+}
 
 // Writes the given parameters into `numbers`; the others stay. Returns the given ones. Throws Error.
 std::vector<const ParameterInfo*> change_parameters(const JointType& type, const std::vector<NamedValue>& given,

@@ -71,7 +71,7 @@ void check_functions(const JointType& type, const std::vector<NamedValue>& given
                       "drive that holds it, as `position_drive`",
                       named(type, value.name)));
     for (const auto& [number, profile] : value.in_time) {
-      if (info.above < profile.least() || std::isinf(profile.least())) {
+      if (open_end(info) < profile.least() || std::isinf(profile.least())) {
         if (profile.most() < info.below || std::isinf(profile.most())) continue;
       }
       throw Error(fmt::format("{} follows values from {:.6g} to {:.6g} [{}]. Likely fix: numbers{}",
@@ -90,7 +90,7 @@ void add_drives(WorldData<S>& world, int joint, int place, const JointType& type
                           (info.body < 0 || record.bodies[static_cast<std::size_t>(info.body)] == world.ground);
     for (const auto& [number, profile] : value.in_time) {
       const double offset = in_world ? -world.origin[static_cast<std::size_t>(number)] : 0;
-      record.drives.push_back({place, {info.offset + number, place >= 0, profile, offset, info.above, info.below}});
+      record.drives.push_back({place, {info.offset + number, place >= 0, profile, offset, open_end(info), info.below}});
       record.added.add(info.offset + number), record.added.add(profile.hash());
       world.driven = true, world.prepared = false;
     }

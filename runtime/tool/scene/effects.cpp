@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "runtime/rows/parameters.hpp"
 #include "runtime/tool/scene/keys.hpp"
 #include "runtime/tool/scene/profile.hpp"
 #include "runtime/tool/scene/read.hpp"
@@ -63,18 +64,29 @@ std::string example_of(const JointType& type) {
   return text;
 }
 
+// "any/s" on an angle is "rad/s".
+std::string unit_on(std::string_view unit, std::string_view coordinate) {
+  std::string text(unit);
+  if (const auto at = text.find("any"); at != std::string::npos) text.replace(at, 3, coordinate);
+  return text;
+}
+
 // An effect of a spec: { k = 50, most = 3 }, or the number of its only parameter.
-void read_spec(Entry& entry, const JointType& type, double duration, CoordinateEffects& effects) {
+void read_spec(Entry& entry, const JointType& type, const CoordinateInfo& coordinate, double duration,
+               CoordinateEffects& effects) {
+  const bool turns = coordinate.unit == "rad";
   const std::string key(type.name);
   SpecEffect effect{key};
   std::vector<const ParameterInfo*> needed;
-  const auto quantity = [](const ParameterInfo& info) {
-    return Quantity{info.above >= 0 ? Sign::positive : Sign::any, info.unit == "rad"};
+  const auto quantity = [turns](const ParameterInfo& info) {
+    const Sign sign = !(info.above >= 0) ? Sign::any : info.from ? Sign::not_negative : Sign::positive;
+    return Quantity{sign, info.unit == "rad" || (turns && (info.unit == "any" || info.unit == "any/s"))};
   };
   for (std::size_t k = 0; k < type.parameters.size(); ++k)
     if (type.coordinate_uses[k] == CoordinateUse::required) needed.push_back(&type.parameters[k]);
   const auto read = [&](Entry& from, const std::string& name, const ParameterInfo& info) {
-    const NumberNeed need{info.unit, info.above, info.below, duration};
+    const std::string unit = unit_on(info.unit, coordinate.unit);
+    const NumberNeed need{unit, open_end(info), info.below, duration};
     if (const auto number = read_numbers_in_time(from, name, {}, quantity(info), need))
       effect.parameters.push_back(named_value(std::string(info.name), *number));
   };
@@ -97,7 +109,7 @@ void read_specs(Entry& entry, const CoordinateInfo& coordinate, double duration,
   for (const JointType& type : coordinate_effects()) {
     const std::string key(type.name);
     if (is_key_of_kind(key) || !entry.has(key)) continue;
-    if (type.acts_on(coordinate.unit)) read_spec(entry, type, duration, effects);
+    if (type.acts_on(coordinate.unit)) read_spec(entry, type, coordinate, duration, effects);
     else
       entry.error(entry.where(key),
                   fmt::format("`{}` acts on coordinates in {}; `{}` is in {}", key, type.coordinate_unit,
@@ -141,12 +153,15 @@ std::optional<Softness> read_softness(Entry& joint, const char* key) {
 KeyTable keys_of_effects() {
   KeyTable table{"Effects on a coordinate of a joint: angle.motor = { speed = 2 }", {}};
   for (const EffectKind* kind : effect_kinds) table.rows.push_back({kind->key, kind->meaning, ""});
-  for (const JointType& type : coordinate_effects())
+  for (const JointType& type : coordinate_effects()) {
+    const bool any = type.coordinate_unit == "any";
     if (!is_key_of_kind(type.name))
       table.rows.push_back(
           {std::string(type.name),
-           fmt::format("`{{ {} }}` on a coordinate in {}: {}", example_of(type), type.coordinate_unit, type.title),
+           fmt::format("`{{ {} }}` on {}{}: {}", example_of(type), any ? "any coordinate" : "a coordinate in ",
+                       any ? "" : type.coordinate_unit, type.title),
            ""});
+  }
   return table;
 }
 

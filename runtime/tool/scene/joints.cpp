@@ -98,7 +98,7 @@ std::optional<NamedValue> read_parameter(Entry& joint, const ParameterInfo& para
   const bool in_space = names.dimension() == Dimension::spatial, scalar = parameter.kind == ParameterKind::scalar;
   const bool vector = parameter.kind == ParameterKind::point || parameter.kind == ParameterKind::vector;
   if (scalar || (vector && joint.is_array(key))) {
-    const NumberNeed need{parameter.unit, parameter.above, parameter.below, names.duration()};
+    const NumberNeed need{parameter.unit, open_end(parameter), parameter.below, names.duration()};
     const auto size = scalar ? std::nullopt : std::optional<std::size_t>(in_space ? 3 : 2);
     const auto numbers = read_numbers_in_time(joint, key, size, {Sign::any, parameter.unit == "rad"}, need);
     return numbers ? std::optional(named_value(key, *numbers)) : std::nullopt;

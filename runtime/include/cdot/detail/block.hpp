@@ -155,7 +155,7 @@ struct Law {
 
 // A number of a slot that follows a function of time.
 struct Drive {
-  int number;   // of its parameters or, of_row, of its constants
+  int number;  // of its parameters or, of_row, of its constants
   bool of_row;
   Profile profile;
   double offset;        // added to the profile: the origin of a point in the world
