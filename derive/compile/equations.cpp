@@ -21,19 +21,19 @@ class EquationWriter {
   EquationWriter(const Mechanism& mechanism, const Names& names, const derive::SpecsFolder& specs)
       : mechanism_(mechanism), blocks_(mechanism, names, specs), joints_(blocks_) {
     out_.rows = system().names();
-    for (const RowBlock& joint : system().blocks()) out_.driven |= joint.rows->has_rates;
   }
 
   Equations write() {
     out_.constants.inputs = {mechanism_.inputs.begin(), mechanism_.inputs.end()};
     if (system().size() > 0) {
       out_.evaluate = joints_.evaluate(out_.constants, out_.stored);
-      out_.errors = of_each_joint("position", "C", "C");
-      out_.gamma = of_each_joint("gamma", "g", "g");
+      write_errors();
       write_rates();
       write_solve();
     }
-    if (mechanism_.method != Method::euler) out_.fall = fall_of(blocks_, out_.constants);
+    if (mechanism_.method != Method::euler && system().size() > 0)
+      out_.accelerate = accelerations_of(blocks_, joints_, out_.constants);
+    else if (mechanism_.method != Method::euler) out_.fall = fall_of(blocks_, out_.constants);
     else if (!mechanism_.effects.empty() || !mechanism_.bounded.empty())
       out_.kick = kick_of(blocks_, joints_, out_.constants);
     if (!mechanism_.effects.empty() || !mechanism_.bounded.empty())
@@ -47,16 +47,15 @@ class EquationWriter {
  private:
   const RowSystem& system() const { return joints_.system(); }
 
-  // One function of each joint, to the elements of an array over all rows.
-  Program of_each_joint(const std::string& function, const std::string& of_joint, const std::string& of_all) {
+  void write_errors() {
     Algebra algebra(out_.constants);
     for (std::size_t k = 0; k < system().blocks().size(); ++k) {
       const RowBlock& joint = system().blocks()[k];
-      const Values out = blocks_.call(algebra, joint, function, blocks_.inputs(algebra, joint));
+      const Values C = blocks_.call(algebra, joint, "position", blocks_.inputs(algebra, joint));
       for (std::size_t r = 0; r < joint.rows->count(); ++r)
-        algebra.output(element(of_all, system().first_row(k) + r), out.at(element(of_joint, r)));
+        algebra.output(element("C", system().first_row(k) + r), C.at(element("C", r)));
     }
-    return algebra.finish();
+    out_.errors = algebra.finish();
   }
 
   void write_rates() {
@@ -123,8 +122,8 @@ class EquationWriter {
 }  // namespace
 
 std::vector<const Program*> programs_of_equations(const Equations& e) {
-  return {&e.evaluate, &e.errors,    &e.rates, &e.gamma, &e.solve, &e.fall,
-          &e.kick,     &e.potential, &e.reach, &e.past,  &e.along};
+  return {&e.evaluate, &e.errors,    &e.rates, &e.accelerate, &e.solve, &e.fall,
+          &e.kick,     &e.potential, &e.reach, &e.past,       &e.along};
 }
 
 Equations equations_of(const Mechanism& mechanism, const Names& names, const derive::SpecsFolder& specs) {

@@ -14,15 +14,14 @@ struct Equations {
   std::vector<std::string> stored;  // the numbers of J and of its factor that `evaluate` writes
   std::set<std::string> turning;    // bodies whose c and s are read
   Constants constants;
-  bool driven = false;  // dC/dt at fixed q is not 0
   // With joints:
-  Program evaluate;  // q, time -> J: Jacobian, factor of K = J M^-1 J^T
-  Program errors;    // q, time -> C
-  Program rates;     // J, v -> J v + dC/dt
-  Program gamma;     // q, v, time -> -Jdot v - d/dt(dC/dt)
-  Program solve;     // J, b -> lambda with K lambda = b, d = M^-1 J^T lambda
+  Program evaluate;    // q, time -> J: Jacobian, factor of K = J M^-1 J^T
+  Program errors;      // q, time -> C
+  Program rates;       // J, v -> J v + dC/dt
+  Program solve;       // J, b -> lambda with K lambda = b, d = M^-1 J^T lambda
+  Program accelerate;  // q, v, time, J -> a, lambda: M a = f + J^T lambda, J a = gamma
   // Without:
-  Program fall;       // q, v, time -> a: accelerations of bodies without joints
+  Program fall;       // q, v, time -> a
   Program kick;       // q, v, time, J, h -> next: v after an Euler step with effects; lambda of the joints
   Program potential;  // q, time -> E of the effects
   // Of rows with bounds:

@@ -67,11 +67,12 @@ class HeaderWriter {
   void line(const std::string& line = {}) { text_ += line + "\n"; }
 
   long operations() const {
-    const Calls calls = calls_of(mechanism_.method, has(), equations_.driven);
+    const Calls calls = calls_of(mechanism_.method, has());
     const auto of = [](int times, const Program& program) { return long{times} * derive::count(program).total(); };
     return of(calls.evaluate, equations_.evaluate) + of(calls.errors, equations_.errors) +
-           of(calls.rates, equations_.rates) + of(calls.gamma, equations_.gamma) + of(calls.solve, equations_.solve) +
-           of(calls.fall, equations_.fall) + of(calls.kick, equations_.kick) + of(calls.past, equations_.past);
+           of(calls.rates, equations_.rates) + of(calls.accelerate, equations_.accelerate) +
+           of(calls.solve, equations_.solve) + of(calls.fall, equations_.fall) + of(calls.kick, equations_.kick) +
+           of(calls.past, equations_.past);
   }
 
   long state_bytes() const {
@@ -258,15 +259,15 @@ class HeaderWriter {
   }
 
   void write_accelerations(const std::string& at, const std::string& moving) {
-    write_function("Accelerations without joints", "fall(" + at + ", " + moving + ", Velocity (&a)[bodies])",
-                   equations_.fall);
     if (!has_rows()) {
+      write_function("Accelerations", "fall(" + at + ", " + moving + ", Velocity (&a)[bodies])", equations_.fall);
       text_ += free_slope;
       return;
     }
-    const std::string at_v = "$dconst Pose (&q)[bodies], " + moving + ", const T& time";
-    write_function("-Jdot v - d/dt(dC/dt)", "gamma(" + at_v + ", T (&g)[rows])", equations_.gamma);
-    text_ += equations_.driven ? accelerate_driven : accelerate_by_rates;
+    write_function(
+        "M a = f + J^T lambda with J a = gamma = -Jdot v - d/dt(dC/dt)",
+        "accelerate(" + at + ", " + moving + ", const Jacobian& J, T (&lambda)[rows], Velocity (&a)[bodies])",
+        equations_.accelerate);
     text_ += slope;
   }
 

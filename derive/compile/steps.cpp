@@ -81,7 +81,7 @@ constexpr const char* ends_on_joints = R"(    Velocity moves[bodies];
     close(s, at, T(0.5), moves);
     evaluate($ss.q, s.time, s.J);
     project(s);
-    accelerate($ss.q, s.v, s.time, s.J, s.lambda, s.a);
+    accelerate($ss.q, s.time, s.v, s.J, s.lambda, s.a);
     return s.residual;
 )";
 
@@ -137,7 +137,7 @@ constexpr int stages_of(Method method) { return method == Method::rk4 ? rk4<doub
 
 }  // namespace
 
-Calls calls_of(Method method, const Contents& has, bool driven) {
+Calls calls_of(Method method, const Contents& has) {
   Calls calls{.evaluate = 1, .errors = 2, .rates = 1, .solve = 2};  // the corrections
   if (has.ends) calls.past = 2;
   if (method == Method::euler) {
@@ -147,9 +147,7 @@ Calls calls_of(Method method, const Contents& has, bool driven) {
   }
   const int stages = stages_of(method);
   calls.evaluate += stages - 1;
-  calls.fall = calls.gamma = stages;
-  calls.solve += stages;
-  calls.rates += driven ? 2 * stages : stages;
+  calls.fall = calls.accelerate = stages;
   return calls;
 }
 
@@ -163,7 +161,7 @@ std::string begin_of(Method method, const Contents& has) {
   if (has.rows) text += evaluates;
   if (has.closes()) text += notes_poses + fmt::format(closes, 0.2);
   if (has.rows) text += evaluates;
-  if (accelerates && has.rows) text += "    project(s);\n    accelerate($ss.q, s.v, s.time, s.J, s.lambda, s.a);\n";
+  if (accelerates && has.rows) text += "    project(s);\n    accelerate($ss.q, s.time, s.v, s.J, s.lambda, s.a);\n";
   else if (accelerates) text += "    fall($ss.q, s.time, s.v, s.a);\n";
   return text + "  }\n";
 }

@@ -10,9 +10,9 @@ namespace cdot::compile {
 
 // How often step() calls each function, with one round of Newton and no end passed.
 struct Calls {
-  int evaluate = 0, errors = 0, rates = 0, gamma = 0, solve = 0, fall = 0, kick = 0, past = 0;
+  int evaluate = 0, errors = 0, rates = 0, accelerate = 0, solve = 0, fall = 0, kick = 0, past = 0;
 };
-Calls calls_of(Method method, const Contents& has, bool driven);
+Calls calls_of(Method method, const Contents& has);
 
 std::string begin_of(Method method, const Contents& has);
 std::string step_of(Method method, const Contents& has);

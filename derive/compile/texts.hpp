@@ -26,47 +26,13 @@ inline constexpr const char* guards = R"(
   static T pivot(const T& d, const T& k) { return select(d > T(64 * epsilon) * k, T(1) / d, T(0)); }
 )";
 
-// J a without dC/dt, which `rates` adds for driven joints.
-inline constexpr const char* accelerate_by_rates = R"(
-  // M a = f + J^T lambda with J a = gamma.
-  static void accelerate($dconst Pose (&q)[bodies], const Velocity (&v)[bodies], const T& time, const Jacobian& J,
-                         T (&lambda)[rows], Velocity (&a)[bodies]) {
-    T g[rows], Ja[rows];
-    fall($pq, time, v, a);
-    gamma($pq, v, time, g);
-    rates(J, a, Ja);
-    for (int i = 0; i < rows; ++i) g[i] = g[i] - Ja[i];
-    Velocity d[bodies];
-    solve(J, g, lambda, d);
-    for (int i = 0; i < bodies; ++i) a[i] = a[i] + d[i];
-  }
-)";
-
-inline constexpr const char* accelerate_driven = R"(
-  // M a = f + J^T lambda with J a = gamma.
-  static void accelerate($dconst Pose (&q)[bodies], const Velocity (&v)[bodies], const T& time, const Jacobian& J,
-                         T (&lambda)[rows], Velocity (&a)[bodies]) {
-    T g[rows], Ja[rows], C_t[rows];
-    fall($pq, time, v, a);
-    gamma($pq, v, time, g);
-    rates(J, a, Ja);
-    Velocity none[bodies];
-    for (int i = 0; i < bodies; ++i) none[i] = {T(0), T(0), T(0)};
-    rates(J, none, C_t);  // dC/dt is no part of J a
-    for (int i = 0; i < rows; ++i) g[i] = g[i] - (Ja[i] - C_t[i]);
-    Velocity d[bodies];
-    solve(J, g, lambda, d);
-    for (int i = 0; i < bodies; ++i) a[i] = a[i] + d[i];
-  }
-)";
-
 inline constexpr const char* slope = R"(
   // The rates of change at a stage of a Runge-Kutta method.
   static void slope($dEvaluated& at, const Velocity (&v)[bodies], Jacobian& J, T (&forces)[rows], Slope (&k)[bodies]) {
     turn(at.q);
     evaluate($pat.q, at.time, J);
     Velocity a[bodies];
-    accelerate($pat.q, v, at.time, J, forces, a);
+    accelerate($pat.q, at.time, v, J, forces, a);
     for (int i = 0; i < bodies; ++i) k[i] = {v[i], a[i]};
   }
 )";

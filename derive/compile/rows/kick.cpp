@@ -4,6 +4,7 @@
 
 #include "derive/compile/rows/bounds.hpp"
 #include "derive/compile/rows/components.hpp"
+#include "derive/compile/rows/motion.hpp"
 #include "derive/kernel/factor.hpp"
 
 namespace cdot::compile {
@@ -36,7 +37,7 @@ class Answers {
     std::vector<int> lambda;
     Values velocities;
   };
-  // drift(row): dC/dt.
+  // drift(row): what J u misses of the rate, dC/dt.
   Answer to(const Values& u, const std::function<int(std::size_t row)>& drift) const {
     std::vector<int> b;
     for (std::size_t k = 0; k < inputs_.size(); ++k) {
@@ -233,6 +234,27 @@ class KickWriter {
 };
 
 }  // namespace
+
+Program accelerations_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants) {
+  Algebra algebra(constants);
+  Answers answers(blocks, algebra, joints.system(),
+                  [&](const std::string& name) { return joints.factor(algebra, name); });
+  std::vector<int> rest;  // -gamma
+  for (std::size_t k = 0; k < joints.system().blocks().size(); ++k) {
+    const RowBlock& joint = joints.system().blocks()[k];
+    const Values in = joints.inputs(algebra, k);
+    answers.add(in, {});
+    const Values g = blocks.call(algebra, joint, "gamma", in);
+    for (std::size_t r = 0; r < joint.rows->count(); ++r) rest.push_back(algebra.sum({{g.at(element("g", r))}, {-1}}));
+  }
+  const Answers::Answer answer =
+      answers.to(free_accelerations(blocks, algebra), [&](std::size_t row) { return rest[row]; });
+  for (std::size_t row = 0; row < rest.size(); ++row) algebra.output(element("lambda", row), answer.lambda[row]);
+  each_component(blocks, [&](const Component& component, double, double) {
+    algebra.output(component.in("a"), answer.velocities.at(component.name));
+  });
+  return algebra.finish();
+}
 
 Program kick_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants) {
   return KickWriter(blocks, joints, constants).write();

@@ -1,9 +1,12 @@
-// An Euler step of the velocities as functions of the header.
+// What joints and effects do to the velocities, as functions of the header: accelerations, and an Euler step.
 #pragma once
 
 #include "derive/compile/rows/joint_rows.hpp"
 
 namespace cdot::compile {
+
+// q, v, time, J -> a and lambda: M a = f + J^T lambda with J a = gamma.
+Program accelerations_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
 
 // q, v, time, J, h -> next: v after an Euler step of h with effects, and lambda of the joints. With rows that have
 // bounds, these are without their impulses, and B holds the system that gives them.

@@ -5,8 +5,7 @@
 
 namespace cdot::compile {
 
-Program fall_of(const RowBlocks& blocks, Constants& constants) {
-  Algebra algebra(constants);
+Values free_accelerations(const RowBlocks& blocks, Algebra& algebra) {
   Forces forces;
   for (std::size_t e = 0; e < blocks.mechanism().effects.size(); ++e) {
     const RowBlock& block = blocks.effect(e);
@@ -14,10 +13,20 @@ Program fall_of(const RowBlocks& blocks, Constants& constants) {
     const LawWriter law(blocks, algebra, blocks.mechanism().effects[e], block, in);
     blocks.add_forces(algebra, block, in, law.force(), forces);
   }
+  Values accelerations;
   each_component(blocks, [&](const Component& component, double a, double drag) {
     const int slowed = algebra.times(algebra.value(drag), algebra.input(component.in("v")));
     const int change = change_of(blocks, algebra, component, forces);
-    algebra.output(component.in("a"), algebra.sum({{algebra.value(a), slowed, change}, {1, -1, 1}}));
+    accelerations[component.name] = algebra.sum({{algebra.value(a), slowed, change}, {1, -1, 1}});
+  });
+  return accelerations;
+}
+
+Program fall_of(const RowBlocks& blocks, Constants& constants) {
+  Algebra algebra(constants);
+  const Values accelerations = free_accelerations(blocks, algebra);
+  each_component(blocks, [&](const Component& component, double, double) {
+    algebra.output(component.in("a"), accelerations.at(component.name));
   });
   return algebra.finish();
 }

@@ -5,7 +5,10 @@
 
 namespace cdot::compile {
 
-// q, v, time -> a: accelerations without joints.
+// Accelerations without joints, by the names of components.
+Values free_accelerations(const RowBlocks& blocks, Algebra& algebra);
+
+// q, v, time -> a: these.
 Program fall_of(const RowBlocks& blocks, Constants& constants);
 
 // q, time -> E: potential energy of the effects.
