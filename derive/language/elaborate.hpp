@@ -115,6 +115,7 @@ class Elaborator {
   void check_free(Source& spec);
   // elaborate_bound.cpp
   void bound(Source& source, const StatementAst& s);
+  bool events(Source& source, const StatementAst& s, BoundedRow& row);
   bool event(Source& source, const ConditionAst& condition, BoundedRow& row, Expr& distance);
   Expr bound_value(Source& source, const Ast& ast, const Unit& unit, const std::vector<Expr>& also);
   const Coordinate* bounded_coordinate(Source& source, const Word& name);

@@ -81,6 +81,13 @@ bool Elaborator::event(Source& source, const ConditionAst& condition, BoundedRow
   return true;
 }
 
+bool Elaborator::events(Source& source, const StatementAst& s, BoundedRow& row) {
+  row.own_rate = law_rates_.at(row.coordinate).e;
+  const bool after = !s.after || event(source, *s.after, row, row.after);
+  const bool until = !s.until || event(source, *s.until, row, row.until);
+  return after && until;
+}
+
 // The coordinate that a row bounds, as a row block of its own. Null after an error.
 const Coordinate* Elaborator::bounded_coordinate(Source& source, const Word& name) {
   const auto declared = bounded_candidates_.find(name.text);
@@ -103,14 +110,13 @@ void Elaborator::bound(Source& source, const StatementAst& s) {
   const Coordinate* const coordinate = bounded_coordinate(source, s.bounded);
   if (!coordinate) return;
   const Unit unit = coordinate->unit, joule{.m = 2, .s = -2, .kg = 1};
-  const Expr value = law_values_.at(s.bounded.text).e;
   BoundedRow row{s.label.text.empty() ? s.bounded.text + (s.of_rate ? "_rate" : "_ends") : s.label.text,
                  s.bounded.text,
                  s.of_rate,
                  {},
                  {},
                  {},
-                 value,
+                 law_values_.at(s.bounded.text).e,
                  in_spec(source, s.where),
                  written(source, s)};
   const bool is_named = !s.label.text.empty();
@@ -129,15 +135,13 @@ void Elaborator::bound(Source& source, const StatementAst& s) {
   };
   const Expr time = time_symbol(*pool_);
   const Unit of_bounds = s.of_rate ? joule / unit : unit;
-  const std::vector<Expr> also = s.of_rate ? std::vector{value, time} : std::vector<Expr>{};
+  const std::vector<Expr> also = s.of_rate ? std::vector{row.value, time} : std::vector<Expr>{};
   in_bound_ = s.of_rate ? &row : nullptr;
   bool right = number(s.lower, row.lower, of_bounds, also);
   right &= number(s.upper, row.upper, of_bounds, also);
   in_bound_ = nullptr;
   if (s.of_rate) right &= number(s.left, row.rate, unit / Unit{.s = 1}, {time});
-  row.own_rate = law_rates_.at(s.bounded.text).e;
-  if (s.after) right &= event(source, *s.after, row, row.after);
-  if (s.until) right &= event(source, *s.until, row, row.until);
+  right &= events(source, s, row);
   for (const Expr e : {row.lower, row.upper, row.rate, row.after, row.until})
     joint_.uses_time |= e && depends_on_role(e, Role::time);
   if (right) joint_.law->bounded.push_back(std::move(row));

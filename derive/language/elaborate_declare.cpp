@@ -149,7 +149,7 @@ bool Elaborator::resolve_unit(Source& source, const DeclaredAst& d, const Value&
   const Unit metre{.m = 1};
   if (d.unit && !of_coordinate_ && d.unit->unit.any != Rational(0)) {
     source.diagnostics.error(d.unit->where, "`any` is the unit of the coordinate of a joint that an effect acts on",
-                             "write `effect NAME coordinate` in the header, or another unit");
+                             "write `effect " + joint_.name + " coordinate` in the header, or another unit");
     return false;
   }
   if (d.kind == "point") p.unit = metre;

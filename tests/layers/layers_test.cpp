@@ -59,7 +59,7 @@ const std::vector<std::string> rooms = {
     "runtime/solve",       // rows of an island, their forces and projection
     "runtime/step",        // integrators
     "runtime/world",       // step() itself; islands, sleep, queries
-    "runtime/effects",     // motor, limit, spring, friction, breaking
+    "runtime/effects",     // effects of specs on coordinates, their short forms; breaking
     "runtime/diagnose",
     // cdot-run.
     "runtime/tool/scene",
@@ -113,7 +113,8 @@ fs::path included(const std::string& line) {
   if (std::regex_match(line, match, quoted)) return match[1].str();
   if (!std::regex_match(line, match, published)) return {};
   const std::string path = match[1];
-  const bool kernel = path.starts_with("cdot/planar/") || path.starts_with("cdot/spatial/");
+  const bool kernel =
+      path.starts_with("cdot/planar/") || path.starts_with("cdot/spatial/") || path.starts_with("cdot/coordinate/");
   return kernel ? fs::path() : fs::path("runtime/include/" + path);
 }
 

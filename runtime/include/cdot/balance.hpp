@@ -36,7 +36,7 @@ struct Balance {
 
 // Work since the first step [J]: positive if put in, negative if taken.
 struct WorkOfSource {
-  // Of effects on coordinates the kind ("motor", "friction" with standing motors, "limit", "spring"); of effects from
+  // Of effects on coordinates their name ("motor", "friction", "limit", "spring", "servo"); of effects from
   // specs, ropes and joints that depend on time their type ("drag", "driven_crank"); "damping" and "torque" of bodies;
   // "changes from outside", "breaking", "sleep".
   std::string_view name;

@@ -35,7 +35,7 @@ TEST(EffectLaws, HoldForTheCatalogue) {
     for (const LawId id : forces ? std::vector{LawId::force, LawId::slopes} : std::vector{LawId::slopes})
       EXPECT_EQ(proof.of(id).verdict, Verdict::holds) << path << ": " << name_of(id) << ": " << proof.of(id).text;
     if (forces && proof.of(LawId::opposite).verdict == Verdict::holds)
-      opposite.insert(name_of_space(read.joint->dimension) + " " + read.joint->name);
+      opposite.insert(name_of_space(*read.joint) + " " + read.joint->name);
   }
   std::printf("%d effects\n", effects);
   for (const char* pair : {"planar spring", "planar torsion_spring", "planar servo", "spatial spring"})
