@@ -5,8 +5,7 @@
 //   Profile swing = Profile::function([](double t) -> ProfileValue {
 //     return {std::sin(t), std::cos(t), -std::sin(t)};
 //   });
-//   world.add_joint({.type = "push", .bodies = {rod}, .parameters = {{"pa", {0, 0}}, in_time("F", {swing, 0.0})},
-//   ...});
+//   world.add_joint({"push", {rod}, {{"pa", {0, 0}}, in_time("F", {swing, 0.0})}, {}});
 #pragma once
 
 #include <cstdint>

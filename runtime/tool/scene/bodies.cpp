@@ -323,7 +323,9 @@ void find_forces_in_time(Scene& scene) {
   for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
     const SceneBody& body = scene.bodies[k];
     const auto add = [&](const char* type, const char* what, std::vector<NamedValue> values) {
-      SceneJoint effect{fmt::format("{}-{}", body.name, what), {type, {static_cast<int>(k)}, std::move(values), {}}};
+      SceneJoint effect;
+      effect.name = fmt::format("{}-{}", body.name, what);
+      effect.definition = {type, {static_cast<int>(k)}, std::move(values), {}};
       scene.joints.push_back(std::move(effect));
     };
     if (body.force_in_time) add("push", "force", {{"pa", centre}, *body.force_in_time});

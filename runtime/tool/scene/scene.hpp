@@ -78,13 +78,15 @@ struct Measured {
     kinetic,
     coordinate,
     rate,
-    effects,  // force or torque of all effects on a coordinate
+    effects,  // force or torque of all effects on a coordinate, or of one
     power,    // that force times the rate
+    given,    // power of a joint or of an effect between bodies: that of its forces on all of them
     force,    // of the joint on its last body
     torque    // likewise, about the centre of mass
   } what = energy;
   int joint = -1;
   std::string coordinate_name{};
+  std::string effect{};  // the type of the only one that counts; empty: all
 };
 
 // An expression that a run evaluates: a column of the output.

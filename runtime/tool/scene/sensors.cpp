@@ -1,4 +1,5 @@
 // The [[sensor]] entries of a scene -> formulas over what a run measures.
+#include <algorithm>
 #include <fmt/format.h>
 #include <map>
 
@@ -30,7 +31,14 @@ void add_joint_to(Measurable& all, const SceneJoint& joint, int number, Dimensio
     if (unit_of_force(unit).empty()) continue;
     all.add("force(" + path + ")", unit_of_force(unit), {effects, number, name});
     all.add("power(" + path + ")", "J/s", {power, number, name});
+    const auto here = std::ranges::find(joint.effects, name, &CoordinateEffects::coordinate);
+    if (here == joint.effects.end()) continue;
+    for (const SpecEffect& effect : here->specs) {
+      all.add("force(" + path + "." + effect.type + ")", unit_of_force(unit), {effects, number, name, effect.type});
+      all.add("power(" + path + "." + effect.type + ")", "J/s", {power, number, name, effect.type});
+    }
   }
+  all.add("power(" + joint.name + ")", "J/s", {given, number, ""});
   all.add("force(" + joint.name + ")", "N", {force, number, ""}, true);
   all.add("torque(" + joint.name + ")", "N*m", {torque, number, ""}, dimension == Dimension::spatial);
 }

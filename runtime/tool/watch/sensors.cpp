@@ -31,7 +31,7 @@ double force_of_effects(BasicWorld<S>& world, const Measured& m) {
   double sum = 0;
   for (const Place& place : joint.places) {
     const Batch<S>& batch = *data.batches[static_cast<std::size_t>(place.batch)];
-    if (!rows.has(batch.ops)) continue;
+    if (!rows.has(batch.ops) || (!m.effect.empty() && data.sources[batch.source] != m.effect)) continue;
     const auto i = static_cast<std::size_t>(slot_of(data, place) * batch.ops->rows);
     sum += (double(batch.lambda[i]) + double(batch.correction[i])) / data.last_step;
   }
@@ -44,6 +44,18 @@ std::array<double, 6> numbers_of(const Wrench& w) {
   else return {w.force_x, w.force_y, 0, w.torque, 0, 0};
 }
 
+// Of the forces of a joint, or of an effect between bodies, on all its bodies: means over the last step, at the present
+// velocities.
+template <class S>
+double power_of_joint(const BasicWorld<S>& world, int joint) {
+  double power = 0;
+  for (const int body : world.joint_bodies(joint)) {
+    if (world.is_static(body)) continue;
+    power += S::dot(S::components(world.reaction(joint, body)), world.velocity(body));
+  }
+  return power;
+}
+
 template <class S>
 double measure(BasicWorld<S>& world, const Measured& m, int component) {
   switch (m.what) {
@@ -53,6 +65,7 @@ double measure(BasicWorld<S>& world, const Measured& m, int component) {
     case Measured::rate: return world.coordinate_rate(m.joint, m.coordinate_name);
     case Measured::effects: return force_of_effects(world, m);
     case Measured::power: return force_of_effects(world, m) * world.coordinate_rate(m.joint, m.coordinate_name);
+    case Measured::given: return power_of_joint(world, m.joint);
     case Measured::force:
     case Measured::torque: {
       const auto on = world.reaction(m.joint, world.joint_bodies(m.joint).back());
