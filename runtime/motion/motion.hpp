@@ -16,8 +16,8 @@ void push_free_bodies(WorldData<S>& world, Island<S>& island);
 template <class S>
 void free_accelerations(WorldData<S>& world, Island<S>& island);
 
-// Immovable bodies of the island's joints stand still. Impulses add 0 to them, but infinite ones add NaN, for good. Call
-// it after an attempt at a step that was given up.
+// Immovable bodies of the island's joints stand still. Impulses add 0 to them, but infinite ones add NaN, for good.
+// Call it after an attempt at a step that was given up.
 template <class S>
 void halt_immovable_bodies(WorldData<S>& world, const Island<S>& island);
 

@@ -294,15 +294,16 @@ Verdict Trial<S>::bits() const {
   return {};
 }
 
-// The largest Cdot, as a share of that by the fastest body along each row.
+// The largest Cdot, as a share of that by the fastest body along each row. What hardly moves in the whole run is at
+// rest.
 template <class S>
 double Trial<S>::velocity_off(BasicWorld<S>& world) const {
-  double speed = 0, worst = 0;
+  double speed = 1e-3 / scene_->duration, worst = 0;
   for (const BodyMotion& body : motion_of(world).bodies)
     speed = std::max(speed, norm(body.w) + norm(body.v) / sizes_.length);
   for (const Inconsistency& row : world.inconsistencies(0)) {
     const auto& sizes = sizes_.of_joint[static_cast<std::size_t>(row.joint)];
-    if (!row.velocity || sizes.empty() || !(speed > 0)) continue;
+    if (!row.velocity || sizes.empty()) continue;
     worst = std::max(worst, std::abs(row.value) / (speed * sizes[static_cast<std::size_t>(row.row)]));
   }
   return worst;

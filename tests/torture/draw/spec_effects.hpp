@@ -1,5 +1,5 @@
-// Effects of specs in a random mechanism: on bodies, and on the coordinates of its joints. The kinds, units and ranges of
-// their parameters determine the numbers; no code depends on an effect's name.
+// Effects of specs in a random mechanism: on bodies, and on the coordinates of its joints. The kinds, units and ranges
+// of their parameters determine the numbers; no code depends on an effect's name.
 #pragma once
 
 #include "tests/torture/draw/draw.hpp"
