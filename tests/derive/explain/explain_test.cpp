@@ -101,7 +101,8 @@ TEST(Explain, EveryEquationOfTheCatalogueIsTrue) {
     const Derivation derivation = read_spec(name);
     const Told told = check(derivation, explain(derivation));
     EXPECT_EQ(told.wrong, "") << name;
-    EXPECT_GT(told.equations, 0) << name;
+    // On the coordinate of any joint there are no rows, and bounds are no equations.
+    EXPECT_TRUE(told.equations > 0 || derivation.joint.on_any_coordinate()) << name;
     equations += told.equations;
   }
   std::cout << equations << " equations checked, at three poses each counted\n";

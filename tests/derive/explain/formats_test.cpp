@@ -123,7 +123,9 @@ TEST(ExplainLatex, TheBalanceCheckCanFail) {
 TEST(ExplainJson, IsTrueForTheCatalogueWhenSympyEvaluatesIt) {
   const fs::path files = folder("json");
   for (const std::string& name : spec_names()) {
-    write(files / (flat(name) + ".json"), explanation_json(read_spec(name)));
+    const Derivation derivation = read_spec(name);
+    if (derivation.joint.on_any_coordinate()) continue;  // without rows there is nothing to check
+    write(files / (flat(name) + ".json"), explanation_json(derivation));
   }
   const Ran ran = check_json(files);
   EXPECT_EQ(ran.status, 0) << ran.output;
