@@ -48,6 +48,12 @@ bool CheckReport::clean() const {
   return std::all_of(findings.begin(), findings.end(), [](const Finding& f) { return f.level == Level::note; });
 }
 
+std::vector<PoseToDraw> poses_to_draw(const Derivation& derivation) {
+  CheckReport report;
+  if (!derivation.joint.law) check_constraints(subject_of(derivation), Draw::yes, report);
+  return report.poses;
+}
+
 CheckReport check(const ReadResult& read, Draw draw) {
   CheckReport report;
   take_over(read.diagnostics, report.findings);

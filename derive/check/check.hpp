@@ -51,6 +51,8 @@ CheckReport check(const ReadResult& read, Draw draw = Draw::no);
 
 // The poses of a report as pictures with captions, or the sentence why there are none: a part of a page.
 std::string pictures_html(const ReadResult& read, const CheckReport& report);
+// The same for one derivation, without its proofs and its name; empty if no pose is singular.
+std::string singular_poses_html(const Derivation& derivation);
 // One page of these parts.
 std::string pictures_page(const std::string& parts);
 

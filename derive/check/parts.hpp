@@ -33,6 +33,8 @@ void check_undefined(const Subject& subject, Findings& findings);  // 1/0, roots
 void check_defaults(const Subject& subject, Findings& findings);   // defaults with C != 0
 // The law of an effect: forces that are not opposite, and the power of what has no energy.
 void check_law(const Derivation& derivation, const Proof& proof, Findings& findings);
+// The poses of check_mass, if nothing but the laws was found wrong.
+std::vector<PoseToDraw> poses_to_draw(const Derivation& derivation);
 // Where K is singular, with poses to draw if a place for them is given. Silent if the joint has errors: they are the
 // cause, and come first.
 void check_mass(const Subject& subject, Findings& findings, std::vector<PoseToDraw>* poses = nullptr);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "derive/check/check.hpp"
+#include "derive/check/parts.hpp"
 #include "derive/explain/mathml.hpp"
 #include "derive/picture/picture.hpp"
 
@@ -35,6 +36,15 @@ std::string figure(const Joint& joint, const PoseToDraw& pose, const std::string
       picture, html_escaped(sentence(pose.words)), numbers);
 }
 
+std::string figures(const Joint& joint, const std::vector<PoseToDraw>& to_draw) {
+  std::vector<Sample> poses;
+  for (const PoseToDraw& pose : to_draw) poses.push_back(pose.pose);
+  const std::vector<std::string> pictures = pictures_of(joint, poses);
+  std::string out = "<div class=\"poses\">\n";
+  for (std::size_t i = 0; i < poses.size(); ++i) out += figure(joint, to_draw[i], pictures[i]);
+  return out + "</div>\n";
+}
+
 }  // namespace
 
 std::string pictures_html(const ReadResult& read, const CheckReport& report) {
@@ -43,12 +53,14 @@ std::string pictures_html(const ReadResult& read, const CheckReport& report) {
   if (read.joint && !read.joint->title.empty()) out += fmt::format("<p>{}</p>\n", html_escaped(read.joint->title));
   if (report.poses.empty() || !report.poses.back().singular)
     return out + fmt::format("<p>{}</p>\n</section>\n", html_escaped(why_none(report)));
-  std::vector<Sample> poses;
-  for (const PoseToDraw& pose : report.poses) poses.push_back(pose.pose);
-  const std::vector<std::string> pictures = pictures_of(*read.joint, poses);
-  out += "<div class=\"poses\">\n";
-  for (std::size_t i = 0; i < poses.size(); ++i) out += figure(*read.joint, report.poses[i], pictures[i]);
-  return out + "</div>\n</section>\n";
+  return out + figures(*read.joint, report.poses) + "</section>\n";
+}
+
+std::string singular_poses_html(const Derivation& derivation) {
+  const std::vector<PoseToDraw> poses = poses_to_draw(derivation);
+  if (poses.empty() || !poses.back().singular) return "";
+  return fmt::format("<style>{}</style>\n<section><h2>Where K is singular</h2>\n{}{}</section>\n", picture_style,
+                     introduction, figures(derivation.joint, poses));
 }
 
 std::string pictures_page(const std::string& parts) {

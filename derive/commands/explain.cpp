@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 #include <iostream>
 
+#include "derive/check/check.hpp"
 #include "derive/commands/commands.hpp"
 #include "derive/derivation/derivation.hpp"
+#include "derive/explain/mathml.hpp"
 #include "derive/language/specs_folder.hpp"
 
 namespace cdot::derive {
@@ -38,7 +40,10 @@ constexpr const char* json_schema =
 std::string explanation(const Derivation& derivation, const Options& options) {
   if (options.json) return explanation_json(derivation);
   const Explanation steps = explain(derivation, form_named(options.form));
-  if (options.format == "html") return explanation_html(steps);
+  if (options.format == "html") {
+    std::string page = explanation_html(steps);
+    return page.insert(page.rfind(html_foot), singular_poses_html(derivation));
+  }
   if (options.format == "latex") return explanation_latex(steps);
   return explanation_text(steps);
 }
@@ -85,7 +90,7 @@ int run(const Options& options) {
 
 void add_options(Line& line, Options& options) {
   line.add("SPEC", &options.spec, "A spec, by path or by name").required();
-  line.add("--format", &options.format, "text; html: a page of its own; latex: an article")
+  line.add("--format", &options.format, "text; html: a page of its own, with pictures of poses where K is singular; latex: an article")
       .one_of({"text", "html", "latex"})
       .shows_default();
   line.add("--form", &options.form,

@@ -133,6 +133,11 @@ bool Elaborator::row_makes_sense(Source& source, const StatementAst& s, const Va
     d.error(s.where, "the row is redundant: both sides are always equal", "remove it");
     return false;
   }
+  if (const Term term = split_coefficient(C.e); term.e->vector && term.e->unit_length) {
+    d.error(s.where, "the row cannot hold: both sides always differ by a vector of length " + abs(term.coef).text(),
+            "write a condition on directions of two bodies, as cross(fa.x, fb.x) = 0, or remove the row");
+    return false;
+  }
   if (!depends_on_bodies(C.e)) {
     d.error(s.where, "the row contains no body, so it constrains nothing",
             "write a row that contains the position or orientation of a body");

@@ -170,6 +170,11 @@ TEST(ExplainCommand, WritesFilesAndSaysWhatIsWrong) {
   const Ran page = run(cdot + " explain line --format html -o " + quoted(out / "line.html") + specs);
   EXPECT_EQ(page.status, 0) << page.output;
   EXPECT_TRUE(fs::exists(out / "line.html"));
+  const auto singular = [&](const char* joint) {
+    return run(cdot + " explain " + joint + " --format html" + specs).output.find("<h2>Where K is singular</h2>");
+  };
+  EXPECT_EQ(singular("line"), std::string::npos);
+  EXPECT_NE(singular("spherical_spherical"), std::string::npos);
   const Ran json = run(cdot + " explain line --json" + specs);
   EXPECT_EQ(nlohmann::json::parse(json.output)["joint"], "line");
   EXPECT_NE(run(cdot + " explain --help").output.find("intermediates"), std::string::npos);
