@@ -90,7 +90,8 @@ int run(const Options& options) {
 
 void add_options(Line& line, Options& options) {
   line.add("SPEC", &options.spec, "A spec, by path or by name").required();
-  line.add("--format", &options.format, "text; html: a page of its own, with pictures of poses where K is singular; latex: an article")
+  line.add("--format", &options.format,
+           "text; html: a page of its own, with pictures of poses where K is singular; latex: an article")
       .one_of({"text", "html", "latex"})
       .shows_default();
   line.add("--form", &options.form,

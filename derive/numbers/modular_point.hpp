@@ -73,7 +73,7 @@ class ModularPoint {
   Modular any_for(int kind, Modular x, Modular y) const;  // the same for the same arguments
 
  private:
-  static constexpr std::int64_t step = 720720;  // divisible by 1..16, so that halves stay whole
+  static constexpr std::int64_t step = 720720;                        // divisible by 1..16, so that halves stay whole
   static constexpr std::int64_t small_bound = std::int64_t{1} << 42;  // of sums; so few others pass for small
 
   static bool is_small(Modular x) { return std::abs(x.centred()) < small_bound; }

@@ -174,9 +174,9 @@ class Algebra final : public Arithmetic<ex> {
   std::vector<Point> points_ = points_for_zero_test<Point>();
   // The leaf with which a symbol is drawn: its own, or the first of its direction.
   std::unordered_map<ex, std::string, std::hash<ex>, SameExpression> drawn_with_;
-  std::map<std::string, std::vector<ex>> drawn_together_;  // by leaf
-  std::unordered_map<std::size_t, Draws::Leaves> leaves_of_parts_;    // by place
-  std::vector<std::vector<std::size_t>> never_together_;              // roots for which no point was found
+  std::map<std::string, std::vector<ex>> drawn_together_;           // by leaf
+  std::unordered_map<std::size_t, Draws::Leaves> leaves_of_parts_;  // by place
+  std::vector<std::vector<std::size_t>> never_together_;            // roots for which no point was found
   std::int64_t left_for_points_ = most_work_at_points;
   std::unordered_map<const Node*, double> bits_;  // of the numbers in an expression, at most
   Evaluation<ex> evaluation_;

@@ -1,5 +1,5 @@
-// The zero-test at random points modulo the prime. All tests of a joint share the points: once the roots of its formulas
-// have values there, later tests need no others.
+// The zero-test at random points modulo the prime. All tests of a joint share the points: once the roots of its
+// formulas have values there, later tests need no others.
 #include <algorithm>
 #include <iterator>
 
@@ -47,8 +47,8 @@ std::vector<std::vector<std::size_t>> Algebra::order_of_trial(const std::vector<
   return levels;
 }
 
-// One leaf of each root without a value is drawn again. GiNaC's order of parts differs from run to run, so the choice is
-// made from sets of names alone.
+// One leaf of each root without a value is drawn again. GiNaC's order of parts differs from run to run, so the choice
+// is made from sets of names alone.
 void Algebra::draw_again(Point& point, std::span<const std::size_t> roots, std::span<const std::size_t> without_value) {
   Draws::Leaves of_others, chosen;
   for (const std::size_t place : roots)

@@ -97,8 +97,8 @@ std::size_t Steps::add(Kind kind, std::span<const std::size_t> operands, const e
   operands_.insert(operands_.end(), operands.begin(), operands.end());
   std::size_t level = 0;
   for (const std::size_t operand : operands) level = std::max(level, steps_[operand].level);
-  const bool root = kind == Kind::power && !ex_to<numeric>(e.op(1)).is_integer() &&
-                    (2 * ex_to<numeric>(e.op(1))).is_integer();
+  const bool root =
+      kind == Kind::power && !ex_to<numeric>(e.op(1)).is_integer() && (2 * ex_to<numeric>(e.op(1))).is_integer();
   steps_.push_back({kind, e, function_in(e), begin, operands_.size(), root, level + (root ? 1 : 0)});
   return steps_.size() - 1;
 }

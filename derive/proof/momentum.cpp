@@ -200,8 +200,10 @@ void fail(Law& law, const Joint& joint, const Block& block, const ScalarRow& row
   if (momentum.undecided()) {
     law.verdict = Verdict::undecided;
     law.row = row.row;
-    law.text = fmt::format("{}: a common {} of all bodies changes C by 0 to 60 digits at random poses, but that is not "
-                           "proved", row.name, rotation ? "rotation" : "translation");
+    law.text = fmt::format(
+        "{}: a common {} of all bodies changes C by 0 to 60 digits at random poses, but that is not "
+        "proved",
+        row.name, rotation ? "rotation" : "translation");
     return;
   }
   Expr written;

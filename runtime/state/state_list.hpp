@@ -41,7 +41,7 @@ struct StateList {
   template <class S, class Visitor>
   static void each_slot(Batch<S>& batch, int index, bool breaks, Visitor& visit) {
     auto& [home, joint, body, parameters, counters, lambda, correction, mode, softness, lower, upper, constants,
-            happened, spans] = static_cast<BatchState<S>&>(batch);
+           happened, spans] = static_cast<BatchState<S>&>(batch);
     const bool driven = batch.driven(), counts = batch.ops && batch.ops->start_counting;  // turns, in parameters too
     visit.item("rows.home", index, breaks), visit(home);
     visit.item("rows.joint", index, breaks), visit(joint);
