@@ -105,6 +105,27 @@ void read_spec(Entry& entry, const JointType& type, const CoordinateInfo& coordi
   effects.specs.push_back(std::move(effect));
 }
 
+// True if a number of the effect follows a function of time: then its spec reads it.
+bool follows_time(Entry& entry, const EffectKind& kind, bool turns) {
+  const auto number_follows = [&](Entry& of, const char* key, const EffectNumber& number) {
+    return of.is_function(key, quantity_of(number.range, turns));
+  };
+  if (number_follows(entry, kind.key, kind.numbers[0])) return true;
+  std::optional<Entry> table = entry.table(kind.key);
+  return table && std::ranges::any_of(kind.numbers, [&](const EffectNumber& number) {
+           return number.key && number_follows(*table, number.key, number);
+         });
+}
+
+void read_kind(Entry& entry, const EffectKind& kind, const CoordinateInfo& coordinate, double duration,
+               CoordinateEffects& effects) {
+  const bool turns = coordinate.unit == "rad";
+  const JointType* const spec = find_coordinate_effect(kind.key);
+  if (spec && spec->acts_on(coordinate.unit) && follows_time(entry, kind, turns))
+    read_spec(entry, *spec, coordinate, duration, effects);
+  else read_effect(entry, kind, turns, effects);
+}
+
 void read_specs(Entry& entry, const CoordinateInfo& coordinate, double duration, CoordinateEffects& effects) {
   for (const JointType& type : coordinate_effects()) {
     const std::string key(type.name);
@@ -132,7 +153,7 @@ void read_effects(Entry& joint, const JointType& type, double duration, std::vec
       continue;
     }
     CoordinateEffects effects{key};
-    for (const EffectKind* kind : effect_kinds) read_effect(*entry, *kind, coordinate.unit == "rad", effects);
+    for (const EffectKind* kind : effect_kinds) read_kind(*entry, *kind, coordinate, duration, effects);
     read_specs(*entry, coordinate, duration, effects);
     entry->close();
     to.push_back(std::move(effects));

@@ -69,6 +69,7 @@ class Entry {
   std::optional<Entry> table(const std::string& key, const std::string& example = "");
   bool is_array(const std::string& key);
   bool is_table(const std::string& key);
+  bool is_function(const std::string& key, Quantity = {});  // a text that is no number, or { table = … }
   bool is_array_of_arrays(const std::string& key);
   std::optional<std::string> choice(const std::string& key, const std::vector<std::string>& allowed);
   void required(const std::string& key, const std::string& fix);  // a mistake if it is absent

@@ -141,6 +141,13 @@ std::optional<std::vector<Entry::Written>> Entry::written_numbers(const std::str
   return values;
 }
 
+bool Entry::is_function(const std::string& key, Quantity quantity) {
+  const toml::node* node = find(key);
+  if (!node) return false;
+  if (const auto* text = node->as_string()) return !number_in_text(text->get(), quantity.angle);
+  return node->is_table() && node->as_table()->contains("table");
+}
+
 Entry Entry::at(const Written& written) const {
   return Entry(*written.table, written.where, fmt::format("the table of {}", what_), *mistakes_, copy_);
 }
