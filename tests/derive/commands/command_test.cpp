@@ -35,8 +35,8 @@ TEST_F(Derive, WritesKernelsRegistriesAndTheLedger) {
   std::string names;
   for (const auto& [name, content] : files("generated")) names += name + "\n";
   EXPECT_EQ(names,
-            "ledger.csv\nplanar/angle.hpp\nplanar/line.hpp\nplanar/registry.hpp\nproofs.csv\n"
-            "spatial/registry.hpp\n");
+            "coordinate/registry.hpp\nledger.csv\nplanar/angle.hpp\nplanar/line.hpp\nplanar/registry.hpp\n"
+            "proofs.csv\nspatial/registry.hpp\n");
   EXPECT_EQ(read("generated/planar/line.hpp"), content_of(fs::path(CDOT_SOURCE_DIR "/generated") / "planar/line.hpp"))
       << "what is generated for a joint does not depend on the others";
 }
@@ -44,7 +44,7 @@ TEST_F(Derive, WritesKernelsRegistriesAndTheLedger) {
 TEST_F(Derive, WritesElsewhereIfAsked) {
   EXPECT_EQ(cdot("derive -o build/own").status, 0);
   EXPECT_TRUE(files("generated").empty());
-  EXPECT_EQ(files("build/own").size(), 6u);
+  EXPECT_EQ(files("build/own").size(), 7u);
 }
 
 TEST_F(Derive, TouchesNothingThatIsRight) {
