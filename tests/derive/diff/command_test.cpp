@@ -43,7 +43,8 @@ void expect_strings(const json& object, const std::vector<std::string>& names, c
 }
 
 void expect_item(const json& item, const std::string& where) {
-  static const std::set<std::string> whats = {"C", "Cdot", "J", "K", "b", "update"};
+  static const std::set<std::string> whats = {"C",      "Cdot",  "J",         "K",       "b",     "update",
+                                              "energy", "force", "stiffness", "damping", "wrench"};
   static const std::set<std::string> kinds = {"sign",       "factor",     "wrong body",           "missing term",
                                               "extra term", "transposed", "undeclared assumption"};
   expect_strings(item, {"what", "row", "column", "kind", "generated", "hand", "difference", "sentence", "confirmed"},
