@@ -83,15 +83,20 @@ TEST(ScenesInTime, AColumnHasAUnit) {
 }
 
 TEST(ScenesInTime, SensorsOfOneEffect) {
-  const auto frames =
-      frames_of(settings_in_time + wheel_in_time + R"(
+  const auto frames = frames_of(settings_in_time + wheel_in_time + R"toml(
 angle.servo = { k = 8, d = 2, most = 100, target = "1 [rad] * time / 1 [s]" }
 angle.load = 3
 [[sensor]]
 name = "all"
-value = "force(axle.angle)" [[sensor]] name = "servo" value = "force(axle.angle.servo)" [[sensor]] name =
-                    "watts" value = "power(axle.angle.servo) - force(axle.angle.servo) * rate(axle.angle)") ");
-      for (const Frame& frame : frames) {
+value = "force(axle.angle)"
+[[sensor]]
+name = "servo"
+value = "force(axle.angle.servo)"
+[[sensor]]
+name = "watts"
+value = "power(axle.angle.servo) - force(axle.angle.servo) * rate(axle.angle)"
+)toml");
+  for (const Frame& frame : frames) {
     if (frame.time == 0) continue;
     EXPECT_NEAR(frame.sensors[0] - frame.sensors[1], 3, 1e-9);
     EXPECT_NEAR(frame.sensors[2], 0, 1e-12);
@@ -102,7 +107,7 @@ value = "force(axle.angle)" [[sensor]] name = "servo" value = "force(axle.angle.
 
 // The power of a thruster is force times velocity.
 TEST(ScenesInTime, ThePowerOfAnEffect) {
-  const auto frames = frames_of(settings_in_time + R"(
+  const auto frames = frames_of(settings_in_time + R"toml(
 [[body]]
 name = "puck"
 mass = 2
@@ -115,9 +120,9 @@ pa = [0, 0]
 F = ["4 [N/s] * time", 0]
 [[sensor]]
 name = "watts"
-value = "power(jet)") ");
-      for (const Frame& frame : frames) if (frame.time > 0)
-          EXPECT_NEAR(frame.sensors[0], 4 * frame.time * frame.bodies[0].vx, 1e-9);
+value = "power(jet)"
+)toml");
+  for (const Frame& frame : frames) EXPECT_NEAR(frame.sensors[0], 4 * frame.time * frame.bodies[0].vx, 1e-9);
 }
 
 }  // namespace
