@@ -195,6 +195,7 @@ void project_start(WorldData<S>& world, Island<S>& island) {
   const T error = find_errors(world, island, T(world.time));
   island.solver->positions(world, island, T(world.time), true);
   if (island.solver->exact) fail_if_moved_far(world, island, double(error), 0);
+  scale_corrections(island, T(0));  // the motion does not need them, so they are no load for its friction
   island.evaluated = island.factored = false;
 }
 

@@ -14,16 +14,15 @@ namespace cdot {
 namespace {
 
 // Writes the changed parameters to all rows of a joint. The other numbers stay, because a slot's parameters may include
-// counted turns. Bounded rows forget the impulse of their last correction, which the next step would count as a load.
+// counted turns.
 template <class S>
 void hand_out(WorldData<S>& world, const JointRecord& record, const std::vector<const ParameterInfo*>& changed) {
   for (const Place& place : record.places) {
     Batch<S>& batch = *world.batches[place.batch];
-    const int slot = slot_of(world, place);
     for (const ParameterInfo* info : changed)
       for (int k = info->offset; k < info->offset + info->size; ++k)
-        batch.parameters[slot * batch.ops->parameter_size + k] = typename S::Scalar(record.parameters[k]);
-    if (batch.law) std::fill_n(batch.correction.begin() + slot * batch.ops->rows, batch.ops->rows, 0);
+        batch.parameters[slot_of(world, place) * batch.ops->parameter_size + k] =
+            typename S::Scalar(record.parameters[k]);
   }
 }
 
