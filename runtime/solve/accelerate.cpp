@@ -46,7 +46,8 @@ void ask_for_gamma(WorldData<S>& world, Island<S>& island, typename S::Scalar ti
     }
     batch.ops->gamma(batch, segment.begin, segment.end, world.bodies, time, batch.bias.data());
     for (int i = begin; i < end; ++i) batch.bias[i] = -batch.bias[i];
-    if (batch.law && batch.law->guard && (batch.law->moving || batch.driven())) follow_bounds(batch, segment.begin, segment.end);
+    if (batch.law && batch.law->guard && (batch.law->moving || batch.driven()))
+      follow_bounds(batch, segment.begin, segment.end);
   }
 }
 

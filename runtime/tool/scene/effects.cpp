@@ -90,7 +90,7 @@ void read_spec(Entry& entry, const JointType& type, const CoordinateInfo& coordi
     if (const auto number = read_numbers_in_time(from, name, {}, quantity(info), need))
       effect.parameters.push_back(named_value(std::string(info.name), *number));
   };
-  if (needed.size() == 1 && !entry.is_table(key)) {
+  if (needed.size() == 1 && (!entry.is_table(key) || entry.is_function(key))) {
     read(entry, key, *needed[0]);
   } else if (auto table = entry.table(key, fmt::format("{{ {} }}", example_of(type)))) {
     for (std::size_t k = 0; k < type.parameters.size(); ++k) {

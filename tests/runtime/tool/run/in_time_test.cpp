@@ -74,12 +74,12 @@ torque = "0.5 [N*m/s] * time"
 // A column in degrees is one in radians.
 TEST(ScenesInTime, AColumnHasAUnit) {
   const TemporaryFolder folder;
-  std::ofstream(folder / "turn.csv") << "time [s], turn [deg]\n0, 0\n10, 3600\n";
+  std::ofstream(folder / "speed.csv") << "time [s], speed [deg/s]\n0, 0\n10, 3600\n";
   std::ofstream(folder / "scene.toml") << settings_in_time << wheel_in_time
-                                       << "angle.position_drive = { k = 1e7, d = 1e4, most = 1e9, "
-                                          "target = { table = \"turn.csv\", column = \"turn\" } }\n";
+                                       << "angle.motor = { speed = { table = \"speed.csv\", column = \"speed\" }, "
+                                          "max = 1e3 }\n";
   const auto frames = frames_of(read_scene((folder / "scene.toml").string()));
-  EXPECT_NEAR(frames.back().bodies[0].w, 2 * std::acos(-1.0), 1e-2);
+  EXPECT_NEAR(frames.back().bodies[0].w, 2 * std::acos(-1.0), 1e-9);
 }
 
 TEST(ScenesInTime, SensorsOfOneEffect) {
