@@ -1,4 +1,4 @@
-// What each joint and effect of a scene costs in a step, and what dropping it saves.
+// The cost of each joint and effect of a scene in a step, and the savings of dropping it.
 #pragma once
 
 #include <string>

@@ -5,7 +5,7 @@
 
 namespace cdot::compile {
 
-// What a mechanism has: rows of joints, effects by forces, rows with bounds, and among these some with ends.
+// The parts of a mechanism: rows of joints, effects by forces, rows with bounds, and among these some with ends.
 struct Contents {
   bool rows = false, effects = false, bounded = false, ends = false;
   bool closes() const { return rows || ends; }

@@ -18,7 +18,7 @@ bool is_euler_parameter(const Node& symbol) {
   return symbol.role == Role::given && symbol.body >= 0 && symbol.symbol.find(".e") != std::string::npos;
 }
 
-// What is drawn for a symbol. In the plane a vector of a body turns with it.
+// The value drawn for a symbol. In the plane a vector of a body turns with it.
 void add_leaves(const Node& symbol, Draws::Leaves& leaves) {
   const bool planar = symbol.pool->dimension() == 2, body_axis = symbol.symbol.starts_with("axis_");
   const bool turns = symbol.role == Role::angle || is_euler_parameter(symbol) || (symbol.vector && body_axis) ||

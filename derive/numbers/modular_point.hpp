@@ -55,7 +55,7 @@ class ModularPoint {
  public:
   explicit ModularPoint(std::uint64_t seed);
 
-  // What is drawn next is the same for the same seed, whatever was drawn before.
+  // The next draw is the same for the same seed, whatever was drawn before.
   void draw_by(std::uint64_t seed) { random_ = Random(seed); }
   Modular any() { return Modular::of_bits(random_.bits()); }
   std::int64_t small() { return step * static_cast<std::int64_t>(random_.bits() >> 48); }

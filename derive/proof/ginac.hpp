@@ -115,7 +115,7 @@ class Algebra final : public Arithmetic<ex> {
       return {known.values[place].value, known.values[place].holds_for_reals};
     }
   };
-  // What is drawn for the part at this place.
+  // The value drawn for the part at this place.
   const Draws::Leaves& leaves_at(std::size_t place);
   void put(const Draws& draws, const ex& symbol, PointValues& values) const;
   std::vector<std::vector<std::size_t>> order_of_trial(const std::vector<std::size_t>& parts) const;

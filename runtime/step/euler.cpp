@@ -19,7 +19,7 @@ void move_velocities(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   apply_forces(world, island, h);
   // Warm start: the same forces over another time.
   const T share = last_step > 0 ? h / T(last_step) : T(0);
-  // What turns the velocities is the last projection's part of the joints' forces.
+  // The last projection's part of the joints' forces turns the velocities.
   island.corrections_in_loads = world.settings.drift == Drift::projection ? share : T(0);
   island.solver->velocities(world, island, world.bodies.velocity.data(), share);
   island.corrections_in_loads = 0;

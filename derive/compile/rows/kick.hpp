@@ -1,4 +1,4 @@
-// What joints and effects do to the velocities, as functions of the header: accelerations, and an Euler step.
+// The kick of joints and effects, as functions of the header: accelerations, and an Euler step.
 #pragma once
 
 #include "derive/compile/rows/joint_rows.hpp"

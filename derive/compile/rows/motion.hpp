@@ -1,4 +1,4 @@
-// What moves bodies beside joints, as functions of the header: gravity, constant forces, drag and effects.
+// The forces beside those of joints, as functions of the header: gravity, constant forces, drag and effects.
 #pragma once
 
 #include "derive/compile/rows/row_blocks.hpp"

@@ -48,7 +48,7 @@ class RowBlocks {
   const SpecPrograms& law(const Effect& effect) const { return types_.at(effect.law_type); }
   const std::string& body_name(int index) const { return names_.bodies[static_cast<std::size_t>(index)]; }
 
-  // What the kernel reads, in this scene: places and velocities of its bodies, masses, parameters.
+  // Inputs of the kernel, in this scene: places and velocities of its bodies, masses, parameters.
   Values inputs(Algebra& algebra, const RowBlock& block) const;
   // The same with its J.
   Values inputs_with_jacobian(Algebra& algebra, const RowBlock& block) const;

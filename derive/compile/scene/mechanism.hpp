@@ -60,7 +60,7 @@ struct Mechanism {
   std::vector<Effect> bounded;  // rows with bounds
 };
 
-// What the command line asks for in place of the scene; empty and 0: as the scene has it.
+// Choices of the command line in place of the scene's; empty and 0: as the scene has it.
 struct Wishes {
   std::string integrator;
   double step = 0;

@@ -12,7 +12,7 @@
 
 namespace cdot {
 
-// What a number of a scene must be.
+// Unit and range of a number of a scene.
 struct NumberNeed {
   std::string_view unit;  // "N*m"
   double above = -std::numeric_limits<double>::infinity(), below = std::numeric_limits<double>::infinity();

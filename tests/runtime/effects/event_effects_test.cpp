@@ -122,7 +122,7 @@ TEST(EventEffects, InSpaceARopeTearsAsInThePlane) {
   }
 }
 
-// What happened is part of the State.
+// Past events are part of the State.
 TEST(EventEffects, ASnapshotBeforeAnEventUndoesIt) {
   for (const IntegratorRow& row : integrator_rows) {
     World<double> world(with(row.integrator));

@@ -106,7 +106,7 @@ struct EffectLaw {
     return double(E);
   }
 
-  // What the parameters add to the energy as they follow functions of time.
+  // Power that the parameters add as they follow functions of time.
   static double power(const Batch<S>& batch, int slot) {
     Jet<T> E = 0;
     if constexpr (has_energy) {
