@@ -232,7 +232,7 @@ std::string Confirm::after(UpdateLevel level, const std::vector<ScalarRow>& rows
   static const char* const how[] = {
       // in the order of UpdateLevel
       "Cdot after the update, by central differences of C,", "C after the update, by central differences along it,",
-      "work of the impulse along motions that C allows (0 is right)"};
+      "work along motions that C allows (right: 0)"};
   const auto left = [&](const Motion& added, const Sample& sample) {
     if (level == UpdateLevel::any_impulse) return work(rows, added, sample);
     double most = 0;

@@ -42,8 +42,8 @@ std::vector<std::string> in_lines(const std::string& first, const std::string& t
 }
 
 // All of a text in lines.
-std::string wrapped(const std::string& text) {
-  return fmt::format("{}\n", fmt::join(in_lines(indent, text, std::string::npos), "\n"));
+std::string lines_of(const std::string& first, const std::string& text) {
+  return fmt::format("{}\n", fmt::join(in_lines(first, text, std::string::npos), "\n"));
 }
 
 // The place, the kind and what belongs there, then the formulas if a line holds them, and the numbers: three lines.
@@ -70,12 +70,13 @@ std::string to_text(const DiffReport& report, const ReportOptions& options) {
   std::string s;
   for (const Judgement& j : report.judgements) {
     if (!options.all && j.agreement != Agreement::differs) continue;
-    s += fmt::format("{:<8} {:<10} {}\n", j.id, name_of(j.agreement), j.title);
-    if (!j.condition.empty()) s += wrapped((j.agreement == Agreement::listed ? "not judged: " : "if ") + j.condition);
+    s += lines_of(fmt::format("{:<8} {:<10}", j.id, name_of(j.agreement)), j.title);
+    if (!j.condition.empty()) s += lines_of(indent, (j.agreement == Agreement::listed ? "not judged: " : "if ") + j.condition);
     if (j.agreement == Agreement::differs)
-      s += fmt::format("{}{}:{}, after {}\n", indent, report.file->path, report.file->line(j.where.begin), j.source);
+      s += lines_of(indent,
+                    fmt::format("{}:{}, after {}", report.file->path, report.file->line(j.where.begin), j.source));
     for (const Difference& d : j.differences) s += options.full ? full(d) : brief(d);
-    for (const std::string& remark : j.remarks) s += wrapped("note: " + remark);
+    for (const std::string& remark : j.remarks) s += lines_of(indent, "note: " + remark);
   }
   return s;
 }
