@@ -7,6 +7,7 @@
 #include "derive/language/operators.hpp"
 #include "derive/language/specs_folder.hpp"
 #include "derive/pipeline/process_pool.hpp"
+#include "runtime/text/colour.hpp"
 #include "runtime/text/json.hpp"
 
 namespace cdot::derive {
@@ -95,6 +96,7 @@ int run(const Options& options) {
   std::vector<std::string> all;
   std::string pictures;
   int exit_status = 0;
+  std::FILE* const verdicts = options.page == "-" ? stderr : stdout;
   const auto check_one = [&](std::size_t i) {
     const ReadResult read = folder.read(paths[i]);
     const bool drawn = !options.page.empty();
@@ -109,21 +111,22 @@ int run(const Options& options) {
     exit_status = std::max(exit_status, answer.status);
     pictures += answer.pictures;
     if (options.json) all.push_back(answer.text);
-    else fmt::print("{}", answer.text);
+    else text::print_messages(verdicts, answer.text);
   };
   const int failed = in_processes({paths.begin(), paths.end()}, {}, options.processes, check_one, take);
-  if (options.json) fmt::print("{}\n", text::array_of_printed(all));
+  if (options.json) fmt::print(verdicts, "{}\n", text::array_of_printed(all));
   if (!options.page.empty()) write_file(options.page, pictures_page(pictures));
   return failed > 0 ? 2 : exit_status;
 }
 
 void add_options(Line& line, Options& options) {
-  line.add("SPEC", &options.specs, "Specs, by path or by name").required();
+  line.add("SPEC", &options.specs, "Specs, by path or by name; - is standard input").required();
   line.add("--json", &options.json,
            "An array with, per spec: spec, status (clean, problems, unreadable), findings\n"
            "(level, kind, at, also, message, fix) and proofs (coordinate, laws)");
   line.add("--html", &options.page,
-           "Also write one page that shows each joint at the poses where K is singular, beside a regular pose")
+           "Also write one page that shows each joint at the poses where K is singular, beside a regular pose;\n"
+           "- is standard output")
       .shown_as("PAGE");
   add_specs(line, options.specs_folder);
   add_jobs(line, options.processes);

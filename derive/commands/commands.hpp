@@ -23,6 +23,7 @@ Run compile_command(Line& line);  // its line in the help
 int run_compile(char** argv);
 
 // Writes through a temporary file, so that nobody reads half of one; a device, a pipe or a link is written in place.
+// "-" is standard output.
 void write_file(const std::filesystem::path& path, const std::string& content);
 
 void add_specs(Line& line, std::string& folder);  // --specs

@@ -6,22 +6,11 @@
 #include <unistd.h>
 
 #include "derive/commands/commands.hpp"
+#include "runtime/command_line/installation.hpp"
 
 namespace cdot::derive {
-namespace {
-
-namespace fs = std::filesystem;
-
-fs::path own_folder(const char* called) {
-  std::error_code error;
-  const fs::path self = fs::read_symlink("/proc/self/exe", error);
-  return (error ? fs::path(called) : self).parent_path();
-}
-
-}  // namespace
-
 int run_compile(char** argv) {
-  const std::string program = (own_folder(argv[0]) / "cdot-compile").string();
+  const std::string program = (command_line::own_folder() / "cdot-compile").string();
   execv(program.c_str(), argv);
   fmt::print(stderr, "cdot compile: cannot run {}: {}. Fix: build or install the target cdot-compile beside cdot\n",
              program, std::strerror(errno));

@@ -8,6 +8,7 @@
 #include "derive/commands/commands.hpp"
 #include "derive/pipeline/pipeline.hpp"
 #include "derive/pipeline/process_pool.hpp"
+#include "runtime/text/colour.hpp"
 
 namespace cdot::derive {
 
@@ -72,7 +73,7 @@ std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsF
   std::size_t on_record = 0;
   std::ptrdiff_t shown = 0;  // row blocks; the record lists their laws, which would fill a page
   const auto take = [&](const Outcome& outcome) {
-    fmt::print(stderr, "{}", outcome.complaints);
+    text::print_messages(stderr, outcome.complaints);
     if (outcome.on_record && options.specs.empty()) shown += std::ranges::count_if(outcome.proofs, &is_shown);
     else fmt::print("{}", outcome.said);
     if (!outcome.proved) return;
@@ -179,6 +180,9 @@ int run(const Options& options) {
   const SpecsFolder folder(options.specs_folder);
   std::vector<fs::path> paths;
   for (const std::string& spec : options.specs) paths.push_back(folder.find(spec));
+  if (paths.empty() && !fs::is_directory(options.specs_folder))
+    throw NoSuchSpec(fmt::format("no folder {}: run from the folder that holds it, say --specs DIR, or name the specs",
+                                 options.specs_folder));
   if (paths.empty()) paths = folder.all();
   const std::optional<Files> wanted = derive_all(paths, folder, options);
   if (!wanted) {
@@ -213,6 +217,10 @@ void add_specs(Line& line, std::string& folder) {
 }
 
 void write_file(const fs::path& path, const std::string& content) {
+  if (path == "-") {
+    std::fwrite(content.data(), 1, content.size(), stdout);
+    return;
+  }
   if (path.has_parent_path()) fs::create_directories(path.parent_path());
   const fs::file_status status = fs::symlink_status(path);
   const bool in_place = fs::exists(status) && !fs::is_regular_file(status);

@@ -7,6 +7,7 @@
 
 #include "derive/commands/commands.hpp"
 #include "derive/pipeline/process_pool.hpp"
+#include "runtime/text/colour.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -129,7 +130,7 @@ int run(const Options& options) {
   const auto take = [&](const FileVerdict& verdict) {
     total.unreadable = total.unreadable || verdict.unreadable;
     for (std::size_t k = 0; k < total.counts.size(); ++k) total.counts[k] += verdict.counts[k];
-    std::cerr << verdict.complaints;
+    text::print_messages(stderr, verdict.complaints);
     std::ranges::copy(verdict.exhibits, std::back_inserter(total.exhibits));
     if (options.json) entries.push_back(verdict.text);
     else if (options.page.empty()) std::cout << verdict.text << std::flush;
@@ -139,7 +140,8 @@ int run(const Options& options) {
   if (!options.page.empty()) write_file(options.page, page_of(total.exhibits));
   if (options.json) std::cout << joined_json(entries);
   else
-    fmt::print("{} agree, {} agree if a condition holds, {} differ, {} are listed without a verdict\n", total.counts[0],
+    fmt::print(options.page == "-" ? stderr : stdout,
+               "{} agree, {} agree if a condition holds, {} differ, {} are listed without a verdict\n", total.counts[0],
                total.counts[1], total.counts[2], total.counts[3]);
   return failed > 0 || total.unreadable ? 2 : total.counts[2] > 0 ? 1 : 0;
 }

@@ -9,6 +9,7 @@
 #include "derive/derivation/derivation.hpp"
 #include "derive/explain/mathml.hpp"
 #include "derive/language/specs_folder.hpp"
+#include "runtime/text/colour.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -49,7 +50,7 @@ std::string explanation(const Derivation& derivation, const Options& options) {
 }
 
 int print(const std::string& text, const Options& options) {
-  if (options.output.empty()) {
+  if (options.output.empty() || options.output == "-") {
     std::cout << text;
     return std::cout.flush() ? 0 : 2;
   }
@@ -66,14 +67,14 @@ int print(const std::string& text, const Options& options) {
 int refused(const ReadResult& read, const std::string& reason) {
   Diagnostics diagnostics;
   diagnostics.error(read.joint->rows.empty() ? Span{} : read.joint->rows.front().where, reason);
-  std::cerr << render(*read.file, diagnostics);
+  text::print_messages(stderr, render(*read.file, diagnostics));
   return 2;
 }
 
 int run(const Options& options) {
   const SpecsFolder folder(options.specs_folder);
   const ReadResult read = folder.read(folder.find(options.spec));
-  std::cerr << render(*read.file, read.diagnostics);
+  text::print_messages(stderr, render(*read.file, read.diagnostics));
   if (!read.joint) return 2;
   if (read.joint->dimension == 2 && options.form != "global") {
     fmt::print(stderr, "cdot explain: --form is for spatial joints: in the plane w is one number, in every form\n");
@@ -89,7 +90,7 @@ int run(const Options& options) {
 }
 
 void add_options(Line& line, Options& options) {
-  line.add("SPEC", &options.spec, "A spec, by path or by name").required();
+  line.add("SPEC", &options.spec, "A spec, by path or by name; - is standard input").required();
   line.add("--format", &options.format,
            "text; html: a page of its own, with pictures of poses where K is singular; latex: an article")
       .one_of({"text", "html", "latex"})
@@ -102,7 +103,8 @@ void add_options(Line& line, Options& options) {
   line.add("--json", &options.json, "Every entry as an expression for other programs (see below)")
       .excludes("--format")
       .excludes("--form");
-  line.add("-o,--output", &options.output, "File to write instead of the terminal").shown_as("FILE");
+  line.add("-o,--output", &options.output, "File to write instead of the terminal; - is standard output")
+      .shown_as("FILE");
   add_specs(line, options.specs_folder);
   line.footer(json_schema);
 }

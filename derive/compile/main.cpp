@@ -3,12 +3,12 @@
 #include <exception>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
-#include <iostream>
 
 #include "derive/compile/bill.hpp"
 #include "derive/compile/header.hpp"
 #include "runtime/command_line/command_line.hpp"
+#include "runtime/text/colour.hpp"
+#include "runtime/tool/run/output.hpp"
 #include "runtime/tool/scene/scene.hpp"
 
 namespace cdot::compile {
@@ -18,7 +18,7 @@ using command_line::Line;
 using command_line::Run;
 
 struct Options {
-  std::string scene, output, specs = "specs", struct_name;
+  std::string scene, output = "-", specs = "specs", struct_name;
   Wishes wishes;
   bool bill = false;
 };
@@ -39,20 +39,15 @@ int run(const Options& options) {
   const derive::SpecsFolder specs(options.specs);
   const std::string text = options.bill ? bill_of(mechanism, specs)
                                         : header_of(mechanism, {options.struct_name, command_of(options)}, specs).text;
-  if (options.output.empty()) {
-    std::cout << text;
-    return std::cout.flush() ? 0 : command_line::wrong_usage;
-  }
-  std::ofstream out(options.output, std::ios::binary);
-  out << text;
-  if (out.flush()) return 0;
-  fmt::print(stderr, "cdot compile: cannot write {}\n", options.output);
-  return command_line::wrong_usage;
+  write_file(options.output, text);
+  return 0;
 }
 
 void add_options(Line& line, Options& options) {
-  line.add("SCENE", &options.scene, "A planar scene: a TOML file").required();
-  line.add("-o,--output", &options.output, "File to write instead of the terminal").shown_as("FILE");
+  line.add("SCENE", &options.scene,
+           "A planar scene: a TOML file, the name of one in specs/scenes, or - for standard input")
+      .required();
+  line.add("-o,--output", &options.output, "File to write; - is standard output").shown_as("FILE");
   line.add("--integrator", &options.wishes.integrator,
            "Method of the step; without it that of the scene, or rk4 if the scene names none")
       .one_of({"euler", "rk4", "dop853"});
@@ -83,7 +78,8 @@ int main(int argc, char** argv) {
   try {
     return run(cdot::compile::program, cdot::compile::commands, argc, argv);
   } catch (const cdot::SceneError& error) {
-    fmt::print(stderr, "{}{} mistake{}\n", error.what(), error.mistakes, error.mistakes == 1 ? "" : "s");
+    cdot::text::print_messages(stderr, error.what());
+    fmt::print(stderr, "{} mistake{}\n", error.mistakes, error.mistakes == 1 ? "" : "s");
   } catch (const std::exception& error) {
     fmt::print(stderr, "cdot compile: {}\n", error.what());
   }

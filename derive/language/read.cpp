@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <stdexcept>
 
@@ -31,6 +32,8 @@ ReadResult read(std::shared_ptr<const SourceFile> file, const Library& library, 
 }  // namespace
 
 std::shared_ptr<const SourceFile> load_source(const std::filesystem::path& path) {
+  if (path == standard_input)
+    return std::make_shared<const SourceFile>("<stdin>", std::string(std::istreambuf_iterator<char>(std::cin), {}));
   std::ifstream in(path, std::ios::binary);
   if (!in || std::filesystem::is_directory(path)) throw std::runtime_error(path.string() + ": the file cannot be read");
   std::string text{std::istreambuf_iterator<char>(in), {}};

@@ -19,7 +19,9 @@ using Library = std::map<std::string, std::shared_ptr<const SourceFile>>;
 bool is_spec(const std::filesystem::path& file);            // *.joint or *.effect
 Library load_library(const std::filesystem::path& folder);  // every *.joint in it
 
-// The whole file; throws std::runtime_error with the cause if it cannot be read.
+inline constexpr const char* standard_input = "-";
+
+// The whole file, or all of standard input; throws std::runtime_error with the cause if it cannot be read.
 std::shared_ptr<const SourceFile> load_source(const std::filesystem::path& path);
 
 // 2 for a planar header, 3 for a spatial one; 2 if the header is missing.

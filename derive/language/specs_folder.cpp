@@ -3,11 +3,22 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "runtime/command_line/installation.hpp"
+
 namespace cdot::derive {
 
 namespace fs = std::filesystem;
 
-SpecsFolder::SpecsFolder(fs::path folder) : folder_(std::move(folder)) {}
+namespace {
+
+constexpr const char* default_folder = "specs";
+
+}  // namespace
+
+SpecsFolder::SpecsFolder(fs::path folder) : folder_(std::move(folder)) {
+  if (folder_ != default_folder || fs::exists(folder_)) return;
+  if (fs::path installed = command_line::installed(default_folder); !installed.empty()) folder_ = std::move(installed);
+}
 
 std::vector<fs::path> SpecsFolder::all() const {
   std::vector<fs::path> specs;
@@ -29,7 +40,7 @@ std::vector<fs::path> SpecsFolder::all() const {
 }
 
 fs::path SpecsFolder::find(const std::string& spec) const {
-  if (fs::exists(spec)) return spec;
+  if (spec == standard_input || fs::exists(spec)) return spec;
   std::vector<std::string> names;
   fs::path on_coordinates;
   for (const fs::path& known : all()) {

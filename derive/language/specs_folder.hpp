@@ -16,10 +16,11 @@ struct NoSuchSpec : std::runtime_error {
 
 class SpecsFolder {
  public:
-  // `folder` holds planar/*.joint; relative to the current directory unless absolute.
+  // `folder` holds planar/*.joint; relative to the current directory unless absolute. Where the current directory has no
+  // "specs", that is the folder of the installation.
   explicit SpecsFolder(std::filesystem::path folder = "specs");
 
-  // A path, or the name of a joint of the folder: "line" is specs/planar/line.joint.
+  // A path, "-" for standard input, or the name of a joint of the folder: "line" is specs/planar/line.joint.
   std::filesystem::path find(const std::string& spec) const;
   // Every spec of the folder, by name.
   std::vector<std::filesystem::path> all() const;

@@ -1,6 +1,7 @@
 // cdot-run: the commands, each a file in tool/commands/.
 #include <fmt/format.h>
 
+#include "runtime/text/colour.hpp"
 #include "runtime/tool/commands/command.hpp"
 #include "runtime/tool/scene/scene.hpp"
 
@@ -45,7 +46,8 @@ int main(int argc, char** argv) {
   try {
     return run(program, commands, argc, argv);
   } catch (const cdot::SceneError& error) {
-    fmt::print(stderr, "{}{} mistake{}\n", error.what(), error.mistakes, error.mistakes == 1 ? "" : "s");
+    cdot::text::print_messages(stderr, error.what());
+    fmt::print(stderr, "{} mistake{}\n", error.mistakes, error.mistakes == 1 ? "" : "s");
   } catch (const std::exception& error) {
     fmt::print(stderr, "cdot-run: {}\n", error.what());
   }

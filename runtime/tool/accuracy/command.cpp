@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 
+#include "runtime/text/colour.hpp"
 #include "runtime/tool/accuracy/sweep.hpp"
 #include "runtime/tool/run/output.hpp"
 #include "runtime/tool/run/process.hpp"
@@ -98,7 +99,7 @@ AccuracyOutcome measure_accuracy(const Scene& scene, const AccuracyOptions& opti
   const Fingerprint fingerprint = fingerprint_of(scene, options);
   SweepState state;
   if (options.resume) state = read_state(state_path, fingerprint);
-  fmt::print(stderr, "{}", warnings_of(scene));
+  text::print_messages(stderr, warnings_of(scene));
 
   const Interrupt interrupt;
   const Stop stop = [] { return Interrupt::asked(); };

@@ -5,6 +5,7 @@
 
 #include <cdot/methods.hpp>
 
+#include "runtime/text/colour.hpp"
 #include "runtime/text/json.hpp"
 #include "runtime/tool/commands/matrix.hpp"
 #include "runtime/tool/commands/options.hpp"
@@ -207,7 +208,7 @@ int run(const Options& options) {
   }
   std::string warnings;
   const RunResult result = simulate(scene, run, warnings);
-  fmt::print(stderr, "{}", warnings);
+  text::print_messages(stderr, warnings);
   if (result.interrupted) return stopped;
   fmt::print("{}", options.json ? diagnosis_json(scene, result) : diagnosis_text(scene, result));
   const bool nothing_wrong =

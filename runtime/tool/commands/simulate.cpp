@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/text/colour.hpp"
 #include "runtime/tool/commands/options.hpp"
 #include "runtime/tool/run/output.hpp"
 #include "runtime/tool/search/advice.hpp"
@@ -84,6 +85,16 @@ RunOptions run_options(const Options& options, const Scene& scene, OutputFile* c
   return run;
 }
 
+// After Ctrl-C: how far the outputs go, and how to continue.
+std::string interruption(const Options& options, const RunResult& result) {
+  if (result.choice)
+    return "interrupted while a method was chosen: nothing was written. Likely fix: name a method, as --integrator "
+           "rk4; its run keeps what it computed\n";
+  const bool saved = !options.save_state.empty();
+  return fmt::format("interrupted: the run and its outputs end at t = {:.6g} s{}\n", result.time,
+                     saved ? fmt::format("; --from-state {} continues", options.save_state) : "");
+}
+
 int run(const Options& options) {
   Scene scene = scene_of(options.scene);
   if (options.tolerance > 0) scene.tolerance = options.tolerance;
@@ -98,9 +109,10 @@ int run(const Options& options) {
   std::string warnings;
   const RunOptions asked = run_options(options, scene, csv ? &*csv : nullptr);
   RunResult result = simulate(scene, asked, warnings);
-  fmt::print(stderr, "{}", warnings);
-  if (result.interrupted) return stopped;
-  if (needs_advice(scene, result)) result.advice = find_advice(scene, asked, result);
+  text::print_messages(stderr, warnings);
+  if (result.interrupted) fmt::print(stderr, "{}", interruption(options, result));
+  if (result.interrupted && result.choice) return stopped;
+  if (!result.interrupted && needs_advice(scene, result)) result.advice = find_advice(scene, asked, result);
 
   if (csv) csv->commit();
   if (!result.state.empty()) write_file(options.save_state, result.state.text());
@@ -108,7 +120,8 @@ int run(const Options& options) {
     write_file(options.html, html_page(as_run(scene, result), result.film,
                                        result.choice ? choice_text(*result.choice, false) : std::string()));
   if (!options.svg.empty()) write_file(options.svg, svg_still(scene, result.film));
-  fmt::print(summary, "{}", options.json ? summary_json(scene, result) : summary_text(scene, result));
+  text::print_messages(summary, options.json ? summary_json(scene, result) : summary_text(scene, result));
+  if (result.interrupted) return stopped;
   return failure(scene, result).empty() ? well : answer_is_no;
 }
 

@@ -11,7 +11,11 @@ namespace cdot {
 namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
-void interrupt(int) { interrupted = 1; }
+// The second one ends the program.
+void interrupt(int) {
+  if (interrupted) std::signal(SIGINT, SIG_DFL), std::raise(SIGINT);
+  interrupted = 1;
+}
 
 }  // namespace
 

@@ -14,7 +14,7 @@ double cpu_now();  // CPU time of this thread [s]
 // interrupted otherwise. Empty if it did not return.
 std::vector<double> in_child(double cpu, const std::function<std::vector<double>()>& f);
 
-// While an Interrupt lives, Ctrl-C only sets asked(). Do not nest them.
+// While an Interrupt lives, the first Ctrl-C only sets asked(). Do not nest them.
 class Interrupt {
  public:
   Interrupt();

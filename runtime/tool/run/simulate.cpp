@@ -161,6 +161,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     next_diagnosis = due;
     result.stopped = options.look && !options.look(after, world.step_counts());
     if (result.stopped && !options.diagnose_times.empty()) look(scene, world, result);
+    if (Interrupt::asked() && options.save_at && result.state.empty()) result.state = world.snapshot();
     if (k == steps.count() || result.stopped || Interrupt::asked()) break;
     requested.before_step(world, after, steps.time(k + 1));
     error.before_step(world, k + 1);

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
+#include <iostream>
 #include <sstream>
 
+#include "runtime/command_line/installation.hpp"
 #include "runtime/tool/scene/depth.hpp"
 #include "runtime/tool/scene/start.hpp"
 
@@ -172,12 +175,47 @@ Scene read_scene(std::string_view text, const std::string& name) {
   return scene;
 }
 
-Scene read_scene(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+namespace {
+
+namespace fs = std::filesystem;
+
+// Folders of scenes that go by their names, the scenes' own first.
+std::vector<fs::path> scene_folders() {
+  const fs::path scenes = fs::path("specs") / "scenes", installed = command_line::installed(scenes);
+  std::vector<fs::path> folders = {scenes, scenes / "spatial"};
+  if (!installed.empty()) folders.insert(folders.end(), {installed, installed / "spatial"});
+  return folders;
+}
+
+// The file of a scene that is called by its path or by its name: "four_bar", "spatial/four_bar".
+std::string file_of(const std::string& scene) {
+  if (fs::exists(scene)) return scene;
+  std::vector<std::string> names;
+  for (const fs::path& folder : scene_folders()) {
+    if (const fs::path file = folder / (scene + ".toml"); fs::exists(file)) return file.string();
+    std::error_code none;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, none))
+      if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  }
+  const bool is_name = scene.find_first_of("/.") == scene.npos;
+  const std::string fix = is_name && !names.empty() ? fmt::format("  fix: {}\n", did_you_mean(scene, names)) : "";
+  throw SceneError(fmt::format("{}: error: there is no such scene\n{}", scene, fix), 1);
+}
+
+std::string content_of(std::istream& stream, const std::string& name) {
   std::stringstream text;
-  text << file.rdbuf();  // fails for an empty file, which is no mistake here
-  if (!file) throw SceneError(fmt::format("{}: error: cannot be read\n", path), 1);
-  return read_scene(text.str(), path);
+  text << stream.rdbuf();  // fails for an empty file, which is no mistake here
+  if (!stream) throw SceneError(fmt::format("{}: error: cannot be read\n", name), 1);
+  return text.str();
+}
+
+}  // namespace
+
+Scene read_scene(const std::string& scene) {
+  if (scene == "-") return read_scene(content_of(std::cin, "<stdin>"), "<stdin>");
+  const std::string path = file_of(scene);
+  std::ifstream file(path, std::ios::binary);
+  return read_scene(content_of(file, path), path);
 }
 
 }  // namespace cdot

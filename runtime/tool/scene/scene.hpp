@@ -135,7 +135,8 @@ struct SceneError : std::runtime_error {
 // Call after a change of the methods.
 void settle_drift(Scene& scene);
 
-Scene read_scene(const std::string& path);
+// By its path, its name in specs/scenes, there or where it is installed; "-" is standard input.
+Scene read_scene(const std::string& scene);
 Scene read_scene(std::string_view text, const std::string& name);
 
 // Body k of the scene is body k of the World. Throws SceneError if the World refuses a part. The scene must have the

@@ -146,3 +146,31 @@ TEST_F(Derive, NeverShowsHalfAFile) {
   EXPECT_EQ(halves, 0);
   EXPECT_GT(std::min(seen[0], seen[1]), 0);
 }
+
+TEST_F(Derive, AHyphenIsStandardInputAndOutput) {
+  const Result checked = run("cat specs/planar/line.joint | " CDOT " check -");
+  EXPECT_EQ(checked.status, 0);
+  EXPECT_NE(checked.said.find("<stdin>: clean"), std::string::npos) << checked.said;
+  write("typo.joint", broken);
+  const Result wrong = run("cat typo.joint | " CDOT " check -");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.said.find("<stdin>:4:8: error: "), std::string::npos) << wrong.said;
+  EXPECT_EQ(cdot("explain line -o -").said, cdot("explain line").said);
+  EXPECT_NE(run(CDOT " check line --html - 2>/dev/null").said.find("</html>"), std::string::npos);
+  EXPECT_FALSE(fs::exists(place_ / "-"));
+}
+
+TEST_F(Derive, MisspeltWordsAreUnderstood) {
+  EXPECT_EQ(cdot("explian line").said.substr(0, 62), "cdot: no command is called `explian`; did you mean `explain`?\n");
+  EXPECT_EQ(cdot("diff --ful").said.substr(0, 56), "cdot: diff has no option `--ful`; did you mean `--full`?\n");
+  EXPECT_EQ(cdot("--version").said.substr(0, 5), "cdot ");
+}
+
+// The catalogue of an installation must not be written into the folder where somebody happens to be.
+TEST_F(Derive, WithoutASpecsFolderNothingIsDerived) {
+  fs::remove_all(place_ / "specs");
+  const Result derived = cdot("derive");
+  EXPECT_EQ(derived.status, 2);
+  EXPECT_NE(derived.said.find("no folder specs: run from the folder that holds it"), std::string::npos) << derived.said;
+  EXPECT_FALSE(fs::exists(place_ / "generated"));
+}

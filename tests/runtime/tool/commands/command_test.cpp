@@ -255,14 +255,42 @@ TEST(Command, NoHalfWrittenFiles) {
   const TemporaryFolder folder;
   const std::string missing = folder / "no_such_folder/run.csv";
   EXPECT_EQ(cdot_run(fmt::format("simulate {} --until 0.1 -o '{}'", scene("four_bar"), missing)).status, 2);
-  // An interrupted run keeps the old file and leaves no part of a new one.
+  // While a method is chosen nothing is computed yet: the old file stays, and no part of a new one.
   const std::string path = folder / "run.csv";
   std::ofstream(path) << "old\n";
-  const CommandResult result = run_command(
-      fmt::format("timeout -s INT 0.5 '{}' simulate {} --until 100000 -o '{}'", CDOT_RUN, scene("four_bar"), path));
-  EXPECT_NE(result.status, 0);
+  const CommandResult result =
+      run_command(fmt::format("timeout --preserve-status -s INT 0.5 '{}' simulate {} --until 100000 -o '{}'", CDOT_RUN,
+                              scene("four_bar"), path));
+  EXPECT_EQ(result.status, 130);
+  EXPECT_NE(result.err.find("while a method was chosen: nothing was written"), std::string::npos) << result.err;
   EXPECT_EQ(read_text(path), "old\n");
   EXPECT_EQ(folder.contents(), std::vector<std::string>{"run.csv"});
+}
+
+// Ctrl-C: the rows, the page and the state up to there are complete, and the state continues the run.
+TEST(Command, AnInterruptedRunKeepsWhatItComputed) {
+  const TemporaryFolder folder;
+  const std::string csv_path = folder / "run.csv", state = folder / "run.state", page = folder / "run.html";
+  const std::string run = fmt::format("simulate {} --integrator rk4 --step 0.001 --every 0.5", scene("four_bar"));
+  const CommandResult stopped = run_command(
+      fmt::format("timeout --preserve-status -s INT 0.5 '{}' {} --until 100000 -o '{}' --save-state '{}' --html '{}'",
+                  CDOT_RUN, run, csv_path, state, page));
+  EXPECT_EQ(stopped.status, 130) << stopped.err;
+  EXPECT_NE(stopped.err.find("interrupted: the run and its outputs end at t = "), std::string::npos) << stopped.err;
+  EXPECT_NE(stopped.err.find("--from-state " + state + " continues"), std::string::npos) << stopped.err;
+  EXPECT_NE(stopped.out.find("energy"), std::string::npos);
+  const auto rows = csv(csv_path);
+  ASSERT_GE(rows.size(), 3u);
+  EXPECT_EQ(rows.back().size(), rows.front().size());
+  EXPECT_TRUE(read_text(page).find("</html>") != std::string::npos);
+  const double end = Snapshot::read(read_text(state)).time();
+  EXPECT_GE(end, std::stod(rows.back()[0]) - 1e-9);
+
+  const std::string further = folder / "further.csv", whole = folder / "whole.csv";
+  const std::string until = fmt::format(" --until {}", end + 1);
+  EXPECT_EQ(cdot_run(run + until + fmt::format(" --from-state '{}' -o '{}'", state, further)).status, 0);
+  EXPECT_EQ(cdot_run(run + until + fmt::format(" -o '{}'", whole)).status, 0);
+  EXPECT_EQ(csv(further).back(), csv(whole).back()) << "an interruption changes bits";
 }
 
 // Numbers of all rows except the header.

@@ -1,0 +1,18 @@
+#include "runtime/command_line/installation.hpp"
+
+namespace cdot::command_line {
+
+namespace fs = std::filesystem;
+
+fs::path own_folder() {
+  std::error_code none;
+  return fs::read_symlink("/proc/self/exe", none).parent_path();
+}
+
+fs::path installed(const fs::path& part) {
+  std::error_code none;
+  const fs::path path = own_folder().parent_path() / CDOT_SHARE / part;
+  return fs::exists(path, none) ? path : fs::path();
+}
+
+}  // namespace cdot::command_line
