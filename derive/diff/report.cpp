@@ -71,7 +71,8 @@ std::string to_text(const DiffReport& report, const ReportOptions& options) {
   for (const Judgement& j : report.judgements) {
     if (!options.all && j.agreement != Agreement::differs) continue;
     s += lines_of(fmt::format("{:<8} {:<10}", j.id, name_of(j.agreement)), j.title);
-    if (!j.condition.empty()) s += lines_of(indent, (j.agreement == Agreement::listed ? "not judged: " : "if ") + j.condition);
+    if (!j.condition.empty())
+      s += lines_of(indent, (j.agreement == Agreement::listed ? "not judged: " : "if ") + j.condition);
     if (j.agreement == Agreement::differs)
       s += lines_of(indent,
                     fmt::format("{}:{}, after {}", report.file->path, report.file->line(j.where.begin), j.source));

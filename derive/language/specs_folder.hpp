@@ -16,8 +16,8 @@ struct NoSuchSpec : std::runtime_error {
 
 class SpecsFolder {
  public:
-  // `folder` holds planar/*.joint; relative to the current directory unless absolute. Where the current directory has no
-  // "specs", that is the folder of the installation.
+  // `folder` holds planar/*.joint; relative to the current directory unless absolute. Where the current directory has
+  // no "specs", that is the folder of the installation.
   explicit SpecsFolder(std::filesystem::path folder = "specs");
 
   // A path, "-" for standard input, or the name of a joint of the folder: "line" is specs/planar/line.joint.

@@ -13,7 +13,9 @@
 namespace cdot {
 
 void add_scene(Line& line, SceneOptions& options) {
-  line.add("SCENE", &options.file, "the scene: a TOML file, the name of a scene in specs/scenes, or - for standard input").required();
+  line.add("SCENE", &options.file,
+           "the scene: a TOML file, the name of a scene in specs/scenes, or - for standard input")
+      .required();
 }
 
 namespace {

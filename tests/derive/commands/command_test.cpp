@@ -161,9 +161,11 @@ TEST_F(Derive, AHyphenIsStandardInputAndOutput) {
 }
 
 TEST_F(Derive, MisspeltWordsAreUnderstood) {
-  EXPECT_EQ(cdot("explian line").said.substr(0, 62), "cdot: no command is called `explian`; did you mean `explain`?\n");
-  EXPECT_EQ(cdot("diff --ful").said.substr(0, 56), "cdot: diff has no option `--ful`; did you mean `--full`?\n");
-  EXPECT_EQ(cdot("--version").said.substr(0, 5), "cdot ");
+  for (const auto& [typed, said] : std::map<std::string, std::string>{
+           {"explian line", "cdot: no command is called `explian`; did you mean `explain`?\n"},
+           {"diff --ful", "cdot: diff has no option `--ful`; did you mean `--full`?\n"},
+           {"--version", "cdot 0."}})
+    EXPECT_EQ(cdot(typed).said.substr(0, said.size()), said);
 }
 
 // The catalogue of an installation must not be written into the folder where somebody happens to be.
