@@ -60,6 +60,16 @@ Expr gamma_by_entries(const Joint& joint, const ScalarRow& row) {
   return gamma;
 }
 
+// J of all bodies, by the names of its gradients.
+std::vector<JacobianEntry> whole_jacobian(const Joint& joint, const ScalarRow& row, int immovable) {
+  if (immovable < 0) return row.J;
+  ScalarRow whole = row;
+  whole.J = factors_of_velocities(time_derivative(row.C, joint), joint);
+  whole.gradients.clear();
+  name_gradients(joint, whole);
+  return whole.J;
+}
+
 ScalarRow derive_row(const Joint& joint, ScalarRow row, Expr expression, int immovable) {
   Pool& pool = *joint.pool;
   const bool at_velocity_level = row.kind == RowKind::velocity;
@@ -79,6 +89,8 @@ ScalarRow derive_row(const Joint& joint, ScalarRow row, Expr expression, int imm
   row.J = factors_of_velocities(row.Cdot, joint);
   name_gradients(joint, row);
   for (JacobianEntry& entry : row.J) entry.w = collected(entry.w);
+  if (!at_velocity_level && !row.gradients.empty())
+    shorten_lever_of_carrier(joint, row, whole_jacobian(joint, row, immovable));
   if (immovable < 0) {
     row.gamma = -time_derivative(row.Cdot, joint);
     row.gamma_by_entries = gamma_by_entries(joint, row);
