@@ -20,13 +20,16 @@ std::optional<Expr> lever_of(Expr w, Expr n) {
   if (is_zero(w)) return zero_vector(*n->pool);
   if (turn.e->kind != Kind::cross) return {};
   const Rational factor = turn.coef / force.coef;
-  if (turn.e->args[1] == force.e) return factor * turn.e->args[0];
-  if (turn.e->args[0] == force.e) return -factor * turn.e->args[1];
+  const Expr u = turn.e->args[0], v = turn.e->args[1], opposite = -force.e;
+  if (v == force.e || u == opposite) return v == force.e ? factor * u : factor * v;
+  if (u == force.e || v == opposite) return u == force.e ? -factor * v : -factor * u;
   return {};
 }
 
-bool is_lever(Expr w, Expr n) {
-  return std::ranges::all_of(terms_of(w), [&](const Term& term) { return lever_of(term.e, n).has_value(); });
+bool is_long(const JacobianEntry& entry) {
+  const std::vector<Term> terms = terms_of(entry.w);
+  return !is_zero(entry.v) && terms.size() > 1 &&
+         !std::ranges::all_of(terms, [&](const Term& term) { return lever_of(term.e, entry.v).has_value(); });
 }
 
 bool equal_at_random_poses(Expr w, Expr other, const Joint& joint) {
@@ -44,6 +47,8 @@ bool equal_at_random_poses(Expr w, Expr other, const Joint& joint) {
 
 }  // namespace
 
+bool has_long_lever(const ScalarRow& row) { return std::ranges::any_of(row.J, is_long); }
+
 void shorten_lever_of_carrier(const Joint& joint, ScalarRow& row, const std::vector<JacobianEntry>& whole) {
   std::vector<std::size_t> bodies;
   for (std::size_t b = 0; b < whole.size(); ++b)
@@ -52,7 +57,7 @@ void shorten_lever_of_carrier(const Joint& joint, ScalarRow& row, const std::vec
   for (std::size_t i = 0; i < 2; ++i) {
     const std::size_t carrier = bodies[i], other = bodies[1 - i];
     Expr& w = row.J[carrier].w;
-    if (is_zero(whole[other].v) || is_lever(w, whole[other].v)) continue;
+    if (is_zero(whole[other].v) || !is_long(row.J[carrier])) continue;
     const std::optional<Expr> u = lever_of(whole[other].w, whole[other].v);
     if (!u) continue;
     const Expr arm =

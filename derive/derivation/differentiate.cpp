@@ -89,7 +89,7 @@ ScalarRow derive_row(const Joint& joint, ScalarRow row, Expr expression, int imm
   row.J = factors_of_velocities(row.Cdot, joint);
   name_gradients(joint, row);
   for (JacobianEntry& entry : row.J) entry.w = collected(entry.w);
-  if (!at_velocity_level && !row.gradients.empty())
+  if (!at_velocity_level && has_long_lever(row))
     shorten_lever_of_carrier(joint, row, whole_jacobian(joint, row, immovable));
   if (immovable < 0) {
     row.gamma = -time_derivative(row.Cdot, joint);

@@ -193,6 +193,20 @@ Expr cross_in_space(Expr u, Expr v) {
   return -node(Kind::cross, true, {v, u});
 }
 
+// True if u, or the vector whose direction u is, is x - (n · x) n: the part of x at right angles to n.
+bool is_part_across(Expr n, Expr u) {
+  if (u->kind == Kind::unit) u = u->args[0];
+  if (!n->unit_length || u->kind != Kind::sum) return false;
+  std::vector<Term> across;
+  Expr along = n->pool->number(0);
+  for (std::size_t i = 0; i < u->args.size(); ++i) {
+    const Expr arg = u->args[i];
+    if (arg->kind == Kind::scale && arg->args[1] == n) along = along + u->coefs[i] * arg->args[0];
+    else across.push_back({u->coefs[i], arg});
+  }
+  return !is_zero(along) && is_zero(dot(n, sum(*n->pool, across, true)) + along);
+}
+
 }  // namespace
 
 Expr dot(Expr u, Expr v) {
@@ -211,6 +225,7 @@ Expr dot(Expr u, Expr v) {
     return pool.number(0);
   }
   if (const Expr known = known_dot(a.rest, b.rest)) return factor * known;
+  if (is_part_across(a.rest, b.rest) || is_part_across(b.rest, a.rest)) return pool.number(0);
   if (a.rest == b.rest && a.rest->unit_length) return factor;
   if (is_unit_of(b.rest, a.rest)) return factor * norm(a.rest);
   if (is_unit_of(a.rest, b.rest)) return factor * norm(b.rest);

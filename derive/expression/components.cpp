@@ -222,19 +222,23 @@ std::vector<Expr> Components::fixed_components(Expr v) {
 }
 
 bool Components::is_turned(Expr v) {
+  if (axes_ == nullptr) return false;
   if (!fixed_components(v).empty()) return true;
-  return v->kind == Kind::sum && std::ranges::any_of(v->args, [&](Expr e) { return !fixed_components(e).empty(); });
+  if (v->kind == Kind::scale) return is_turned(v->args[1]);
+  if (v->kind == Kind::unit) return is_turned(v->args[0]);
+  return v->kind == Kind::sum && std::ranges::any_of(v->args, [&](Expr e) { return is_turned(e); });
 }
 
 // A' v, where the parts of v that are fixed in the body need no rotation.
 std::vector<Expr> Components::local_components(Expr v) {
   if (const std::vector<Expr> fixed = fixed_components(v); !fixed.empty()) return fixed;
   if (const auto found = locals_.find(&*v); found != locals_.end()) return found->second;
+  if (v->kind == Kind::scale) return locals_[&*v] = scaled_by(of(v->args[0]), local_components(v->args[1]));
+  if (v->kind == Kind::unit) return locals_[&*v] = direction(v, local_components(v->args[0]), axes_->A[0]);
   Sums local(*v->pool), world(*v->pool);
   for (const Term& term : terms_of(v)) {
-    const std::vector<Expr> fixed = fixed_components(term.e);
-    if (fixed.empty()) world.add(term.coef, of_vector(term.e));
-    else local.add(term.coef, fixed);
+    if (term.e != v && is_turned(term.e)) local.add(term.coef, local_components(term.e));
+    else world.add(term.coef, of_vector(term.e));
   }
   const std::vector<Expr> w = world.total();
   std::vector<Expr> rotated(w.size(), v->pool->number(0));
@@ -256,15 +260,17 @@ Expr Components::local_product(Expr product) {
   return product->kind == Kind::dot ? inner_product(a, b) : a[0] * b[1] - a[1] * b[0];
 }
 
-// n = u/|u|, and the world's x axis where u vanishes.
 std::vector<Expr> Components::unit_rule(Expr v) {
-  Pool& pool = *v->pool;
-  const auto u = of_vector(v->args[0]);
+  return direction(v, of_vector(v->args[0]), leaf_components(world_axes(*v->pool)[0]));
+}
+
+// u/|u| by the components of u in some axes, and the world's x axis where u vanishes.
+std::vector<Expr> Components::direction(Expr v, const std::vector<Expr>& u, const std::vector<Expr>& world_x) {
   const Expr length = of(norm(v->args[0]));
   const Expr inverse = of(pow(norm(v->args[0]), -1));
   std::vector<Expr> n;
   for (std::size_t k = 0; k < u.size(); ++k) {
-    const Expr cases[] = {length, u[k] * inverse, pool.number(k == 0 ? 1 : 0)};
+    const Expr cases[] = {length, u[k] * inverse, world_x[k]};
     n.push_back(call(Fn::select, cases));
   }
   return n;

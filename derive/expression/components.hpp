@@ -37,6 +37,7 @@ class Components {
   Expr scalar_rule(Expr e);
   std::vector<Expr> vector_rule(Expr e);
   std::vector<Expr> unit_rule(Expr e);
+  std::vector<Expr> direction(Expr unit, const std::vector<Expr>& u, const std::vector<Expr>& world_x);
   std::vector<Expr> sum_rule(Expr e);
   // Those of a vector fixed in the body of `axes_`, or a scalar times it; empty for others.
   std::vector<Expr> fixed_components(Expr v);

@@ -221,6 +221,7 @@ const std::vector<Line>& all() {
     in_space<spatial::helicoid, by_hand::helicoid>(lines);
     in_space<spatial::monkey_saddle, by_hand::monkey_saddle>(lines);
     in_space<spatial::paraboloid, by_hand::paraboloid>(lines);
+    in_space<spatial::ring, by_hand::ring>(lines);
     in_space<spatial::saddle, by_hand::saddle>(lines);
     in_space<spatial::torus, by_hand::torus>(lines);
     return lines;

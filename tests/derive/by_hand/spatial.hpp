@@ -72,6 +72,34 @@ struct torus {
   }
 };
 
+// The torus by its axis alone; on it, where q vanishes, its direction is the x axis, as the language has it.
+struct ring {
+  template <class T, class P>
+  static void position(V3<T> z, const P& p, T& C) {
+    using std::sqrt;
+    const V3<T> e = {p.n_x, p.n_y, p.n_z};
+    const T h = dot(z, e);
+    const V3<T> q = z - h * e;
+    const T out = sqrt(dot(q, q)) - p.R;
+    C = out * out + h * h - p.r * p.r;
+  }
+  template <class T, class P>
+  static void gradient(const cdot::spatial::Pose<T>& b, V3<T> z, const P& p, T& C, V3<T>& n) {
+    using cdot::select;
+    using std::sqrt;
+    const V3<T> e = {p.n_x, p.n_y, p.n_z};
+    const T h = dot(z, e);
+    const V3<T> q = z - h * e;
+    const T rho = sqrt(dot(q, q)), out = rho - p.R;
+    C = out * out + h * h - p.r * p.r;
+    const T inv = inverse(rho);
+    // A compiler merges equal comparisons; here each select counts its own, as in the generated kernel.
+    const auto or_x = [&](T part, T x) { return select(rho > cdot::smallest<T>(), part * inv, x); };
+    const V3<T> u = {or_x(q.x, b.xx), or_x(q.y, b.xy), or_x(q.z, b.xz)};
+    n = turned(b, (out + out) * u + (h + h) * e);
+  }
+};
+
 struct ellipsoid {
   template <class T, class P>
   static void position(V3<T> z, const P& p, T& C) {

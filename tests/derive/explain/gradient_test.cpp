@@ -61,6 +61,22 @@ TEST(Gradient, IsCollectedFromALeverOfItsOwn) {
   EXPECT_EQ(names_and_J(cylinder), (Lines{"n = 2 u - 2 (t · u) t", "J = [ n' | (ra × n)' | -n' | -((rb + u) × n)' ]"}));
 }
 
+// A turn of both bodies about the centre of b leaves C as it is: the lever of b follows from that of a.
+TEST(Gradient, IsCollectedFromTheLeverOfTheOtherBody) {
+  const auto of_axis = [](const std::string& rows) {
+    return names_and_J(read_text("wall",
+                                 "joint wall spatial\n  \"A point on a wall.\"\n  point pa on a\n  point pb on b\n"
+                                 "  unit t on b\n  scalar R [m]\n  let d = pa - pb\n  let h = dot(t, d)\n" +
+                                     rows));
+  };
+  const std::string J = "J = [ n' | (ra × n)' | -n' | -((pa - x_b) × n)' ]";
+  EXPECT_EQ(of_axis("  let q = d - h*t\n  let rho = norm(q)\n  (rho - R)^2 + h^2 = R^2 / 4\n"),
+            (Lines{"n = (2 rho - 2 R) unit(q) + 2 h t", J}));
+  EXPECT_EQ(of_axis("  norm(cross(t, d)) - h = R\n"),
+            (Lines{"J = [ (t × unit(d × t) - t)' | -(ra × (t - t × unit(d × t)))' | (t - t × unit(d × t))'"
+                   " | -((pa - x_b) × (t × unit(d × t) - t))' ]"}));
+}
+
 // A sum in front of an axis may stand with either sign.
 TEST(Gradient, IsCollectedWithEitherSignOfASlope) {
   EXPECT_EQ(of_curve("  scalar k [1/m]\n  scalar m\n  s.y = k * s.x^2 - m * s.x\n"),
