@@ -60,7 +60,9 @@ class Candidates {
     if (e->kind == Kind::norm) return add(e->args[0]);
     if (e->kind == Kind::number || e->unit_length || is_zero(e)) return;
     if (written_size(e, [](Expr part) { return !part->name.empty(); }) > most_nodes) return;
-    const std::string name = spec_text(e->vector ? e : with_leading_sign(e), joint_);
+    if (!e->vector) e = with_leading_sign(e);
+    std::string name = spec_text(e, joint_);
+    if (name.starts_with('-') && e->kind != Kind::sum) name = spec_text(e = -e, joint_);  // both vanish together
     const auto same = [&](const Candidate& c) { return c.e == e || c.name == name; };
     if (name.size() <= longest_name && std::ranges::none_of(all_, same)) all_.push_back({e, name});
   }

@@ -32,8 +32,11 @@ std::string in_words(const std::vector<Way>& ways) {
   }
   const std::size_t all = std::max<std::size_t>(1, any.move.size()) * std::max<std::size_t>(1, any.turn.size());
   if (single && ways.size() == all) return abilities(any, " or ", ", and ");
+  constexpr std::size_t most_ways = 3;
   std::vector<std::string> parts;
-  for (const Way& way : ways) parts.push_back(abilities(way, " and ", " and "));
+  for (const Way& way : ways)
+    if (parts.size() < most_ways) parts.push_back(abilities(way, " and ", " and "));
+  if (ways.size() > most_ways) parts.push_back(fmt::format("in {} other ways", ways.size() - most_ways));
   return listed(parts, ", or ");
 }
 

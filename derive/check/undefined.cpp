@@ -69,13 +69,24 @@ class Undefined {
     if (!seen_.insert(&*e).second) return;
     const std::string x = words(e->args[0]);
     if (e->fn == Fn::atan2) {
-      if (e->args[0]->kind == Kind::norm)
-        return add(Level::note, name_ + ": the angle " + words(e) + " in [0, pi] has a corner at both ends");
-      return add(Level::note, name_ + ": the angle " + words(e) + " jumps by 2 pi at pi, and where both " +
-                                  "arguments are 0 the kernel takes 0, also for its row of J");
+      seen_.insert(&*(pow(e->args[0], 2) + pow(e->args[1], 2)));  // it vanishes where both arguments do
+      return angle(e);
     }
     const std::string_view finding = function_of(e->fn).finding;
     if (!finding.empty()) add(Level::note, name_ + ": " + fmt::format(fmt::runtime(finding), x));
+  }
+
+  void angle(Expr e) {
+    const std::string own = words(e);
+    const std::string name = name_ + ": " + (own.starts_with("atan2(") ? "the angle " : "") + own;
+    if (e->args[0]->kind == Kind::norm) return add(Level::note, name + " in [0, pi] has a corner at both ends");
+    const std::optional<AngleBetween> between = angle_between(e);
+    const bool defined = between && between->from->unit_length && between->to->unit_length;
+    add(Level::note,
+        name + " jumps by 2 pi at pi" +
+            (defined                     ? ""
+             : own.starts_with("atan2(") ? ", and where both arguments are 0 the kernel takes 0, also for its row of J"
+                                         : ", and where it is undefined the kernel takes 0, also for its row of J"));
   }
 
   // Tested at every pose with C = 0 that was found.

@@ -81,6 +81,7 @@ class Elaborator {
   void let(Source& source, const DeclaredAst& d);
   bool is_component(std::string_view ending) const;
   std::string vector_of_component(const std::string& name) const;
+  std::string free_name_like(const std::string& name) const;
   bool name_is_free(Source& source, const Word& word, const std::string& full);
   void enter(Source& source, const std::string& full, std::string kind, Value value, Span where, bool of_world = false);
   // elaborate_row.cpp

@@ -311,25 +311,36 @@ void Elaborator::let(Source& source, const DeclaredAst& d) {
   enter(source, full, "let", value, d.name.where, of_world_);
 }
 
+// t1 for t: no word of the language or of C++, no name so far.
+std::string Elaborator::free_name_like(const std::string& name) const {
+  const auto is_taken = [&](const std::string& candidate) {
+    return names_.contains(candidate) || is_operator(candidate) || is_symbol_of_tool(candidate) ||
+           pool_->find(candidate) || !vector_of_component(candidate).empty();
+  };
+  std::string candidate;
+  for (int k = 1; candidate.empty() || is_taken(candidate); ++k) candidate = name + std::to_string(k);
+  return candidate;
+}
+
 bool Elaborator::name_is_free(Source& source, const Word& word, const std::string& full) {
+  const std::string other = "call it `" + free_name_like(full) + "`, for instance";
   const auto say = [&](const std::string& message, const std::string& fix) {
     error(source, word.where, quote(full) + message, fix);
     if (!names_.contains(full)) enter(source, full, "let", {}, word.where);
     return false;
   };
-  if (is_reserved(full)) return say(" is a word of the language", "choose another name");
+  if (is_reserved(full)) return say(" is a word of the language", other);
   if (is_operator(full)) {
     const Operator& o = *operators_named(full)[0];
-    if (o.where != Operator::Where::hand)
-      return say(" is the operator " + std::string(o.signature), "choose another name");
+    if (o.where != Operator::Where::hand) return say(" is the operator " + std::string(o.signature), other);
   }
-  if (is_word_of_cpp(full)) return say(" is a C++ keyword: the generated kernel cannot use it", "choose another name");
+  if (is_word_of_cpp(full)) return say(" is a C++ keyword: the generated kernel cannot use it", other);
   if (const std::string vector = vector_of_component(full); !vector.empty())
-    return say(" is the name of a component of " + quote(vector), "choose another name");
-  if (is_symbol_of_tool(full)) return say(" is a name that generated code uses", "choose another name");
+    return say(" is the name of a component of " + quote(vector), other);
+  if (is_symbol_of_tool(full)) return say(" is a name that generated code uses", other);
   const auto known = names_.find(full);
   if (known == names_.end()) return true;
-  const std::string fix = source.include ? "include it under a prefix: include ... as left" : "choose another name";
+  const std::string fix = source.include ? "include it under a prefix: include ... as left" : other;
   error(source, word.where,
         known->second.kind == "arm"                ? quote(full) + " is already the arm of a point"
         : source.include || known->second.included ? quote(full) + " has another meaning in the included joint"

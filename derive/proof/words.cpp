@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "derive/derivation/derivation.hpp"
 #include "derive/expression/shared.hpp"
@@ -39,6 +39,27 @@ void spell_points(Expr sum, const Joint& joint, Spelled& spelled) {
   spelled.emplace(&*sum, derive::sum(*joint.pool, points, true));
 }
 
+// An arc tangent that is the angle between directions, as a person writes it; empty for others.
+std::string angle_text(Expr e, const Joint& joint) {
+  const auto of = [&](std::initializer_list<Expr> args) {
+    std::vector<std::string> words;
+    for (const Expr arg : args) words.push_back(spec_text(arg, joint));
+    return fmt::format("angle({})", fmt::join(words, ", "));
+  };
+  if (const auto angle = angle_between(e)) return of({angle->from, angle->to});
+  const Expr sine = split_coefficient(e->args[0]).e;
+  if (sine->kind != Kind::dot) return "";
+  for (const bool first : {true, false}) {
+    const Expr turn = sine->args[first ? 0 : 1], n = sine->args[first ? 1 : 0];
+    if (turn->kind != Kind::cross) continue;
+    const Expr u = turn->args[0], v = turn->args[1];
+    if (e->args[1] != dot(u, v) - dot(n, u) * dot(n, v)) continue;
+    if (e->args[0] == dot(n, cross(u, v))) return of({u, v, n});
+    if (e->args[0] == dot(n, cross(v, u))) return of({v, u, n});
+  }
+  return "";
+}
+
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
 }  // namespace
@@ -55,8 +76,12 @@ std::string spec_text(Expr e, const Joint& joint) {
   for (const Parameter& p : joint.parameters) spell_axes(p.axes, p.name, spelled);
   for (std::size_t b = 0; b < joint.bodies.size(); ++b)
     spell_axes(body_axes(*joint.pool, static_cast<int>(b)), joint.bodies[b], spelled);
-  for (const Expr part : topological(std::span(&e, 1)))
+  for (const Expr part : topological(std::span(&e, 1))) {
     if (part->kind == Kind::sum && part->vector && part->name.empty()) spell_points(part, joint, spelled);
+    if (part->kind != Kind::function || part->fn != Fn::atan2) continue;
+    if (const std::string angle = angle_text(part, joint); !angle.empty())
+      spelled.emplace(&*part, joint.pool->symbol(angle, Role::given));
+  }
   return text(substitute(e, spelled));
 }
 

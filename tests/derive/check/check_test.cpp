@@ -196,6 +196,40 @@ TEST(Check, TellsWhereTheEffectiveMassIsSingularInSpace) {
   EXPECT_TRUE(mentions(said, "the kernel takes (1, 0, 0)")) << said;
 }
 
+// Angles as the spec writes them, each place once, and no place that cannot be.
+TEST(Check, TellsOfAnglesInTheWordsOfTheSpec) {
+  const auto said_of = [](const std::string& rows, const std::string& space) {
+    std::string said;
+    EXPECT_TRUE(checked("  norm(pa - pb) = 1 [m]\n" + rows, &said, space).clean());
+    return said;
+  };
+  const std::string about = said_of("  unit s on a\n  unit t on b\n  unit n on b\n  angle(t, s, n) = 0\n", "spatial");
+  EXPECT_TRUE(mentions(about, "C2: angle(t, s, n) jumps by 2 pi at pi, and where it is undefined the kernel")) << about;
+  EXPECT_FALSE(mentions(about, "^2")) << about;
+  const std::string plane = said_of("  unit s on a\n  unit t on b\n  angle(t, s) = 0\n", "planar");
+  EXPECT_TRUE(mentions(plane, "C2: angle(t, s) jumps by 2 pi at pi\n")) << plane;
+}
+
+// cross(fa.x, nc) is stored with the opposite sign.
+TEST(Check, AVanishingVectorHasNoSign) {
+  std::string said;
+  EXPECT_TRUE(checked("  norm(pa - pb) = 1 [m]\n  frame fa on a\n  frame fb on b\n  unit nc on c\n"
+                      "  dot(fa.x, nc) = dot(fb.x, nc)\n",
+                      &said, "spatial")
+                  .clean());
+  EXPECT_TRUE(mentions(said, "cross(nc, fa.x) = 0")) << said;
+  EXPECT_FALSE(mentions(said, "where -")) << said;
+}
+
+TEST(Check, TellsThreeWaysToMoveAtMost) {
+  std::string said;
+  EXPECT_TRUE(checked("  point pc on c\n  unit t on c\n  angle(a) = angle(c)\n  angle(b) = angle(c)\n"
+                      "  dot(t, pc - pa) = 0\n  dot(perp(t), pc - pb) = 0\n",
+                      &said)
+                  .clean());
+  EXPECT_TRUE(mentions(said, "c can move and a and b can turn, or in 3 other ways\n")) << said;
+}
+
 TEST(Check, TellsWhereTheEffectiveMassIsSingularOnTheConstraint) {
   const auto said_of = [](const std::string& rows, const std::string& space) {
     std::string said;

@@ -39,10 +39,12 @@ std::string errors_in(const std::string& messages) {
   return errors;
 }
 
-// The words in backquotes of "did you mean `pa`?" and "write `-`"; of `norm(u)` the part before the operand.
+// The words in backquotes of "did you mean `pa`?", "write `-`" and "call it `v1`"; of `norm(u)` the part before the
+// operand.
 std::vector<std::string> offered_by(const std::string& fix) {
   std::vector<std::string> words;
-  if (!fix.starts_with("did you mean `") && !fix.starts_with("write `")) return words;
+  const char* const offers[] = {"did you mean `", "write `", "call it `"};
+  if (std::ranges::none_of(offers, [&](const char* offer) { return fix.starts_with(offer); })) return words;
   for (std::size_t at = fix.find('`'); at != fix.npos; at = fix.find('`', at + 1)) {
     const std::size_t end = fix.find('`', at + 1);
     const std::string word = fix.substr(at + 1, end - at - 1);
