@@ -127,7 +127,7 @@ TEST(Spatial, UpdatesUseTensors) {
   ASSERT_EQ(j.differences.size(), 1u);
   EXPECT_EQ(j.differences[0].column, "w_a");
   EXPECT_EQ(j.differences[0].kind, "sign");
-  EXPECT_NE(j.differences[0].confirmed.find("work of the impulse"), std::string::npos);
+  EXPECT_NE(j.differences[0].confirmed.find("work along motions that C allows"), std::string::npos);
 }
 
 }  // namespace
