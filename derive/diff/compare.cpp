@@ -119,8 +119,9 @@ std::vector<Contribution> contributions(const Entry& entry, const ScalarRow& row
   return sources;
 }
 
-// Replaces the differences from `before` on by one slip that explains them all, if there are several or if it is the
-// inverse or the frame of a mass. `confirm(row, column)` shows by numbers that an entry is wrong.
+// Replaces the differences from `before` on by one slip that explains them all, if there are several, if it is the
+// inverse or the frame of a mass, or if the only one has no words. `confirm(row, column)` shows by numbers that an
+// entry is wrong.
 template <class Confirmed>
 void tell_slip(Entry& entry, const Part* part, const HandItem& item, std::size_t before, const Sides& sides,
                Confirmed confirm) {
@@ -130,7 +131,8 @@ void tell_slip(Entry& entry, const Part* part, const HandItem& item, std::size_t
   if (told == 0 || (told == 1 && item.what != "K" && part)) return;
   const std::optional<Slip> slip =
       slip_of_whole(entry, part, part ? item.what : "claim", sides.published, sides.generated);
-  if (!slip || (told == 1 && part && slip->kind != "inverse" && slip->kind != "frame")) return;
+  const bool without_words = differences[before].sentence.ends_with("it is not the generated one");
+  if (!slip || (told == 1 && part && slip->kind != "inverse" && slip->kind != "frame" && !without_words)) return;
   differences.erase(differences.begin() + static_cast<std::ptrdiff_t>(before), differences.end());
   int wrong = 0;
   const auto index = [](int i) { return static_cast<std::size_t>(i); };
@@ -205,7 +207,8 @@ std::vector<Group> groups_of_velocities(const Joint& joint, Form form, int colum
 void judge_C(Entry& entry, const Part& part, const HandItem& item) {
   const Quantity C{entry, part, item};
   C.compare(
-      part.generated.C, one_column, [&](int r, int) { return C.scale(r); }, [](Place&, int, int) {},
+      part.generated.C, one_column, [&](int r, int) { return part.scale_of_C[static_cast<std::size_t>(r)]; },
+      [](Place&, int, int) {},
       [&](int r, int, Expr generated, Expr published) {
         return entry.confirm().value_of_C(C.row(r), entry.poses_on_constraint(), generated, published);
       });

@@ -290,7 +290,7 @@ Judgement judge(Entry entry) {
   std::vector<Part> parts;
   for (const HandPart& hand : entry.hand.parts) {
     const std::vector<ScalarRow> rows = rows_named(entry, hand.rows);
-    parts.push_back({&hand, rows, generated_for(entry, rows), {}});
+    parts.push_back({&hand, rows, generated_for(entry, rows), {}, {}});
   }
   prepare_poses(entry, parts);
   for (Part& part : parts) take_order(entry, part);

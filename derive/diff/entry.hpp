@@ -13,8 +13,9 @@ struct Part {
   const HandPart* hand = nullptr;
   std::vector<ScalarRow> rows;
   Generated generated;
-  // Of each row: C of the source is that of the spec times this: -1 for the opposite sign, a number, or 1/l.
-  std::vector<Expr> scale;
+  // Of each row: J of the source is that of the spec times this: -1 for the opposite sign, a number, 1/l, or 2 |u|
+  // where the source has |u|^2 - l^2 for |u| - l. C itself has a factor of its own there.
+  std::vector<Expr> scale, scale_of_C;
 };
 // scale * e; signs and numbers go into sums.
 inline Expr scaled(Expr scale, Expr e) { return scale->kind == Kind::number ? scale->value * e : scale * e; }

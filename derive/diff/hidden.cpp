@@ -20,6 +20,8 @@ std::vector<Condition> likely_conditions(const Joint& joint) {
   for (const Parameter& p : joint.parameters) {
     if (p.kind != ParameterKind::scalar) continue;
     for (const int value : p.unit == Unit{} ? std::vector{1, -1} : std::vector{0}) {
+      const bool in_range = (value > p.above || (p.from && value == p.above)) && value < p.below;
+      if (!in_range) continue;
       all.push_back({fmt::format("{} = {}", p.name, value), {p.symbol - joint.pool->number(value)}});
     }
   }

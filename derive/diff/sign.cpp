@@ -3,12 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <set>
 
 #include "derive/diff/entry.hpp"
 #include "derive/diff/terms.hpp"
 
 namespace cdot::derive {
 namespace {
+
+// The factors of the rows of J, Cdot and K, and of C.
+struct Scale {
+  Expr of_J, of_C;
+  bool operator==(const Scale&) const = default;
+};
 
 struct Misfit {
   int blocks = 0;         // differing ones
@@ -23,12 +30,12 @@ int block_of(const Entry& entry, int column) {
 
 // Adds the misfit of one row of an item, if the row has this scale.
 void add_misfit(Misfit& misfit, const Entry& entry, const Part& part, const HandItem& item, std::size_t row,
-                Expr scale) {
+                const Scale& scale) {
   if (!item.value) return;
   const Generated& g = part.generated;
   const Matrix& mine = item.what == "C" ? g.C : item.what == "J" ? g.J : g.Cdot;
   if (item.value->rows != mine.rows || item.value->columns != mine.columns) return;
-  const Expr factor = item.what == "b" ? -scale : scale;
+  const Expr factor = item.what == "b" ? -scale.of_J : item.what == "C" ? scale.of_C : scale.of_J;
   int block = -1;  // columns of v, or of w, of one body count as one
   for (int c = 0; c < mine.columns; ++c) {
     const Expr hand = item.value->at(static_cast<int>(row), c);
@@ -129,11 +136,37 @@ std::optional<Rational> common_ratio(const Entry& entry, const Matrix& published
   return common;
 }
 
+// Other functions with the zeros of C = A - B, with a B that no pose changes: A^2 - B^2, and without the squares.
+struct OtherForm {
+  Expr C;
+  Scale by;  // on C = 0
+};
+std::vector<OtherForm> other_forms(Expr C) {
+  std::vector<OtherForm> forms;
+  if (C->kind != Kind::sum || C->args.size() != 2) return forms;
+  const auto is_still = [](Expr e) {
+    const std::vector<Expr> leaves = leaves_of(std::span(&e, 1));
+    return std::ranges::all_of(leaves, [](Expr leaf) { return leaf->role == Role::parameter && !leaf->vector; });
+  };
+  for (const std::size_t i : {0u, 1u}) {
+    const Expr A = C->coefs[i] * C->args[i], B = -(C->coefs[1 - i] * C->args[1 - i]);
+    if (!is_still(B) || is_still(A)) continue;
+    forms.push_back({pow(A, 2) - pow(B, 2), {2 * A, A + B}});
+    const Term square = split_coefficient(A);
+    if (square.e->kind != Kind::dot || square.e->args[0] != square.e->args[1]) continue;
+    const Expr rest = Rational(1) / square.coef * B;
+    const Expr root = norm(square.e->args[0]), of_B = call(Fn::sqrt, std::span(&rest, 1));
+    forms.push_back({root - of_B, {pow(2 * square.coef * root, -1), pow(square.coef * (root + of_B), -1)}});
+  }
+  return forms;
+}
+
 // The scales by which the source's C may be that of the spec: 1, -1, and their ratio where that is a number, or a
 // number times a power of a parameter.
-std::vector<Expr> candidates(const Entry& entry, const Part& part, std::size_t first, std::size_t rows) {
+std::vector<Scale> candidates(const Entry& entry, const Part& part, std::size_t first, std::size_t rows) {
   Pool& pool = entry.pool();
-  std::vector<Expr> all = {pool.number(1), pool.number(-1)};
+  const auto both = [](Expr scale) { return Scale{scale, scale}; };
+  std::vector<Scale> all = {both(pool.number(1)), both(pool.number(-1))};
   if (!part.rows[first].row) return all;  // the value of a coordinate counts, not its zero alone
   for (const HandItem& item : part.hand->items) {
     if (item.kind != HandItem::Kind::quantity || item.what != "C" || !item.value) continue;
@@ -142,9 +175,15 @@ std::vector<Expr> candidates(const Entry& entry, const Part& part, std::size_t f
     for (const Expr factor : factors_without_zeros(entry.joint, mine.entries[first])) {
       const std::optional<Rational> k = common_ratio(entry, *item.value, mine, factor, first, rows);
       if (!k) continue;
-      const Expr scale = *k * factor;
+      const Scale scale = both(*k * factor);
       if (std::ranges::find(all, scale) == all.end()) all.push_back(scale);
       break;
+    }
+    if (rows != 1) continue;
+    for (const OtherForm& form : other_forms(mine.entries[first])) {
+      const std::optional<double> ratio = entry.poses().constant_ratio(item.value->entries[first], form.C);
+      const std::optional<Rational> k = ratio ? rational_near(*ratio) : std::nullopt;
+      if (k) all.push_back({*k * form.by.of_J, *k * form.by.of_C});
     }
   }
   return all;
@@ -160,7 +199,7 @@ std::string as_quotient(std::string product) {
 
 void find_signs(const Entry& entry, std::vector<Part>& parts) {
   struct Evidence {
-    std::vector<Expr> scales;
+    std::vector<Scale> scales;
     std::vector<Misfit> misfits;
   };
   std::map<std::string, Evidence> evidence;  // by the first row of an equation; several parts may have it
@@ -185,25 +224,28 @@ void find_signs(const Entry& entry, std::vector<Part>& parts) {
     for (const std::size_t first : first_of_equation(part.rows)) {
       const auto found = evidence.find(part.rows[first].name);
       any = any || found != evidence.end();
-      Expr scale = entry.pool().number(1);
+      Scale scale{entry.pool().number(1), entry.pool().number(1)};
       if (found != evidence.end()) {
         const std::vector<Misfit>& misfits = found->second.misfits;
         scale =
             found->second
                 .scales[static_cast<std::size_t>(std::min_element(misfits.begin(), misfits.end()) - misfits.begin())];
       }
-      part.scale.push_back(scale);
+      part.scale.push_back(scale.of_J);
+      part.scale_of_C.push_back(scale.of_C);
     }
-    if (!any) part.scale = signs_of_mass(entry, part);
+    if (!any) part.scale = part.scale_of_C = signs_of_mass(entry, part);
   }
 }
 
 // Of which equations C has another sign or scale, and the consequence.
 std::vector<std::string> remarks_on_signs(const std::vector<Part>& parts) {
   std::map<std::string, std::pair<Expr, std::string>> names;  // of equations, by the text of their scale
+  std::set<std::string> of_other_form;
   for (const Part& part : parts) {
     for (std::size_t i = 0; i < part.rows.size(); ++i) {
       const std::string name = "`" + (part.rows[i].row ? part.rows[i].row->name : part.rows[i].name) + "`";
+      if (part.scale[i] != part.scale_of_C[i]) of_other_form.insert(text(part.scale[i]));
       auto& [scale, said] = names[text(part.scale[i])];
       scale = part.scale[i];
       if (said.find(name) == said.npos) said += (said.empty() ? "" : ", ") + name;
@@ -215,7 +257,10 @@ std::vector<std::string> remarks_on_signs(const std::vector<Part>& parts) {
     if (is_one(scale)) continue;
     const std::string of = names.size() == 1 ? "" : " of " + equations;
     remarks.push_back(
-        scale->kind != Kind::number
+        of_other_form.contains(words)
+            ? fmt::format("C{} is another function with the same zeros: J is scaled by {}, and K twice over", of,
+                          as_quotient(words))
+        : scale->kind != Kind::number
             ? fmt::format("C{} is scaled by {}: J is, too, and K twice over", of, as_quotient(words))
         : !is_number(scale, -1)
             ? fmt::format("C{} is {} times that of the spec: J is, too, and K twice over", of, words)

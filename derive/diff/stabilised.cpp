@@ -51,7 +51,7 @@ std::string in_short(Expr e, const Entry& entry, const std::string& otherwise) {
 Matrix without_baumgarte(Entry& entry, const Part& part, const HandItem& item, Matrix generated) {
   if (item.what != "b" || item.value->rows != generated.rows || item.value->columns != 1) return generated;
   for (std::size_t r = 0; r < part.rows.size(); ++r) {
-    const Expr published = item.value->entries[r], C = scaled(part.scale[r], part.generated.C.entries[r]);
+    const Expr published = item.value->entries[r], C = scaled(part.scale_of_C[r], part.generated.C.entries[r]);
     const Expr added = published + scaled(part.scale[r], generated.entries[r]);
     if (is_zero(C) || entry.poses().equal(added, C->pool->number(0))) continue;
     if (!is_constant_share(added, C, -1, entry.poses())) continue;

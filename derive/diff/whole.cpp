@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <numeric>
 
 #include "derive/diff/entry.hpp"
 #include "derive/expression/symbols.hpp"
@@ -18,39 +16,10 @@ constexpr double rounding = 1e-8;
 constexpr int most_ordered = 6;  // whose orders are tried
 
 using List = std::vector<double>;
-using Order = std::vector<int>;
 
 bool alike(double a, double b) { return std::abs(a - b) <= rounding * (1 + std::abs(a) + std::abs(b)); }
 bool alike(const List& a, const List& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) { return alike(x, y); });
-}
-
-// "1 and 2", "1, 2 and 3"
-std::string joined_by_and(const std::vector<std::string>& names) {
-  if (names.size() == 1) return names[0];
-  return fmt::format("{} and {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
-}
-
-// Calls `tried(order)` with all orders of 0 ... n-1 but the first, until it returns true.
-template <class Tried>
-bool any_order(int n, Tried tried) {
-  Order order(static_cast<std::size_t>(n));
-  std::iota(order.begin(), order.end(), 0);
-  while (std::next_permutation(order.begin(), order.end()))
-    if (tried(order)) return true;
-  return false;
-}
-
-// "rows 1 and 2 are exchanged", "the columns of a and b are exchanged", "rows stand in the order 2, 3, 1".
-std::string words_of(const Order& order, const std::string& what, const std::vector<std::string>& names) {
-  std::vector<std::string> moved, all;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const auto from = static_cast<std::size_t>(order[i]);
-    all.push_back(names[from]);
-    if (from != i) moved.push_back(names[i]);
-  }
-  if (moved.size() == 2) return fmt::format("{} {} are exchanged", what, joined_by_and(moved));
-  return fmt::format("{} stand in the order {}", what, fmt::join(all, ", "));
 }
 
 // The inverse of a square matrix, row by row.
@@ -80,8 +49,8 @@ class Whole {
 
   std::optional<Slip> slip() const {
     for (const auto reading : {&Whole::other_rows, &Whole::other_columns, &Whole::other_form, &Whole::inverse,
-                               &Whole::wrong_sign, &Whole::masses, &Whole::turned_inertia, &Whole::lever,
-                               &Whole::other_body, &Whole::lever_of_other_body, &Whole::multiple})
+                               &Whole::wrong_sign, &Whole::wrong_sign_of_terms, &Whole::masses, &Whole::turned_inertia,
+                               &Whole::lever, &Whole::other_body, &Whole::lever_of_other_body, &Whole::multiple})
       if (std::optional<Slip> found = (this->*reading)()) return found;
     return {};
   }
@@ -237,6 +206,25 @@ class Whole {
         if (b < 0 && v && w) return Slip{"sign", "all of it has the wrong sign"};
         const std::string whose = b < 0 ? (v ? "v" : "w") : of + bodies[static_cast<std::size_t>(b)];
         return Slip{"sign", fmt::format("the {} of {} have the wrong sign", what_ == "J" ? "columns" : "terms", whose)};
+      }
+    return {};
+  }
+
+  // Of K: the terms with inertias, or those with masses; of all bodies, or of one.
+  std::optional<Slip> wrong_sign_of_terms() const {
+    if (what_ != "K") return {};
+    const auto& bodies = entry_.joint.bodies;
+    for (std::size_t b = 0; b <= bodies.size(); ++b)
+      for (const auto& [stem, words] : {std::pair("inv_I_", "inertias"), std::pair("inv_m_", "masses")}) {
+        const std::string start = stem + (b < bodies.size() ? bodies[b] : "");
+        const auto reversed = [&](Sample& sample) {
+          for (auto& [name, value] : sample.scalars)
+            if (name.starts_with(start)) value *= -1;
+        };
+        if (!at_changed(reversed)) continue;
+        return Slip{"sign", b < bodies.size()
+                                ? fmt::format("the terms with the {} of {} have the wrong sign", words, bodies[b])
+                                : fmt::format("the terms with {} have the wrong sign", words)};
       }
     return {};
   }

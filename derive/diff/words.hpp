@@ -1,7 +1,11 @@
 // Names the error in a published expression: its kind, and a sentence with the reason for the right one.
 #pragma once
 
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <map>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -44,5 +48,36 @@ std::string in_names_of_spec(std::string text, const Joint& joint);
 // An undeclared condition under which the two are equal: "C = 0", "ratio = 1"; empty if none is found.
 std::string hidden_assumption(const Joint& joint, const Poses& on_constraint, Expr hand, Expr generated,
                               const Poses& poses);
+
+// Orders of rows, columns and bodies.
+using Order = std::vector<int>;
+
+// "1 and 2", "1, 2 and 3"
+inline std::string joined_by_and(const std::vector<std::string>& names) {
+  if (names.size() == 1) return names[0];
+  return fmt::format("{} and {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
+}
+
+// Calls `tried(order)` with all orders of 0 ... n-1 but the first, until it returns true.
+template <class Tried>
+bool any_order(int n, Tried tried) {
+  Order order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), 0);
+  while (std::next_permutation(order.begin(), order.end()))
+    if (tried(order)) return true;
+  return false;
+}
+
+// "rows 1 and 2 are exchanged", "the columns of a and b are exchanged", "rows stand in the order 2, 3, 1".
+inline std::string words_of(const Order& order, const std::string& what, const std::vector<std::string>& names) {
+  std::vector<std::string> moved, all;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const auto from = static_cast<std::size_t>(order[i]);
+    all.push_back(names[from]);
+    if (from != i) moved.push_back(names[i]);
+  }
+  if (moved.size() == 2) return fmt::format("{} {} are exchanged", what, joined_by_and(moved));
+  return fmt::format("{} stand in the order {}", what, fmt::join(all, ", "));
+}
 
 }  // namespace cdot::derive

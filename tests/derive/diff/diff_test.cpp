@@ -189,6 +189,23 @@ TEST(Diff, OneSlipOfAWholeMatrixIsOneSentence) {
   for (const Kind& row : table) EXPECT_EQ(expect_kind(row).differences.size(), 1u) << row.items;
 }
 
+TEST(Diff, ASignOfAllInertiasIsOneSentence) {
+  const auto said = [](const std::string& of_a, const std::string& of_b) {
+    const Judgement j = judged("spherical", "  K = (1/m(a) + 1/m(b))*E " + of_a + " skew(ra)*I(a)^-1*skew(ra) " + of_b +
+                                                " skew(rb)*I(b)^-1*skew(rb)\n");
+    return j.differences.size() == 1 ? j.differences[0].sentence : "";
+  };
+  EXPECT_EQ(said("+", "+"), "K: the terms with inertias have the wrong sign");
+  EXPECT_EQ(said("-", "+"), "K: the terms with the inertias of b have the wrong sign");
+}
+
+// A stiffness above 0 is never 0.
+TEST(Diff, NoConditionLiesOutsideTheRanges) {
+  const Judgement j = judged("spring", "  force = -k*length - d*rate(length)\n");
+  ASSERT_EQ(j.differences.size(), 1u);
+  EXPECT_NE(j.differences[0].sentence.find("equal where rest = 0"), std::string::npos) << j.differences[0].sentence;
+}
+
 TEST(Diff, OrderAndScaleAreTheAuthorsChoice) {
   const Judgement order = judged("prismatic",
                                  "  C = [ angle(a) - angle(b) - phi ; dot(t, u) ]\n"
@@ -227,6 +244,31 @@ TEST(Diff, AScaleByAParameterIsTheAuthorsChoiceIfItHasNoZero) {
                                    "  J = [ t', cross(ra, t), -t', -cross(rb + u, t) ; 0, 1/phi, 0, -1/phi ]\n");
   EXPECT_EQ(one_row.agreement, Agreement::agrees);
   EXPECT_EQ(one_row.remarks.at(0), "C of `angular` is scaled by 1/phi: J is, too, and K twice over");
+}
+
+// |u|^2 - l^2 has the zeros of |u| - l; its J has the factor 2 |u| there.
+TEST(Diff, AnotherFunctionWithTheSameZerosIsTheAuthorsChoice) {
+  const auto squared = [](const std::string& of_J, const std::string& of_K) {
+    return judged("distance", "  free beta, h\n  C = dot(u, u) - l^2\n  J = " + of_J +
+                                  "*[ u', cross(ra, u), -u', -cross(rb, u) ]\n  K = " + of_K +
+                                  "*(dot(u, u)/m(a) + dot(u, u)/m(b) + cross(ra, u)^2/I(a) + cross(rb, u)^2/I(b))\n"
+                                  "  b = -2*dot(u, v(pa) - v(pb)) - beta/h*(dot(u, u) - l^2)\n");
+  };
+  const Judgement right = squared("2", "4");
+  EXPECT_EQ(right.agreement, Agreement::agrees);
+  ASSERT_EQ(right.remarks.size(), 2u);
+  EXPECT_EQ(right.remarks[1], "C is another function with the same zeros: J is scaled by 2*norm(u), and K twice over");
+  EXPECT_EQ(squared("1", "4").agreement, Agreement::differs);
+  EXPECT_EQ(squared("2", "2").agreement, Agreement::differs);
+  // The other way round, and with a B that a pose changes.
+  const std::string unit = "[ -unit(d)', -cross(ra, unit(d))', unit(d)', cross(rb, unit(d))' ]";
+  EXPECT_EQ(judged("spherical_spherical", "  C = norm(d) - l\n  J = " + unit + "\n").agreement, Agreement::agrees);
+  EXPECT_EQ(judged("spherical_spherical", "  C = norm(d) - l\n  J = 2*" + unit + "\n").agreement, Agreement::differs);
+  EXPECT_EQ(judged("pulley",
+                   "  C = length^2 - (la + ratio*lb)^2\n  J = [ -na', -cross(ra, na), -ratio*nb', "
+                   "-ratio*cross(rb, nb) ]\n")
+                .agreement,
+            Agreement::differs);
 }
 
 // Terms that a solver adds on purpose; with the wrong sign, or of a mass, they are mistakes.

@@ -84,6 +84,21 @@ TEST(EffectLaws, RejectWrongForcesAndSlopes) {
   }
 }
 
+// Of a force with two components, the slope of one by the other.
+TEST(EffectLaws, RejectWrongSlopesBesideTheDiagonal) {
+  const std::string drag =
+      "  point pa on a\n  scalar c [kg/m]\n  scalar k [N/m^2]\n"
+      "  force on pa = -c*norm(v(pa))*v(pa) - k*norm(pa - x(b))*(pa - x(b))\n";
+  ASSERT_EQ(prove_blocks(derivation_of(drag)).front().proof.of(LawId::slopes).verdict, Verdict::holds);
+  for (const bool damping : {false, true}) {
+    Derivation derivation = derivation_of(drag);
+    Expr& slope = (damping ? derivation.law->damping : derivation.law->stiffness)[0][1];
+    ASSERT_FALSE(is_zero(slope));
+    slope = -slope;
+    EXPECT_EQ(prove_blocks(derivation).front().proof.of(LawId::slopes).verdict, Verdict::fails);
+  }
+}
+
 // The quantities that a law reads have leaves of their own, whatever parameters and coordinates are called.
 TEST(EffectLaws, ReadNoParameterInPlaceOfARate) {
   const auto symbols = [](const std::string& statements) {
