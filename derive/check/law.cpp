@@ -76,7 +76,9 @@ void check_forces(const Derivation& derivation, const Proof& proof, Findings& fi
   if (const Law& opposite = proof.of(LawId::opposite); !opposite.text.empty())
     findings.add(
         Level::note, "momentum", where, opposite.text,
-        "if nothing outside takes it, push a second body with the opposite force, along the line between them");
+        opposite.text.find("torques") != std::string::npos
+            ? "if nothing outside takes it, turn a second body with the opposite torque"
+            : "if nothing outside takes it, push a second body with the opposite force, along the line between them");
   const std::vector<Expr> power = power_of(law);
   if (power.empty()) return;
   const Power range = power_at_random(derivation.joint, law, power);

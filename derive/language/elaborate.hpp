@@ -118,6 +118,7 @@ class Elaborator {
   void bound(Source& source, const StatementAst& s);
   bool events(Source& source, const StatementAst& s, BoundedRow& row);
   bool event(Source& source, const ConditionAst& condition, BoundedRow& row, Expr& distance);
+  bool are_limits(Source& source, const Ast& where, Expr lower, Expr upper);
   Expr bound_value(Source& source, const Ast& ast, const Unit& unit, const std::vector<Expr>& also);
   const Coordinate* bounded_coordinate(Source& source, const Word& name);
   void drop_idle_inputs();

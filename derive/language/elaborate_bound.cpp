@@ -28,7 +28,9 @@ Expr Elaborator::bound_value(Source& source, const Ast& ast, const Unit& unit, c
     return {};
   }
   if (v.unit && !v.zero && without_angle(*v.unit) != without_angle(unit)) {
-    d.error(ast.where, "this is in " + spoken(*v.unit) + ", not in " + spoken(unit));
+    d.error(ast.where,
+            "this is " + (*v.unit == Unit{} ? "" : std::string("in ")) + spoken(*v.unit) + ", not in " + spoken(unit),
+            *v.unit == Unit{} && v.e->kind == Kind::number ? "give the number its unit, as in 2 [N] or 2 [N*m]" : "");
     return {};
   }
   const auto known = [&](Expr leaf) {
@@ -45,6 +47,19 @@ Expr Elaborator::bound_value(Source& source, const Ast& ast, const Unit& unit, c
                             : "a prescribed rate depends on parameters and time alone",
             "write a law of rates or of other coordinates as a force: force on NAME = ...");
   return {};
+}
+
+// Of limits that nothing fits between, whatever the parameters are within their ranges.
+bool Elaborator::are_limits(Source& source, const Ast& where, Expr lower, Expr upper) {
+  if (!lower || !upper) return true;
+  const Term gap = split_coefficient(lower - upper);
+  const auto parameter = std::ranges::find(joint_.parameters, gap.e, &Parameter::symbol);
+  const bool positive = gap.e->kind == Kind::number
+                            ? (gap.coef * gap.e->value).sign() > 0
+                            : gap.coef.sign() > 0 && parameter != joint_.parameters.end() && parameter->above >= 0;
+  if (positive)
+    source.diagnostics.error(where.where, "no number lies within these limits", "put the smaller one first");
+  return !positive;
 }
 
 // `left >= right` as (right - left) / (|left| + |right|).
@@ -140,6 +155,7 @@ void Elaborator::bound(Source& source, const StatementAst& s) {
   bool right = number(s.lower, row.lower, of_bounds, also);
   right &= number(s.upper, row.upper, of_bounds, also);
   in_bound_ = nullptr;
+  right = right && (!s.lower || are_limits(source, *s.lower, row.lower, row.upper));
   if (s.of_rate) right &= number(s.left, row.rate, unit / Unit{.s = 1}, {time});
   right &= events(source, s, row);
   for (const Expr e : {row.lower, row.upper, row.rate, row.after, row.until})

@@ -222,6 +222,7 @@ void Elaborator::limit_force(Source& source, const StatementAst& s, std::size_t 
   const std::vector<Expr> also = {input.value, time_symbol(*pool_)};
   const Expr lower = bound_value(source, *s.lower, joule / input.unit, also);
   const Expr upper = bound_value(source, *s.upper, joule / input.unit, also);
+  are_limits(source, *s.lower, lower, upper);
   joint_.law->inputs[at].lower = lower;
   joint_.law->inputs[at].upper = upper;
 }

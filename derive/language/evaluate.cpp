@@ -110,6 +110,7 @@ Value Evaluator::unknown(const Ast& ast, bool called) {
   std::string fix = called ? suggested_operator(ast.text) : names_.hint(ast.text);
   const std::string near = called ? "" : nearest(ast.text, names_.known());
   if (fix.empty() && !near.empty()) fix = "did you mean " + quote(near) + "?";
+  if (fix.empty() && !called && ast.text == "t") fix = "did you mean `time`?";
   if (fix.empty() && !called && is_operator(ast.text))
     fix = "it is an operator: " + std::string(operators_named(ast.text)[0]->signature);
   if (fix.empty() && called && names_.find(ast.text))

@@ -1,4 +1,6 @@
 // The laws of an effect's force: the slope of its energy, its own slopes, and whether forces are opposite.
+#include <algorithm>
+
 #include "derive/expression/symbols.hpp"
 #include "derive/proof/laws.hpp"
 
@@ -81,10 +83,13 @@ class EffectProver {
       if (law_.value[i]) leaves.emplace(&*law_.value[i], block_.rows[i].C);
       leaves.emplace(&*law_.rate[i], block_.rows[i].Cdot);
     }
+    bool pushes = false;
     Felt total{zero_vector(*joint_.pool), zero_spin(*joint_.pool)};
     for (std::size_t i = 0; i < block_.rows.size(); ++i) {
       const Felt felt = felt_by(block_.rows[i].J, joint_);
       const Expr F = substitute(law_.force[i], leaves);
+      pushes = pushes || (!is_zero(law_.force[i]) &&
+                          std::ranges::any_of(block_.rows[i].J, [](const JacobianEntry& e) { return !is_zero(e.v); }));
       total = {total.translation + F * felt.translation, total.rotation + F * felt.rotation};
     }
     bool shown = false;
@@ -98,7 +103,8 @@ class EffectProver {
     };
     if (!vanishes(total.translation)) law.text = "momentum is not conserved: the forces do not add up to 0";
     else if (!vanishes(total.rotation))
-      law.text = "angular momentum is not conserved: the forces are opposite, but not on one line";
+      law.text = pushes ? "angular momentum is not conserved: the forces are opposite, but not on one line"
+                        : "angular momentum is not conserved: the torques do not add up to 0";
     else law.verdict = shown ? Verdict::shown : Verdict::holds;
   }
 

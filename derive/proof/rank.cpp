@@ -34,9 +34,13 @@ void rows_are_independent(Law& law, const Block& block) {
   if (law.verdict != Verdict::fails) return;
   const GenericRank::Dependence& first = found.dependences.front();
   law.row = block.rows[static_cast<std::size_t>(first.row)].row;
-  law.text = std::to_string(block.rows.size()) + " rows, but only " + std::to_string(found.rank) +
-             " independent: " + dependence_text(first, block);
-  law.fix = "drop one of these rows: it follows from the others";
+  const bool alone = block.rows.size() == 1;
+  law.text =
+      (alone ? ""
+             : std::to_string(block.rows.size()) + " rows, but only " + std::to_string(found.rank) + " independent: ") +
+      dependence_text(first, block);
+  law.fix = first.on.empty() ? "no motion changes this row: use points, directions or angles of two bodies"
+                             : "drop one of these rows: it follows from the others";
 }
 
 }  // namespace cdot::derive

@@ -208,7 +208,10 @@ class Lexer {
     const bool ascii = is_ascii(text_[at_]);
     do ++at_;
     while (at_ < text_.size() && !known(text_[at_]) && is_ascii(text_[at_]) == ascii);
-    if (ascii) reject(begin, "the language does not use the character " + quote(text_.substr(begin, at_ - begin)));
+    const std::string_view strange = text_.substr(begin, at_ - begin);
+    if (ascii)
+      reject(begin, "the language does not use the character " + quote(strange),
+             strange.starts_with('|') ? "the length of a vector is norm(u), the size of a number abs(x)" : "");
     else if (valid_)
       reject(begin, "only ASCII letters are allowed here",
              "names consist of a-z, A-Z, 0-9 and _; other letters may stand in comments and \"texts\"");

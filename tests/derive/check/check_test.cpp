@@ -210,6 +210,13 @@ TEST(Check, TellsOfAnglesInTheWordsOfTheSpec) {
   EXPECT_TRUE(mentions(plane, "C2: angle(t, s) jumps by 2 pi at pi\n")) << plane;
 }
 
+TEST(Check, ARowOfOneBodyIsTold) {
+  std::string said;
+  EXPECT_FALSE(checked("  point pc on a\n  pa = pb\n  norm(pa - pc) = 1 [m]\n", &said).clean());
+  EXPECT_TRUE(mentions(said, "the row of J of C2 is zero\n")) << said;
+  EXPECT_TRUE(mentions(said, "no motion changes this row")) << said;
+}
+
 // cross(fa.x, nc) is stored with the opposite sign.
 TEST(Check, AVanishingVectorHasNoSign) {
   std::string said;

@@ -99,6 +99,22 @@ TEST(EffectLaws, RejectWrongSlopesBesideTheDiagonal) {
   }
 }
 
+// A bound grows in proportion to its load: the solvers find both together.
+TEST(EffectLaws, RejectBoundsThatAreNoMultipleOfTheirLoad) {
+  const auto slopes_of = [](const std::string& most) {
+    return prove_blocks(derivation_of("  point pa on a\n  scalar mu\n  coordinate gap [m] = dot(a.x, pa - x(b))\n"
+                                      "  coordinate slip [m] = dot(a.y, pa - x(b))\n  contact: gap >= 0\n"
+                                      "  grip: rate(slip) = 0, force in [-" +
+                                      most + ", " + most + "]\n"))
+        .front()
+        .proof.of(LawId::slopes);
+  };
+  EXPECT_EQ(slopes_of("mu*load(contact)").verdict, Verdict::holds);
+  const Law law = slopes_of("mu*load(contact)^2/(1 [N])");
+  EXPECT_EQ(law.verdict, Verdict::fails);
+  EXPECT_EQ(law.text, "grip: a bound is not a multiple of the load and a part without it");
+}
+
 // The quantities that a law reads have leaves of their own, whatever parameters and coordinates are called.
 TEST(EffectLaws, ReadNoParameterInPlaceOfARate) {
   const auto symbols = [](const std::string& statements) {
@@ -134,6 +150,8 @@ TEST(EffectLaws, ForcesThatAreNotOppositeAreTold) {
             "momentum is not conserved: the forces do not add up to 0");
   EXPECT_EQ(text_of("  force on pa = F*n\n  force on pb = -F*n\n"),
             "angular momentum is not conserved: the forces are opposite, but not on one line");
+  EXPECT_EQ(text_of("  torque on a = F*(1 [m])*dot(n, unit(pa - pb))\n  torque on b = 0\n"),
+            "angular momentum is not conserved: the torques do not add up to 0");
   // The same with the torque that the lever leaves.
   EXPECT_EQ(text_of("  force on pa = F*n\n  force on pb = -F*n\n  torque on b = cross(pb - pa, F*n)\n"), "");
 }
