@@ -23,6 +23,8 @@ namespace {
 // Limits on events in one step(h) and on consecutive slivers. More of them mean chatter or jamming; fall_back() then
 // finishes the step.
 constexpr int most_events = 32, most_slivers = 1000;
+// The same for steps of one step(h). An error below round-off, or a force too stiff for explicit steps, asks for more.
+constexpr int most_steps = 20000;
 constexpr double sliver = 1e-4;      // share of the longest step so far
 constexpr int most_rejections = 30;  // in a row
 // The same for attempts whose end cannot be projected, or only by a correction that undoes the motion. If steps that
@@ -356,10 +358,10 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
                               typename S::Scalar done, typename S::Scalar h) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
-  for (int events = 0; done < h;) {
+  for (int events = 0, steps = 0; done < h; ++steps) {
     const T time = T(world.time) + done;
     const Way<T> way = way_from(world, island, done, h);
-    const bool chatters = events > most_events || flow.slivers > most_slivers;
+    const bool chatters = events > most_events || flow.slivers > most_slivers || steps >= most_steps;
     if (chatters) fall_back(world, island, time, way.left, false);
     if (chatters || !take_step(world, island, method, time, way, h)) {
       done = way.end;

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -16,6 +17,8 @@
 
 namespace cdot::torture {
 namespace {
+
+constexpr double slow = 5;  // [s] of CPU time; a mechanism takes some milliseconds
 
 struct Options {
   std::uint64_t seed = 1;
@@ -105,7 +108,11 @@ int torture(const Options& options) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(k);
     const Mechanism mechanism = options.misfit ? nearly_misfitting(seed, options.wish) : generate(seed, options.wish);
     if (options.print) fmt::print("{}\n", text_of(mechanism.scene));
+    const std::clock_t began = std::clock();
     const Verdict verdict = judged(options, mechanism.scene);
+    const double took = double(std::clock() - began) / CLOCKS_PER_SEC;
+    if (took > slow)
+      fmt::print("slow: seed {:#x} took {:.1f} s of CPU time, {}\n", seed, took, way_of(mechanism.scene));
     tally.add(mechanism, verdict);
     if (verdict.broken()) report(options, seed, mechanism.scene, verdict);
     else if (options.count == 1) say(verdict);

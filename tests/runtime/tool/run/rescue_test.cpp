@@ -101,6 +101,20 @@ TEST(RescueOfFloats, NoErrorIsBelowTheLastBit) {
   }
 }
 
+// A spring swings its rod 160,000 times in a second, and a step of a second leaves it all to explicit steps.
+TEST(RescueOfAStiffSpring, AStepEnds) {
+  World<double> world({.integrator = Integrator::dop853, .local_error = 1e-6});
+  const int rod = world.add_body({.w = 1, .mass = 1, .inertia = 0.1});
+  const int hinge = world.add_joint({"revolute", {world.ground(), rod}, {{"pa", {0, 0}}, {"pb", {0, 0}}}, {}});
+  add_spring(world, hinge, "angle", {.softness = {.by_frequency = false, .stiffness = 1e11}});
+  EXPECT_TRUE(world.step(1));
+  const StepCounts& counts = world.step_counts();
+  fmt::print("  {} taken, {} rejected, {} left to an implicit method\n", counts.taken, counts.rejected, counts.rescued);
+  EXPECT_EQ(counts.taken, 20'000);
+  EXPECT_EQ(counts.rescued, 1);
+  EXPECT_EQ(world.time(), 1);
+}
+
 // A bead of 1 g on two bars between the ground and a load of 1 kg that flies away: they become taut in less time than a
 // fixed step. A step that ends out of the joints' reach is rejected, and the counts report it.
 TEST_P(Rescue, ALightBeadIsDrawnTaut) {
