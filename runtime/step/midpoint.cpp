@@ -187,10 +187,15 @@ void go_back_to_kept(WorldData<S>& world, Island<S>& island) {
   island.evaluated = island.factored = false;
 }
 
-// The velocities at the end: J v = -dC/dt. Returns the energy that the projection takes, mu (J v + dC/dt) / 2 of its
-// impulses mu [J]; 0 if a limit was hit, which takes energy by itself.
+// Of the impulses mu of the joints at the end, mu (J v + dC/dt) / 2 [J].
+struct WorkAtEnd {
+  double taken = 0;       // less what they gave; 0 if a limit was hit, which takes energy by itself
+  double given_back = 0;  // by joints that time does not drive
+};
+
+// The velocities at the end: J v = -dC/dt.
 template <class S>
-double solve_end_of_part(WorldData<S>& world, Island<S>& island) {
+WorkAtEnd solve_end_of_part(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   auto* const v = world.bodies.velocity.data();
   for (const auto& [batch, begin, end, whole] : island.segments) {
@@ -198,13 +203,29 @@ double solve_end_of_part(WorldData<S>& world, Island<S>& island) {
     each_row(*batch, begin, end, [of = batch](int i) { of->error[i] = of->rate[i] + of->bias[i]; });
   }
   island.solver->velocities(world, island, v, T(1));
-  double loss = 0;
+  double loss = 0, given = 0;
   bool hit = false;
   each_row(island, [&](const Batch<S>& batch, int i) {
-    if (!batch.law) loss -= 0.5 * double(batch.lambda[i]) * double(batch.error[i]);
-    else hit |= batch.law->error && batch.correction[i] + batch.lambda[i] != T(0);
+    const double work = 0.5 * double(batch.lambda[i]) * double(batch.error[i]);
+    if (batch.law) hit |= batch.law->error && batch.correction[i] + batch.lambda[i] != T(0);
+    else loss -= work;
+    if (!batch.law && !batch.explicit_time()) given += work;
   });
-  return hit ? 0 : loss;
+  return {hit ? 0 : loss, std::max(given, 0.0)};
+}
+
+// Dampers act at both ends of a part, first on bodies without their joints. At the end the joints give back what those
+// took too much: with v0 the velocities before and M v1 = M v0 + J^T mu, J v1 = 0, only dampers make mu J v0 positive.
+template <class S>
+void give_back(WorldData<S>& world, double energy) {
+  auto& now = world.accounts.by_source;
+  const auto& before = world.kept_by_source;
+  double taken = 0;
+  for (size_t k = 0; k < now.size(); ++k) taken += std::max(before[k] - now[k], 0.0);
+  if (!(taken > 0)) return;
+  const double share = std::min(energy / taken, 1.0);
+  for (size_t k = 0; k < now.size(); ++k) now[k] += share * std::max(before[k] - now[k], 0.0);
+  world.accounts.taken -= share * taken;
 }
 
 // One part of a step, of length h. False, with the state of its start, if it is too long: Newton fails, or the joints
@@ -246,10 +267,11 @@ bool take_part(WorldData<S>& world, Island<S>& island, typename S::Scalar h, boo
   bound_end(world, island, h);
   const double energy = moved_energy(world, island);
   begin_kick(world, island);
-  const double loss = solve_end_of_part(world, island);
+  const WorkAtEnd joints = solve_end_of_part(world, island);
   forget_dampers(world, island);
-  if (!last && loss > slight_work<T> * energy && !hardly_moves(world, island, h)) return give_up();
+  if (!last && joints.taken > slight_work<T> * energy && !hardly_moves(world, island, h)) return give_up();
   book_kick(world, island, Impulses::end, h);
+  give_back(world, joints.given_back);
   island.evaluated = true;
   return true;
 }
