@@ -182,7 +182,9 @@ bool may_stop_a_motion(const Scene& scene) {
     if (one_sided(type) || type.is_effect) return true;
     for (const CoordinateEffects& effects : joint.effects)
       if (effects.limit || !effects.specs.empty()) return true;
-    const std::vector<int>& bodies = joint.definition.bodies;
+    std::vector<int> bodies = joint.definition.bodies;
+    const bool of_the_world = std::any_of(bodies.begin(), bodies.end(), [&](int body) { return node(body) == 0; });
+    if (!of_the_world && holds_the_world(scene, joint)) bodies.push_back(world_body);  // by a point, as `target`
     for (std::size_t k = 1; k < bodies.size(); ++k) {
       const int from = group[node(bodies[k])], to = group[node(bodies[0])];
       if (from == to) return true;

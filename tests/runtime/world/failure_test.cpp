@@ -45,6 +45,14 @@ int build(SpatialWorld<T>& world) {
   return body;
 }
 
+// An infinite impulse times the inverse mass 0 of the ground is NaN, which no step would ever take away.
+template <class S>
+void expect_that_the_ground_stands(BasicWorld<S>& world, const std::string& name) {
+  typename S::Scalar numbers[S::freedom];
+  S::write(world.velocity(world.ground()), numbers);
+  for (const auto number : numbers) EXPECT_EQ(number, 0) << name;
+}
+
 // The acceleration overflows, so the step fails in the second of three islands. After the removal of the force the run
 // has the bits of one without the failure.
 template <class S>
@@ -71,6 +79,7 @@ void check_a_failure(const Settings& settings, const std::string& name) {
   EXPECT_EQ(world.joint_bodies(result.joint)[1], body);
   EXPECT_EQ(result.time, world.time());
   expect_same_state(pushed, world.snapshot(), name);
+  expect_that_the_ground_stands(world, name);
   EXPECT_FALSE(world.step(0.005));
   world.set_force(body, {});
   for (int i = 0; i < 20; ++i) {
