@@ -13,11 +13,31 @@ namespace cdot::torture {
 
 struct SpringRow {
   int joint = -1;          // -1: none
-  double c = 0, rate = 0;  // stretch, up to a constant, and its rate
+  double c = 0, rate = 0;  // stretch and its rate
   double force = 0;        // without damping
   double stiffness = 0;
   double mass = 0;  // K of the row: |M^-1 J'|^2 in the metric of the masses; 0: broken
 };
+
+// Forces of a slot's rows at rest at C - 1, which tells the stiffness of linear springs exactly; closer to C where that
+// has no force, as a gas spring shorter than 0.
+template <class S, class Forces>
+std::vector<double> find_ways_to(Batch<S>& rows, int slot, const Forces& no_rate, Forces& forces) {
+  using T = typename S::Scalar;
+  const auto count = static_cast<std::size_t>(rows.ops->rows), first = static_cast<std::size_t>(slot) * count;
+  const std::vector<T> C(&rows.C[first], &rows.C[first] + count);
+  std::vector<double> ways(count, 1.0);
+  for (const double share : {0.0, 1e-3}) {
+    for (std::size_t r = 0; r < count; ++r) {
+      if (share > 0) ways[r] = share * std::max(std::abs(double(C[r])), 1e-6);
+      rows.C[first + r] = T(double(C[r]) - ways[r]);
+    }
+    rows.law->force(rows, slot, no_rate.data(), forces.data());
+    std::copy(C.begin(), C.end(), &rows.C[first]);
+    if (std::all_of(forces.begin(), forces.end(), [](T force) { return std::isfinite(force); })) break;
+  }
+  return ways;
+}
 
 // Rows of batches under a law with a force, at the present poses.
 template <class S>
@@ -34,14 +54,13 @@ void add_spring_rows(const WorldData<S>& state, const Batch<S>& batch, std::vect
     const int joint = rows.joint[static_cast<std::size_t>(slot)];
     const double whole = state.joints[static_cast<std::size_t>(joint)].broken ? 0 : 1;
     rows.law->force(rows, slot, no_rate.data(), force.data());
-    for (int r = 0; r < count; ++r) rows.C[static_cast<std::size_t>(slot * count + r)] -= 1;
-    rows.law->force(rows, slot, no_rate.data(), further.data());
+    const std::vector<double> ways = find_ways_to(rows, slot, no_rate, further);
     for (int r = 0; r < count; ++r) {
       const auto of_row = static_cast<std::size_t>(r);
       const auto i = static_cast<std::size_t>(slot * count + r);
       const auto k = static_cast<std::size_t>(slot * rows.triangle() + r * (r + 1) / 2 + r);
       springs.push_back({joint, double(rows.C[i]), double(rows.rate[i]), whole * double(force[of_row]),
-                         double(further[of_row] - force[of_row]), whole * double(rows.factor[k])});
+                         double(further[of_row] - force[of_row]) / ways[of_row], whole * double(rows.factor[k])});
     }
   }
 }
