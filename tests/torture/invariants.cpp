@@ -72,6 +72,7 @@ class Trial {
  private:
   using T = typename S::Scalar;
   BasicWorld<S> started() const;
+  void push(BasicWorld<S>& world, int k) const;
   StepResult step(BasicWorld<S>& world, int k) const;
   double length_of_step(int k) const { return asked_->varying ? share_of_step(k) * scene_->step : scene_->step; }
   Verdict watch(BasicWorld<S>& world);
@@ -113,10 +114,15 @@ BasicWorld<S> Trial<S>::started() const {
   return world;
 }
 
+// The changes before a step.
 template <class S>
-StepResult Trial<S>::step(BasicWorld<S>& world, int k) const {
+void Trial<S>::push(BasicWorld<S>& world, int k) const {
   if (asked_->changes) change(world, *scene_, {k, steps_, sizes_.length});
   if (asked_->forces) push_in_time(world, *scene_, {k, steps_, sizes_.length});
+}
+
+template <class S>
+StepResult Trial<S>::step(BasicWorld<S>& world, int k) const {
   const StepResult result = world.step(length_of_step(k));
   if (asked_->sabotage)
     asked_->sabotage(*scene_, k, [&](int body, double impulse) {
@@ -234,12 +240,13 @@ Verdict Trial<S>::watch(BasicWorld<S>& world) {
   start_ = motion_of(world);
   start_energy_ = world.energy();
   accounts_.emplace(start_, spring_rows(world), start_energy_,
-                    asked_->forces ? under_largest_forces(*scene_, sizes_.length) : *scene_,
+                    asked_->forces ? under_largest_forces(*scene_, sizes_.length) : *scene_, sizes_.length,
                     std::numeric_limits<T>::epsilon());
   Verdict first;
   for (int k = 1; k <= steps_; ++k) {
     places_.clear();
     for (std::size_t b = 0; b < scene_->bodies.size(); ++b) places_.push_back(world.place(static_cast<int>(b)));
+    push(world, k);
     const std::uint64_t before = world.hash();
     if (const StepResult result = step(world, k); !result) {
       if (world.hash() != before && !asked_->sabotage)
@@ -269,7 +276,7 @@ Verdict Trial<S>::bits() const {
   Snapshot twice[2];
   const auto again = [&](Snapshot& state) {
     BasicWorld<S> world = started();
-    for (int k = 1; k <= steps_; ++k) step(world, k);
+    for (int k = 1; k <= steps_; ++k) push(world, k), step(world, k);
     state = world.snapshot();
   };
   std::thread other([&] { again(twice[1]); });
@@ -286,7 +293,7 @@ Verdict Trial<S>::bits() const {
   } catch (const Error& error) {
     return verdict(Outcome::broken, "a state is taken back", error.what());
   }
-  for (int k = steps_ / 2 + 1; k <= steps_; ++k) step(world, k);
+  for (int k = steps_ / 2 + 1; k <= steps_; ++k) push(world, k), step(world, k);
   const Snapshot state = world.snapshot();
   if (!(state == end_))
     return verdict(Outcome::broken, "bits from a snapshot",
@@ -337,7 +344,9 @@ double Trial<S>::most_turned() const {
   const double length = row_sizes(world).length;
   SystemMatrix before = system_matrix(world);
   double most = 0;
-  for (int k = 1; k <= steps_ && step(world, k); ++k) {
+  for (int k = 1; k <= steps_; ++k) {
+    push(world, k);
+    if (!step(world, k)) break;
     SystemMatrix now = system_matrix(world);
     most = std::max(most, turned(before, now, length));
     before = std::move(now);

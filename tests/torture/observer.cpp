@@ -63,7 +63,7 @@ double turned(const SystemMatrix& before, const SystemMatrix& after, double leng
 }
 
 Accounts::Accounts(const Motion& start, std::vector<SpringRow> springs, double energy, const Scene& scene,
-                   double epsilon)
+                   double length, double epsilon)
     : order_(order_of(scene.settings.integrator)),
       epsilon_(epsilon),
       start_energy_(energy),
@@ -73,6 +73,7 @@ Accounts::Accounts(const Motion& start, std::vector<SpringRow> springs, double e
       step_(scene.step),
       substep_(scene.step / scene.settings.substeps),
       springs_(std::move(springs)),
+      farthest_(length),
       last_(start) {}
 
 // The torques that a first-order step leaves: it corrects the poses by d, x1 = x0 + h v1 + d, at their velocities, and
@@ -126,7 +127,7 @@ void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double en
   angular_order_ += chosen * (largest_speed_ > 0 ? now.angular_size / (largest_speed_ * largest_speed_) : 0);
   if (order_ == 1) angular_order_ += torques_of_corrections(last_, now, h);
   for (const BodyMotion& body : now.bodies) farthest_ = std::max(farthest_, norm(body.x));
-  // Positions are rounded too, and forces do work on the rounding errors.
+  // Positions and arms are rounded too, and forces do work on the rounding errors.
   round_off_ += operations * epsilon_ * (largest_energy_ + pushed_ / step_ * now.root_mass * farthest_);
   momentum_ += operations * epsilon_ * now.linear_size;
   angular_ += operations * epsilon_ * now.angular_size;

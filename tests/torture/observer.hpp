@@ -93,7 +93,9 @@ Gap gap_of(const BasicWorld<S>& world, const Scene& scene, const RowSizes& sizes
 // The bounds of energy and angular momentum after the steps so far; see README.md.
 class Accounts {
  public:
-  Accounts(const Motion& start, std::vector<SpringRow> springs, double energy, const Scene& scene, double epsilon);
+  // `length`: of the mechanism, with the arms of its joints.
+  Accounts(const Motion& start, std::vector<SpringRow> springs, double energy, const Scene& scene, double length,
+           double epsilon);
 
   // `taken`: adaptive steps so far; h: the length of the step.
   void step(const Motion& now, std::vector<SpringRow> springs, double energy, double operations, long long taken,
@@ -116,7 +118,7 @@ class Accounts {
                               // metric of the masses
   double step_, substep_;
   std::vector<SpringRow> springs_;
-  double farthest_ = 0;  // from the origin [m]
+  double farthest_;  // from the origin, or the longest arm [m]
   long long taken_ = 0;
   Motion last_;
   std::optional<VelocityChange> change_;

@@ -216,8 +216,12 @@ void Growth::grow() {
   add_tree(world);
   add_loops(world);
   settle<S>();
-  if (random_.chance(0.4)) add_effects<S>(random_, scales_, made_.scene);
-  if (wish_.effects) add_spec_effects<S>(random_, scales_, made_.scene, made_.refused);
+  try {
+    if (random_.chance(0.4)) add_effects<S>(random_, scales_, made_.scene);
+    if (wish_.effects) add_spec_effects<S>(random_, scales_, made_.scene, made_.refused);
+  } catch (const SceneError& error) {  // the World refuses the projected poses, as gears that have turned too far
+    made_.refused.push_back(error.what());
+  }
 }
 
 Mechanism Growth::grown() {
