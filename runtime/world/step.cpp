@@ -96,6 +96,12 @@ bool in_range(const Batch<S>& batch, int slot) {
       drives, [](const Drive& drive) { return drive.above < drive.now.value && drive.now.value < drive.below; });
 }
 
+// False where an effect has no energy, as a gas spring shorter than 0.
+template <class S>
+bool has_energy(const Batch<S>& batch, int slot) {
+  return !batch.law || !batch.law->energy || std::isfinite(batch.law->energy(batch, slot));
+}
+
 // Finds the joint to blame at the start of the step. A kernel that is not finite comes first, then the largest C, then
 // the largest force.
 template <class S>
@@ -106,7 +112,8 @@ void blame_joint(WorldData<S>& world, Island<S>& island, StepResult& result) {
     batch.ops->evaluate(batch, segment.begin, segment.end, world.bodies, typename S::Scalar(world.time));
     for (int slot = segment.begin; slot < segment.end; ++slot) {
       const int rows = batch.ops->rows, width = batch.ops->jacobian_size;
-      const bool sound = finite(batch.jacobian, slot * width, (slot + 1) * width) && in_range(batch, slot);
+      const bool sound =
+          finite(batch.jacobian, slot * width, (slot + 1) * width) && in_range(batch, slot) && has_energy(batch, slot);
       for (int i = slot * rows; i < (slot + 1) * rows; ++i) {
         const double off = batch.law ? 0 : std::abs(double(batch.C[i]));
         const double pull = std::abs(double(batch.lambda[i])) + std::abs(double(batch.correction[i]));

@@ -157,6 +157,24 @@ TEST(Failure, IsDescribedInWords) {
   EXPECT_EQ(world.time(), 0);
 }
 
+// A gas spring has no energy, and no force, on a slide below 0. The rail is to blame, not the joint that comes first.
+TEST(Failure, BlamesAnEffectWithoutAnEnergy) {
+  World<double> world(settings(Solver::direct));
+  const int wheel = world.add_body(rod(0, 5, 0)), body = world.add_body({.x = 2, .mass = 1, .inertia = 1});
+  revolute(world, world.ground(), wheel, 0, 5, 0, 0);
+  const int rail =
+      world.add_joint({"prismatic", {world.ground(), body}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0, 1}}}, {}});
+  world.add_joint({"distance", {wheel, body}, {{"pa", {0, 0}}, {"pb", {0, 0}}}, {}});
+  const double sign = world.coordinate(rail, "slide") > 0 ? 1 : -1;
+  world.set_pose(body, {2 * sign, 0, 0});
+  add_effect(world, rail, "slide", SpecEffect{"gas_spring", {{"F", {3}}, {"rest", {1}}}});
+  EXPECT_TRUE(world.step(0.001));
+  world.set_pose(body, {-2 * sign, 0, 0});
+  const StepResult result = world.step(0.001);
+  EXPECT_EQ(result.problem, StepProblem::not_finite);
+  EXPECT_EQ(result.joint, rail);
+}
+
 // --- arguments that are not finite ---
 
 template <class F>
