@@ -10,34 +10,34 @@
 
 #include <cdot/methods.hpp>
 
-#include "runtime/tool/run/process.hpp"
-#include "runtime/tool/run/trajectory.hpp"
+#include "runtime/tool/search/attempt.hpp"
+#include "runtime/tool/search/knobs.hpp"
 #include "runtime/tool/search/simulate.hpp"
-#include "runtime/tool/search/yardstick.hpp"
+#include "runtime/tool/search/stiffness.hpp"
 
 namespace cdot {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// --- Local errors. The first run is loose: its price is small, and its distance from the second tells how strict the
-// third has to be, if one is needed. Measured over all scenes: no other pair of numbers was cheaper by a tenth.
-constexpr double first_local_error = 10;         // in units of the accuracy
-constexpr double stricter = 1e-3;                // the next local error, as a share; at most a tenth. Of order 8:
-double stricter_for(const IntegratorRow& row) {  // others make it at the same ratio of prices
-  return std::pow(stricter, row.order / 8.0);
-}
-constexpr double strictest_local_error = 1e-14;  // below it there is only round-off, of steps
-constexpr double round_off = 1e-15;              // and of what is compared
-constexpr double least_sure = 1e-12;             // below it, smaller steps gain nothing for sure
-constexpr double aim = 0.5;                      // share of the accuracy that a further run aims at
-
-// Intervals bound the steps: those of a method that took over, and those that no estimate bounds.
-constexpr int shorter_for_rescued = 4, shorter_for_others = 2, most_parts = 256;
+constexpr double least_sure = 1e-12;  // below it, smaller steps gain nothing for sure
+// Between two looks the error may be so many local errors, or this share of the accuracy, if that is smaller.
+constexpr double local_errors = 10, unseen = 0.1;
+constexpr double aim = 0.5;  // share of the accuracy that a further run aims at
+constexpr int shorter_for_rescued = 4, shorter_for_others = 2;
 constexpr double long_step = 1.0 / 3;  // of the duration
 
-// --- Fixed steps: as many equal ones in each of the intervals.
-constexpr int most_fixed_parts = 1 << 14;
+// --- After a run that ends early, since its distance from the run before will be too large, the next one aims at a
+// local error that is smaller by this factor at least, and by that of a second run at most. Where that is not enough,
+// the run before measures nothing: the next one is a plain refinement.
+constexpr double least_jump = 10;
+
+// --- Even motions: steps have grown without bound, in so few evaluations. They get explicit steps of equal length if
+// stable ones cost at most `slow`.
+constexpr double even = 150, slow = 60;
+constexpr double unlike = 2;  // the error in units of the distance of two methods of different kind
+
+// --- Fixed steps.
 constexpr double converges = 1.5;  // the distances of runs must fall by this, or
 constexpr double surely = 1e-3;    // the first must be below this share of the accuracy
 constexpr int most_idle = 3;       // refinements in a row without that
@@ -55,67 +55,6 @@ constexpr double most_first_runs = 40;
 // if a run has taken `suspicious` evaluations, is on the way to `dear`, and the fastest oscillation explains a share of
 // that price. Then methods for stiff scenes get such a share to be cheaper.
 constexpr double suspicious = 400, dear = 4000, share_of_stiff = 0.25, share_of_surely_stiff = 0.5;
-constexpr double evaluations_per_step = 12;  // of the highest order
-
-struct Try {
-  Integrator integrator;
-  double local_error = 0;  // 0: fixed steps
-  int parts = 1;           // of an interval: its steps; or at their ends, a method that took over has to stop
-  const IntegratorRow& row() const { return row_of(integrator); }
-  bool adaptive() const { return local_error > 0; }
-  bool strictest() const { return adaptive() && local_error < 1.01 * strictest_local_error; }
-};
-
-// One run of one knob.
-struct Attempt {
-  Try knob;
-  RunResult result;
-  std::vector<Frame> frames;  // at the ends of the intervals
-  std::vector<Frame> rows;
-  double price = 0;
-  bool full = false;           // it has the outputs asked for
-  bool whole = false;          // it has ended in time and well
-  double achieved = infinity;  // see Choice
-  double holds_until = 0;
-  bool reached = false;
-};
-
-std::string name_of(const Try& knob) {
-  const auto name = name_of(integrators, knob.integrator);
-  return knob.adaptive() ? fmt::format("{}, local error {:.0e}", name, knob.local_error)
-                         : fmt::format("{}, {} steps", name, knob.parts * intervals_of_own_steps);
-}
-
-// The factor by which the error is surely smaller, measured over all scenes: the square root of what it should be. A
-// tenth of a local error now and then gains less than that.
-double sure_gain(double gain, bool adaptive) { return std::pow(gain, adaptive && gain < 11 ? 0.25 : 0.5); }
-
-// The factor by which the error should be smaller than that of a coarser knob.
-double gain(const Try& coarse, const Try& fine, bool rescued) {
-  const double shorter = static_cast<double>(fine.parts) / coarse.parts;
-  if (!fine.adaptive()) return std::pow(shorter, fine.row().order);
-  const double smaller = (coarse.local_error + strictest_local_error) / (fine.local_error + strictest_local_error);
-  return rescued ? std::min(smaller, shorter) : smaller;  // a method that took over may have order 1
-}
-
-// The next knob, with an error of at most this share and shorter intervals; nothing if it is too fine.
-std::optional<Try> finer(Try knob, double share, int shorter) {
-  if (knob.adaptive()) {
-    if (knob.strictest() && shorter == 1) return {};
-    // The strictest run is compared with one of ten times its local error: there the gain is small, but sure.
-    const bool last = knob.local_error < 11 * strictest_local_error;
-    knob.local_error = std::max((last ? 1 : 10) * strictest_local_error, std::min(share, 0.1) * knob.local_error);
-    knob.parts *= shorter;
-    if (knob.parts > most_parts) return {};
-    return knob;
-  }
-  const double factor = std::pow(1 / share, 1.0 / knob.row().order);
-  int times = 2;
-  while (times < factor && times < 8) times *= 2;
-  knob.parts *= times;
-  if (knob.parts > most_fixed_parts) return {};
-  return knob;
-}
 
 // Two runs by the same steps agree, whatever their error.
 bool same_steps(const StepCounts& a, const StepCounts& b) {
@@ -139,9 +78,13 @@ class Search {
   std::optional<double> next_share(const Attempt& last, const Attempt& now, int& idle);
   void try_candidate(Integrator integrator, double most);
   void try_stiff(double most);
-  Attempt attempt(const Try& knob, double most);
-  double stiff_price(const std::vector<WorstOfIsland>& islands) const;
-  std::vector<WorstOfIsland> diagnosis_at_start() const;
+  void try_even_steps(const Attempt& even);
+  bool has_long_steps(const Attempt& now) const {
+    return now.knob.adaptive() && now.result.counts.longest > long_step * scene_.duration;
+  }
+  int shorter_after(const Attempt& now) const;
+  std::optional<Try> after_early_end(const Attempt& last, const Attempt& now) const;
+  Attempt attempt(const Try& knob, double most, const Attempt* judged_by);
   void judge(const Attempt& coarse, Attempt& fine) const;
   void keep(Attempt&& attempt);
   bool balanced(const Attempt& attempt) const {
@@ -150,9 +93,7 @@ class Search {
   bool out_of_budget() const { return spent_ > options_.search_cpu || left_ <= 0; }
   bool done() const { return stopped_ || best_.reached || out_of_budget(); }
   bool in_reach(const Attempt& now, double most) const;
-  double price_of(const Try& knob) const {
-    return price_of_step(knob.row()) * knob.parts * intervals_of_own_steps * yardstick_.mechanisms();
-  }
+  double price_of(const Try& knob) const { return price_of_step(knob.row()) * knob.steps() * yardstick_.mechanisms(); }
   Choice choice_of(const Attempt& attempt) const;
 
   const Scene& scene_;
@@ -162,6 +103,13 @@ class Search {
   double left_;        // of the budget
   double least_left_;  // for all other candidates, when the first has a price
   Attempt best_;
+  // The last candidate, which may go on with a larger budget.
+  struct {
+    Attempt last;
+    std::optional<Try> next;
+    int idle = 0;
+  } begun_;
+  double stiff_at_start_ = 0;
   double first_price_ = 0;  // foreseen, of explicit steps that became dear; while stiff candidates run
   double stiff_price_ = 0;  // the part of it that stiffness explains
   bool may_be_dear_ = true, stopped_ = false;
@@ -171,11 +119,13 @@ class Search {
   double spent_ = 0;            // by RunOptions::clock [s]
 };
 
-Attempt Search::attempt(const Try& knob, double most) {
+// Ends early, by Attempt::foreseen, where it will not agree with `judged_by`.
+Attempt Search::attempt(const Try& knob, double most, const Attempt* judged_by) {
   Attempt attempt;
   attempt.knob = knob;
-  const Scene solved = solved_by(choice_of(attempt), scene_);
-  attempt.full = runs_ > 0;
+  Scene solved = solved_by(choice_of(attempt), scene_);
+  solved.step = scene_.duration / knob.steps();
+  attempt.full = runs_ > 0 && knob.intervals == intervals_of_own_steps;
   RunOptions options;
   if (attempt.full) {
     options = options_;
@@ -185,12 +135,14 @@ Attempt Search::attempt(const Try& knob, double most) {
   if (may_be_dear_) options.diagnose_times = {2 * solved.duration};  // only if the run is stopped
   options.progress = options_.progress;
   options.doing = name_of(knob) + ": ";
-  const double interval = solved.duration / intervals_of_own_steps, began = options_.clock();
+  const double interval = solved.duration / knob.intervals, began = options_.clock();
   options.look = [&](const Frame& frame, const StepCounts& counts) {
     if (std::abs(frame.time - static_cast<double>(attempt.frames.size()) * interval) < 1e-6 * interval)
       attempt.frames.push_back(frame);
     if (spent_ + options_.clock() - began > options_.search_cpu) return false;
     if (!knob.adaptive()) return true;
+    if (judged_by && (attempt.foreseen = foreseen_distance(yardstick_, solved.duration, *judged_by, attempt)) > 0)
+      return false;
     attempt.price = static_cast<double>(counts.evaluations);
     const double foreseen = frame.time > 0 ? attempt.price * solved.duration / frame.time : 0;
     const double mechanisms = yardstick_.mechanisms();
@@ -203,7 +155,7 @@ Attempt Search::attempt(const Try& knob, double most) {
   attempt.result = run_once(solved, options, runs_ == 0 ? warnings_ : ignored);
   const RunResult& result = attempt.result;
   attempt.price = knob.adaptive() ? static_cast<double>(result.counts.evaluations) : price_of(knob);
-  stiff_price_ = stiff_price(result.diagnosis);
+  stiff_price_ = stiff_price(scene_, result.diagnosis);
   attempt.whole = result.finite && !result.failed_step && !result.stopped && !result.interrupted;
   stopped_ = result.interrupted;
   ++runs_;
@@ -213,40 +165,16 @@ Attempt Search::attempt(const Try& knob, double most) {
   return attempt;
 }
 
-// Of the steps of the highest order that stay stable, over the whole run.
-double Search::stiff_price(const std::vector<WorstOfIsland>& islands) const {
-  double price = 0;
-  for (const WorstOfIsland& island : islands)
-    price += evaluations_per_step * scene_.duration * std::sqrt(std::max(0.0, island.island.stiffest.square)) /
-             row_of(Integrator::dop853).stable_radians;
-  return price;
-}
-
-std::vector<WorstOfIsland> Search::diagnosis_at_start() const {
-  Scene scene = scene_;
-  scene.settings.integrator = Integrator::dop853;  // for which springs are forces
-  const auto look = [&]<class S>(S) {
-    std::string ignored;
-    BasicWorld<S> world = world_at_start<S>(scene, ignored);
-    std::vector<WorstOfIsland> worst;
-    add_diagnosis(diagnose(world, scene_.duration / intervals_of_own_steps), 0, worst);
-    return worst;
-  };
-  return in_space_of<double>(scene_, look);
-}
-
 // Measures a run by a coarser one.
 void Search::judge(const Attempt& coarse, Attempt& fine) const {
-  double apart = round_off;
-  for (std::size_t k = 0; k < std::min(coarse.frames.size(), fine.frames.size()); ++k) {
-    apart = std::max(apart, yardstick_.apart(coarse.frames[k], fine.frames[k]));
-    // Where runs part for good, no gain is sure.
-    if (apart <= yardstick_.asked()) fine.holds_until = fine.frames[k].time;
-  }
+  const auto [apart, agree_until] = distance(yardstick_, coarse, fine);
+  fine.holds_until = agree_until;
   const bool rescued = coarse.result.counts.rescued > 0 || fine.result.counts.rescued > 0;
   const double gained = gain(coarse.knob, fine.knob, rescued);
-  fine.achieved = std::max(std::min(apart, least_sure), apart / sure_gain(gained, fine.knob.adaptive()));
-  const bool known = fine.knob.parts > coarse.knob.parts ||
+  const double between_looks = std::min(local_errors * fine.knob.local_error, unseen * yardstick_.asked());
+  fine.achieved =
+      std::max({std::min(apart, least_sure), apart / sure_gain(gained, fine.knob.adaptive()), between_looks});
+  const bool known = fine.knob.parts > coarse.knob.parts || !fine.knob.adaptive() ||
                      (fine.result.counts.rescued == 0 && !same_steps(coarse.result.counts, fine.result.counts));
   const bool seems_to_converge = fine.knob.adaptive() || fine.achieved < surely * yardstick_.asked() ||
                                  fine.achieved * converges < coarse.achieved;
@@ -288,42 +216,79 @@ bool Search::in_reach(const Attempt& now, double most) const {
   return shorter * now.price <= most;
 }
 
+// Of the interval in which the next run may take one step. An implicit method takes over at events without end, and
+// what seems to be a line or a parabola gets steps of any length, whatever the local error: only shorter intervals make
+// these steps shorter.
+int Search::shorter_after(const Attempt& now) const {
+  if (now.result.counts.rescued > 0) return shorter_for_rescued;
+  return has_long_steps(now) ? shorter_for_others : 1;
+}
+
+// The knob after a run that ended early by its distance from the run before.
+std::optional<Try> Search::after_early_end(const Attempt& last, const Attempt& now) const {
+  const double before = last.knob.local_error / now.knob.local_error;
+  const double jump = std::max(least_jump, gain_for(now.foreseen / (aim * yardstick_.asked())) / before);
+  return finer(now.knob, 1 / (jump * stricter_for(now.knob.row()) > 1 ? least_jump : jump), shorter_after(now));
+}
+
+// What moves along a line or a parabola costs fixed steps of a low order next to nothing, and they are exact: if they
+// agree with a first run of another method, they are delivered.
+void Search::try_even_steps(const Attempt& even) {
+  const bool is_slow = stiff_at_start_ <= slow * yardstick_.mechanisms();
+  Attempt now = attempt({is_slow ? Integrator::rattle : Integrator::implicit}, infinity, nullptr);
+  if (now.whole && now.result.counts.rescued == 0) {
+    const auto [apart, agree_until] = distance(yardstick_, even, now);
+    now.achieved = std::max(least_sure, unlike * apart), now.holds_until = agree_until;
+    now.reached = balanced(now) && now.achieved <= yardstick_.asked();
+    if (now.reached) now.holds_until = scene_.duration;
+  }
+  keep(std::move(now));
+}
+
 void Search::try_candidate(Integrator integrator, double most) {
   const bool adaptive = row_of(integrator).level == Level::acceleration;
-  std::optional<Try> knob = Try{
-      integrator, adaptive ? std::max(strictest_local_error / stricter, first_local_error * yardstick_.asked()) : 0, 1};
+  std::optional<Try> knob =
+      first_try(integrator, yardstick_.asked(), !adaptive || stiff_at_start_ <= suspicious * yardstick_.mechanisms());
   Attempt last;
   double spent = 0;
   int idle = 0;
+  bool may_end_early = adaptive;
+  if (begun_.last.whole && begun_.last.knob.integrator == integrator)
+    knob = begun_.next, last = std::move(begun_.last), idle = begun_.idle;
   while (knob && !done() && !sensitive_) {
     if (!knob->adaptive() && spent + price_of(*knob) > most) break;
-    Attempt now = attempt(*knob, most - spent);
+    const bool judged = may_end_early && last.whole && last.result.counts.rescued == 0;
+    Attempt now = attempt(*knob, most - spent, judged ? &last : nullptr);
     spent += now.price;
+    if (now.foreseen > 0) {
+      may_end_early = false;
+      knob = after_early_end(last, now);
+      continue;
+    }
     if (now.whole) {
       yardstick_.see(now.frames);
       // A stiff candidate has a bound of its own.
       if (adaptive && !(first_price_ > 0)) left_ = std::min(left_, std::max(most_first_runs * now.price, least_left_));
       if (last.whole) judge(last, now);
+      else if (runs_ == 1 && has_long_steps(now) && now.price <= even * yardstick_.mechanisms()) try_even_steps(now);
     }
     const std::optional<double> share = next_share(last, now, idle);
-    // An implicit method takes over at events without end, and what seems to be a line or a parabola gets steps of any
-    // length, whatever the local error: only shorter intervals make these steps shorter.
-    const StepCounts& counts = now.result.counts;
-    const int shorter = counts.rescued > 0                             ? shorter_for_rescued
-                        : counts.longest > long_step * scene_.duration ? shorter_for_others
-                                                                       : 1;
-    knob = share && in_reach(now, most - spent) ? finer(*knob, *share, shorter) : std::nullopt;
+    knob = share && in_reach(now, most - spent) ? finer(*knob, *share, shorter_after(now)) : std::nullopt;
     keep(Attempt(now));
     last = std::move(now);
   }
+  begun_ = {std::move(last), knob, idle};
 }
 
 // Those that take stiffness implicitly, high orders first. But what stands still costs the lowest order next to
 // nothing: its first two runs, of equal and of twice as many steps as intervals.
 void Search::try_stiff(double most) {
   try_candidate(Integrator::implicit, 3 * price_of({Integrator::implicit}));
-  for (const IntegratorRow& row : std::views::reverse(integrator_rows))
+  auto begun = std::move(begun_);
+  for (const IntegratorRow& row : std::views::reverse(integrator_rows)) {
+    if (row.integrator == Integrator::implicit) begun_ = std::move(begun);
     if ((row.stiffens || row.stable_radians == always) && !done()) try_candidate(row.integrator, most);
+  }
 }
 
 RunResult Search::run() {
@@ -332,7 +297,7 @@ RunResult Search::run() {
   std::ranges::stable_sort(candidates, std::greater<>(), [](const IntegratorRow& row) {
     return std::tuple(row.level == Level::acceleration, row.order, row.stiffens);
   });
-  first_price_ = stiff_price(diagnosis_at_start());
+  first_price_ = stiff_at_start_ = stiff_price_at_start(scene_);
   if (first_price_ > dear * yardstick_.mechanisms()) {
     may_be_dear_ = false;
     try_stiff(share_of_surely_stiff * first_price_);

@@ -58,6 +58,8 @@ void study_claims(const std::vector<Scene>& scenes) {
         const double off = largest_apart(yardstick, run.rows, truth.rows);
         const double unsure = largest_apart(yardstick, check.rows, truth.rows) + strict;
         const double share = std::max(0.0, off - unsure) / choice.achieved;
+        if (share > 1)
+          fmt::print("{} at 1e-{}: claims {:.1e}, is off by {:.1e}\n", short_name(scene), digits, choice.achieved, off);
         above += share > 1, worst = std::max(worst, share);
         prices[digits] = static_cast<double>(choice.evaluations + choice.evaluations_before);
         levels[digits].errors.push_back(off);

@@ -233,7 +233,7 @@ TEST(SearchedAccuracy, RefinesWithoutRunningAnythingTwice) {
 // A clock that ticks when it is read. The search reads it at every interval: the second run is ended before its end.
 TEST(SearchedAccuracy, EndsAtItsBudgetAndSaysSo) {
   static int ticks;
-  constexpr int budget = intervals_of_own_steps * 3 / 2;
+  constexpr int budget = intervals_of_own_steps;  // the first run is looked at less often
   const Scene scene = scene_named("double_pendulum");
   std::string warnings;
   const auto with_budget = [&](double search_cpu) {

@@ -1,0 +1,43 @@
+#include "runtime/tool/search/attempt.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cdot {
+namespace {
+
+constexpr double round_off = 1e-15;  // of what is compared
+
+// Errors grow at least with time. From this share of the run on, the distance of two runs is taken to grow by the power
+// of time with which it grew over the second half up to then. The run that comes next expects a little more.
+constexpr double tells = 0.25, most_growth = 2, further_growth = 0.25;
+
+std::size_t stride_of(const Attempt& coarse, const Attempt& fine) {
+  return static_cast<std::size_t>(fine.knob.intervals / coarse.knob.intervals);
+}
+
+}  // namespace
+
+Distance distance(const Yardstick& yardstick, const Attempt& coarse, const Attempt& fine, std::size_t ends) {
+  const std::size_t stride = stride_of(coarse, fine);
+  Distance distance{round_off, 0};
+  for (std::size_t k = 0; k <= ends && k < coarse.frames.size() && k * stride < fine.frames.size(); ++k) {
+    const Frame& frame = fine.frames[k * stride];
+    distance.largest = std::max(distance.largest, yardstick.apart(coarse.frames[k], frame));
+    if (distance.largest <= yardstick.asked()) distance.agree_until = frame.time;
+  }
+  return distance;
+}
+
+double foreseen_distance(const Yardstick& yardstick, double duration, const Attempt& coarse, const Attempt& fine) {
+  const std::size_t stride = stride_of(coarse, fine), ends = (fine.frames.size() - 1) / stride;
+  const double share = fine.frames.back().time / duration;
+  if (share < tells || ends * stride != fine.frames.size() - 1) return 0;
+  const double now = distance(yardstick, coarse, fine, ends).largest;
+  const double growth = std::log2(now / distance(yardstick, coarse, fine, ends / 2).largest);
+  const auto at_end = [&](double power) { return now / std::pow(share, std::clamp(power, 1.0, most_growth)); };
+  const double allowed = yardstick.asked() * sure_gain(gain(coarse.knob, fine.knob, false), true);
+  return at_end(growth) > allowed ? at_end(growth + further_growth) : 0;
+}
+
+}  // namespace cdot

@@ -1,0 +1,46 @@
+// The knobs of a search: a method with its local error or its fixed steps, and the next finer ones.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <cdot/methods.hpp>
+
+#include "runtime/tool/scene/scene.hpp"
+
+namespace cdot {
+
+inline constexpr double strictest_local_error = 1e-14;  // below it there is only round-off, of steps
+
+struct Try {
+  Integrator integrator;
+  double local_error = 0;  // 0: fixed steps
+  int parts = 1;           // of an interval: its steps; or at their ends, a method that took over has to stop
+  int intervals = intervals_of_own_steps;
+  int steps() const { return parts * intervals; }
+  const IntegratorRow& row() const { return row_of(integrator); }
+  bool adaptive() const { return local_error > 0; }
+  bool strictest() const { return adaptive() && local_error < 1.01 * strictest_local_error; }
+};
+
+std::string name_of(const Try& knob);
+
+// The first knob of a method. It only measures the second, so it may be looked at `sparsely`: at every fourth end of an
+// interval, since a look costs a state between steps.
+Try first_try(Integrator integrator, double accuracy, bool sparsely);
+// The share of the last local error that a second run takes: of order 8 a thousandth, of others at the same ratio of
+// prices.
+double stricter_for(const IntegratorRow& row);
+
+// The factor by which the error should be smaller than that of a coarser knob; `rescued`: where another method took
+// over.
+double gain(const Try& coarse, const Try& fine, bool rescued);
+// The factor by which it is surely smaller, measured over all scenes.
+double sure_gain(double gain, bool adaptive);
+// The gain that is surely so large.
+double gain_for(double sure);
+
+// The next knob, with an error of at most this share and shorter intervals; nothing if it is too fine.
+std::optional<Try> finer(Try knob, double share, int shorter);
+
+}  // namespace cdot
