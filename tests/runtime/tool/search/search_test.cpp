@@ -230,6 +230,32 @@ TEST(SearchedAccuracy, RefinesWithoutRunningAnythingTwice) {
   EXPECT_EQ(result.choice->runs_before, 2);
 }
 
+// The second run of 20 s of swinging is a third of a run: then its distance from the first tells how strict the third
+// has to be.
+TEST(SearchedAccuracy, EndsARunThatCannotAgree) {
+  const Scene scene = scene_named("simple_pendulum");
+  std::string warnings;
+  const RunResult result = simulate(scene, {}, warnings);
+  EXPECT_TRUE(result.choice->reached);
+  EXPECT_EQ(result.choice->runs_before, 2);
+  EXPECT_LT(result.choice->evaluations_before, 0.8 * static_cast<double>(result.choice->evaluations));
+}
+
+// Masses on a rope move along parabolas, which equal steps meet exactly. Three free bodies take long steps as well, but
+// equal ones miss their turning: those are not delivered.
+TEST(SearchedAccuracy, OfEvenMotionsComesByEqualSteps) {
+  std::string warnings;
+  const RunResult even = simulate(scene_named("pulley_ratio1"), {}, warnings);
+  EXPECT_TRUE(even.choice->reached);
+  EXPECT_EQ(even.choice->integrator, Integrator::rattle);
+  EXPECT_EQ(even.choice->runs_before, 1);
+  Scene turning = scene_named("spatial/three_bodies");
+  turning.step = 0;
+  const RunResult other = simulate(turning, {}, warnings);
+  EXPECT_TRUE(other.choice->reached);
+  EXPECT_EQ(other.choice->integrator, Integrator::dop853);
+}
+
 // A clock that ticks when it is read. The search reads it at every interval: the second run is ended before its end.
 TEST(SearchedAccuracy, EndsAtItsBudgetAndSaysSo) {
   static int ticks;
@@ -244,6 +270,7 @@ TEST(SearchedAccuracy, EndsAtItsBudgetAndSaysSo) {
     return simulate(scene, options, warnings);
   };
   EXPECT_TRUE(with_budget(3 * budget).choice->reached);
+  EXPECT_LE(ticks, intervals_of_own_steps * 5 / 4 + 6);  // at 16 and at 64 looks, and at their ends
   const RunResult result = with_budget(budget);
   EXPECT_FALSE(result.choice->reached);
   EXPECT_LE(ticks, budget + 4);                    // two runs also read it at their ends
