@@ -82,11 +82,12 @@ class Running {
   void wait() {
     show();
     int status = 0;
-    pid_t id = 0;
-    while ((id = ::wait(&status)) < 0) {
-      if (errno != EINTR) raise_errno("no news");
+    auto ended = processes_.end();
+    while (ended == processes_.end()) {  // a shell that became this program may have left children of its own
+      const pid_t id = ::wait(&status);
+      if (id < 0 && errno != EINTR) raise_errno("no news");
+      ended = std::ranges::find(processes_, id, &Process::id);
     }
-    const auto ended = std::ranges::find(processes_, id, &Process::id);
     answers_[ended->task] = answer_of(content_of(ended->said), status);
     std::fclose(ended->said);
     ++done_;

@@ -49,6 +49,19 @@ TEST(Processes, TellWhyThereIsNoResult) {
             "is well: well\n");
 }
 
+// A shell may start something in the background and then become this program.
+TEST(Processes, LeaveChildrenOfOthersAlone) {
+  ASSERT_GE(fork() == 0 ? (_exit(7), 0) : 0, 0);
+  std::this_thread::sleep_for(20ms);
+  Tasks tasks;
+  tasks.names = {"slow", "quick"};
+  tasks.run = [](std::size_t i) { return std::this_thread::sleep_for(i == 0 ? 50ms : 0ms), std::string("well"); };
+  int well = 0;
+  tasks.take = [&](std::size_t, const Answer& answer) { well += answer.result == "well" ? 1 : 0; };
+  in_processes(tasks, 2);
+  EXPECT_EQ(well, 2);
+}
+
 class DeriveAtOnce : public Derive {
  protected:
   // Waits for children of a process and returns them.
