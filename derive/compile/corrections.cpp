@@ -160,10 +160,11 @@ constexpr const char* solves_bounded = R"(
 
   // Rows beyond a bound take it; rows at a bound that they would leave are free again. First all at once, then one by
   // one (Murty). `hold`: -1 at the lower bound, 1 at the upper one, 0 free; it begins as it was in the last step. A
-  // lane that is done waits for the others unchanged.
-  static void find_active(Bounded& B, Mask busy, T (&hold)[bounded], T (&mu)[bounded], T (&missed)[bounded]) {
+  // lane that is done waits for the others unchanged. True in lanes where a row reached or left a bound.
+  static Mask find_active(Bounded& B, Mask busy, T (&hold)[bounded], T (&mu)[bounded], T (&missed)[bounded]) {
     constexpr int fast = 10, slow = 2 * bounded + 10;
     const T scale = largest(B.c);
+    Mask moved = T(1) < T(0);
     for (int round = 0; round < fast + slow && any(busy); ++round) {
       Mask free[bounded];
       T now[bounded];
@@ -186,7 +187,9 @@ constexpr const char* solves_bounded = R"(
         changed = changed || down || up || out;
       }
       busy = busy && changed;
+      moved = moved || busy;
     }
+    return moved;
   }
 
   // The rows that row d depends on, with itself: those by whose impulses it could be replaced.
@@ -227,19 +230,36 @@ constexpr const char* solves_bounded = R"(
     return contradicts;
   }
 
-  static void settle(Bounded& B, T (&hold)[bounded], T (&mu)[bounded]) {
+  // Parts contradicting rows until none is left. True in lanes where motors yielded, and then a row reached or left a
+  // bound.
+  static Mask part_and_settle(Bounded& B, Mask busy, T (&hold)[bounded], T (&mu)[bounded]) {
     T missed[bounded];
     Mask yields[bounded];
+    Mask eased = T(1) < T(0);
+    for (Mask& of_row : yields) of_row = eased;
+    for (int round = 0; any(busy); ++round) {
+      const Mask moved = find_active(B, busy, hold, mu, missed);
+      for (const Mask& of_row : yields) eased = eased || (moved && of_row);
+      busy = round < 2 ? part(B, busy, hold, missed, yields) : T(1) < T(0);
+    }
+    return eased;
+  }
+
+  static void settle(Bounded& B, T (&hold)[bounded], T (&mu)[bounded]) {
+    T rigid[bounded];
     for (int i = 0; i < bounded; ++i) {
       const auto endless = (hold[i] < T(-0.5) && B.low[i] < T(-1e20)) || (hold[i] > T(0.5) && B.high[i] > T(1e20));
       hold[i] = select(endless, T(0), hold[i]);
       mu[i] = select(hold[i] < T(-0.5), B.low[i], select(hold[i] > T(0.5), B.high[i], T(0)));
-      yields[i] = T(1) < T(0);
+      rigid[i] = entry(B.S, i, i);
     }
-    Mask busy = T(0) < T(1);
-    for (int round = 0; any(busy); ++round) {
-      find_active(B, busy, hold, mu, missed);
-      busy = round < 2 ? part(B, busy, hold, missed, yields) : T(1) < T(0);
+    // A motor that yielded to a row now at its bound need not yield any more.
+    if (const Mask eased = part_and_settle(B, T(0) < T(1), hold, mu); any(eased)) {
+      for (int i = 0; i < bounded; ++i) {
+        T& diagonal = B.S[i * (i + 1) / 2 + i];
+        diagonal = select(eased, rigid[i], diagonal);
+      }
+      part_and_settle(B, eased, hold, mu);
     }
     for (int i = 0; i < bounded; ++i)
       mu[i] = select(mu[i] < B.low[i], B.low[i], select(mu[i] > B.high[i], B.high[i], mu[i]));

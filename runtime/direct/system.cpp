@@ -149,7 +149,7 @@ bool System<S>::part_contradicting_rows() {
     any |= bounded(r) && !fixed[r] && !broken[r] &&
            std::abs(product_[r] + softness[r] * lambda[r] - b[r]) > missed<Real> * scale;
   share_contradictions();
-  if (hold_motors(*this, slight(scale))) return true;
+  if (hold_motors(*this, slight(scale))) return yields_ = true;
   for (int r = 0; any && r < rows_; ++r)
     if (bounded(r)) softness[r] += slight_softness<T> * ldlt_.diagonal(r);
   return any;
@@ -166,10 +166,23 @@ int System<S>::find_active_set() {
     solve_rows();
     if (round >= fast && dependent > 0) {
       share_contradictions();
-      if (hold_motors(*this, slight(largest_b()))) continue;
+      if (hold_motors(*this, slight(largest_b()))) {
+        yields_ = true;
+        continue;
+      }
     }
     if (revise_active_set(round >= fast)) break;
+    eased_ |= yields_;
   }
+  return dependent;
+}
+
+// Parts contradicting rows until none is left. eased_: motors yielded, and then a row reached or left a bound.
+template <class S>
+int System<S>::part_and_settle() {
+  yields_ = eased_ = false;
+  int dependent = find_active_set();
+  for (int round = 0; round < 2 && dependent > 0 && part_contradicting_rows(); ++round) dependent = find_active_set();
   return dependent;
 }
 
@@ -181,8 +194,12 @@ int System<S>::solve_bounded() {
     if (fixed[r]) lambda[r] = fixed[r] == at_lower ? lower[r] : upper[r];
     if (!std::isfinite(lambda[r])) fixed[r] = free;
   }
-  int dependent = find_active_set();
-  for (int round = 0; round < 2 && dependent > 0 && part_contradicting_rows(); ++round) dependent = find_active_set();
+  int dependent = part_and_settle();
+  // A motor that yielded to a row now at its bound need not yield any more: it pulls a slipping brake with all it has.
+  if (eased_) {
+    load_laws();
+    dependent = part_and_settle();
+  }
   share_contradictions();
   share_redundant_loads(Bounds::known);
   std::copy(fixed.begin(), fixed.end(), active_set_.begin());

@@ -169,6 +169,7 @@ class System {
   char bound_for(int row, Real excess, Real tolerance) const;
   bool revise_active_set(bool one_by_one);
   int find_active_set();
+  int part_and_settle();
   bool part_contradicting_rows();
   void solve_rows();
   void solve_kept_rows();
@@ -188,6 +189,7 @@ class System {
   void expand(const std::vector<Real>& y, std::vector<Real>& to);
 
   bool built_ = false, shares_loads_ = false, lawful_ = false, taut_ = false, any_out_ = false, contradicted_ = false;
+  bool yields_ = false, eased_ = false;  // within solve_bounded(): part_and_settle()
   Softened softened_ = Softened::no;
   int rows_ = 0, dependent_ = 0;
   BasicLdlt<Real> ldlt_;

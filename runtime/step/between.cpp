@@ -66,7 +66,75 @@ void interpolate(Flow<S>& flow, const RungeKuttaOf<S>& method) {
   }
 }
 
+// Thresholds for an event that was passed and just passed. In units of the resolution, relative to the margin at the
+// choice of the mode: a row that creeps may have chosen its mode many steps ago.
+constexpr double passed = -1, just_passed = -3;
+constexpr int most_searches = 60;  // for one event
+
+template <class T>
+double furthest(const StateArray<T>& chosen, const StateArray<T>& now) {
+  double worst = 0;
+  for (size_t k = 0; k < now.size(); ++k) worst = std::min(worst, double(now[k]) - std::min(double(chosen[k]), 0.0));
+  return worst;
+}
+
+// The point between `low` and `high`, from 0 to 1, at which the first row has just passed its event, by linear
+// interpolation.
+template <class S>
+double first_event(const Flow<S>& flow) {
+  const double aim = 0.5 * (passed + just_passed);
+  double first = 1;
+  for (size_t k = 0; k < flow.high.size(); ++k) {
+    const double base = std::min(double(flow.margins_chosen[k]), 0.0) + aim;
+    const double low = double(flow.low[k]) - base, high = double(flow.high[k]) - base;
+    if (high < 0 && low > high) first = std::min(first, low / (low - high));
+  }
+  return first;
+}
+
+// Takes a step of h again and projects its end. If an implicit method finds none, stays at the start.
+template <class S>
+bool go_to(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+           typename S::Scalar h) {
+  go_back(world, island);
+  const bool found = take_stages(world, island, method, time, h);
+  if (found) project_end(world, island, method, time + h);
+  else go_back(world, island);
+  return found;
+}
+
 }  // namespace
+
+template <class S>
+bool passed_event(const Flow<S>& flow) {
+  return flow.guarded > 0 && furthest(flow.margins_chosen, flow.margins) < passed;
+}
+
+template <class S>
+typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
+                               typename S::Scalar time, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  Flow<S>& flow = island.flow;
+  flow.high.assign(flow.margins.begin(), flow.margins.end());
+  T low = 0, high = h;
+  for (int search = 0; search < most_searches; ++search) {
+    // Every third round bisects, in case linear interpolation stalls.
+    const double share = search % 3 == 2 ? 0.5 : std::clamp(first_event(flow), 0.001, 0.999);
+    const T at = low + T(share) * (high - low);
+    if (!(at > low && at < high)) break;
+    if (!go_to(world, island, method, time, at)) return T(0);
+    const double margin = furthest(flow.margins_chosen, flow.margins);
+    if (margin < passed) {
+      high = at;
+      flow.high.assign(flow.margins.begin(), flow.margins.end());
+      if (margin >= just_passed) return at;
+    } else {
+      low = at;
+      flow.low.assign(flow.margins.begin(), flow.margins.end());
+    }
+  }
+  return go_to(world, island, method, time, high) ? high : T(0);
+}
 
 template <class S>
 void go_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
@@ -91,8 +159,10 @@ void go_to_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& me
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                                               \
-  template void go_between(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar); \
+#define CDOT_INSTANTIATE(S)                                                                                \
+  template bool passed_event(const Flow<S>&);                                                              \
+  template S::Scalar go_to_event(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar); \
+  template void go_between(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                  \
   template void go_to_end(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -43,72 +43,7 @@ constexpr auto slight_displacement = typename S::Scalar(1e-6);  // in units of I
 // Steps of an implicit method cost the cube of the bodies. Larger islands that lose rank again and again, as a slack
 // bridge does, are damped there by Euler's method, so that a run of them ends.
 constexpr int most_to_carry_on = 20;
-constexpr int most_searches = 60;   // for one event
 constexpr int furthest_reach = 64;  // of an adaptive step, in units of h
-
-// Thresholds for an event that was passed and just passed. In units of the resolution, relative to the margin at the
-// choice of the mode: a row that creeps may have chosen its mode many steps ago.
-constexpr double passed = -1, just_passed = -3;
-
-template <class T>
-double furthest(const StateArray<T>& chosen, const StateArray<T>& now) {
-  double worst = 0;
-  for (size_t k = 0; k < now.size(); ++k) worst = std::min(worst, double(now[k]) - std::min(double(chosen[k]), 0.0));
-  return worst;
-}
-
-// The point between `low` and `high`, from 0 to 1, at which the first row has just passed its event, by linear
-// interpolation.
-template <class S>
-double first_event(const Flow<S>& flow) {
-  const double aim = 0.5 * (passed + just_passed);
-  double first = 1;
-  for (size_t k = 0; k < flow.high.size(); ++k) {
-    const double base = std::min(double(flow.margins_chosen[k]), 0.0) + aim;
-    const double low = double(flow.low[k]) - base, high = double(flow.high[k]) - base;
-    if (high < 0 && low > high) first = std::min(first, low / (low - high));
-  }
-  return first;
-}
-
-// Takes a step of h again and projects its end. If an implicit method finds none, stays at the start.
-template <class S>
-bool go_to(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
-           typename S::Scalar h) {
-  go_back(world, island);
-  const bool found = take_stages(world, island, method, time, h);
-  if (found) project_end(world, island, method, time + h);
-  else go_back(world, island);
-  return found;
-}
-
-// Goes to the first event of a step of h that passed one. Returns the time from the step's start to the event; 0 if
-// go_to() fails: fall_back() then finishes the step.
-template <class S>
-typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
-                               typename S::Scalar time, typename S::Scalar h) {
-  using T = typename S::Scalar;
-  Flow<S>& flow = island.flow;
-  flow.high.assign(flow.margins.begin(), flow.margins.end());
-  T low = 0, high = h;
-  for (int search = 0; search < most_searches; ++search) {
-    // Every third round bisects, in case linear interpolation stalls.
-    const double share = search % 3 == 2 ? 0.5 : std::clamp(first_event(flow), 0.001, 0.999);
-    const T at = low + T(share) * (high - low);
-    if (!(at > low && at < high)) break;
-    if (!go_to(world, island, method, time, at)) return T(0);
-    const double margin = furthest(flow.margins_chosen, flow.margins);
-    if (margin < passed) {
-      high = at;
-      flow.high.assign(flow.margins.begin(), flow.margins.end());
-      if (margin >= just_passed) return at;
-    } else {
-      low = at;
-      flow.low.assign(flow.margins.begin(), flow.margins.end());
-    }
-  }
-  return go_to(world, island, method, time, high) ? high : T(0);
-}
 
 // The length of the next step: near `best`, with `left` to the end of step(h), at most `reach`. A step that ends at
 // `left` saves the interpolation, if it is only a little shorter or longer than `best`.
@@ -370,7 +305,7 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
     flow.longest = std::max<T>(flow.longest, flow.length);
     flow.slivers = flow.length < T(sliver) * flow.longest ? flow.slivers + 1 : 0;
     if (flow.length == way.to_break) flow.known = false;  // the forces jump there
-    if (flow.guarded > 0 && furthest(flow.margins_chosen, flow.margins) < passed) {
+    if (passed_event(flow)) {
       flow.length = go_to_event(world, island, method, time, flow.length);
       ++world.counts->events;
       events = flow.length > T(0) ? events + 1 : most_events + 1;

@@ -44,6 +44,32 @@ TEST(Motor, AcceleratesWithItsLargestForceUntilItHasItsSpeed) {
   }
 }
 
+// Each row alone would set the wheel's speed; against the load neither reaches it: the wheel turns by the rest of the
+// torques. At rest the friction holds it. Both from the first step on.
+TEST(Motor, PullsAWheelAgainstItsFrictionWithAllItHas) {
+  constexpr double I = 0.18, load = -0.2, friction = 0.3, h = 0.001;
+  constexpr struct {
+    double start, most, rest;  // [rad/s], [N m], [N m]
+  } cases[] = {{3, 0.4, 0.4 + load - friction}, {0, 0.25, 0}};
+  for (const auto& [name, integrator] : integrators) {
+    for (const auto& [start, most, rest] : cases) {
+      Settings s = settings(Solver::direct);
+      s.integrator = integrator;
+      World<double> world(s);
+      const int wheel = world.add_body({.w = start, .mass = 1, .inertia = I});
+      const int joint = revolute(world, world.ground(), wheel, 0, 0, 0, 0);
+      add_motor(world, joint, "angle", {.speed = 3, .max_force = most});
+      add_friction(world, joint, "angle", {.max_force = friction});
+      add_effect(world, joint, "angle", Load{load});
+      for (const double duration : {h, 1.0}) {
+        run(world, duration, h);
+        EXPECT_NEAR(world.velocity(wheel).w, start + rest / I * world.time(), 1e-10)
+            << name << " after " << duration << " s";
+      }
+    }
+  }
+}
+
 // The limit wins against any force: the rod stands, and reports no speed.
 TEST(Motor, StandsStillAtTheLimitThatItRunsInto) {
   for (const auto& [name, integrator] : integrators) {
