@@ -180,12 +180,12 @@ Value read_value(std::string_view text, Names& names, Pool& pool, std::string_vi
   return value;
 }
 
-constexpr std::size_t most_registers = 512;  // of a formula of the time, on the stack
+constexpr int most_registers = 512;  // of a formula of the time, on the stack
 
 }  // namespace
 
 struct Formula::Program {
-  Tape tape;
+  NamedTape tape;
   std::vector<double> registers;
 };
 
@@ -200,7 +200,7 @@ Formula::Reading Formula::read(std::string_view text, const Vocabulary& vocabula
   Formula formula;
   formula.unit_ = derive::text(value.unit.value_or(unit_of(unit).value_or(Unit{})));
   formula.program_ = std::make_shared<Program>();
-  formula.program_->tape = Tape(assemble({{"value", e}}));
+  formula.program_->tape = NamedTape(assemble({{"value", e}}));
   formula.program_->registers = formula.program_->tape.registers();
   for (const std::string& name : formula.program_->tape.inputs())
     formula.inputs_.push_back(input_of(pool.find(name), names));
@@ -215,7 +215,7 @@ double Formula::operator()(std::span<const double> inputs) const {
 }
 
 struct FormulaInTime::Program {
-  Tape tape;
+  NamedTape tape;
 };
 
 FormulaInTime::Reading FormulaInTime::read(std::string_view text, std::string_view unit) {
@@ -230,11 +230,11 @@ FormulaInTime::Reading FormulaInTime::read(std::string_view text, std::string_vi
   const Expr rate = time_derivative(value.e, nothing), acceleration = time_derivative(rate, nothing);
   Components components;
   auto program = std::make_shared<Program>();
-  program->tape = Tape(assemble({{"value", components.of(value.e)},
-                                 {"rate", components.of(rate)},
-                                 {"acceleration", components.of(acceleration)}}));
+  program->tape = NamedTape(assemble({{"value", components.of(value.e)},
+                                      {"rate", components.of(rate)},
+                                      {"acceleration", components.of(acceleration)}}));
   const int length = static_cast<int>(text.size());
-  if (program->tape.registers().size() > most_registers)
+  if (program->tape.tape().registers > most_registers)
     reading.mistakes.push_back({0, length, "the expression with its derivatives has more than 512 operations",
                                 "a table: { table = \"profile.csv\", column = \"F\" }"});
   if (!reading.mistakes.empty()) return reading;
@@ -246,9 +246,9 @@ FormulaInTime::Reading FormulaInTime::read(std::string_view text, std::string_vi
 }
 
 std::array<double, 3> FormulaInTime::at(double time) const {
-  const Tape& tape = program_->tape;
+  const NamedTape& tape = program_->tape;
   std::array<double, most_registers> registers;
-  std::ranges::copy(tape.registers(), registers.begin());
+  place_constants(tape.tape(), registers.data());
   std::array<double, 3> values{};
   tape.run(std::span(&time, constant_ ? 0 : 1), registers, values);
   return values;

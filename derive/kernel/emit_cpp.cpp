@@ -27,12 +27,6 @@ std::string literal(const std::string& s) {
   return out + '"';
 }
 
-bool depends_on_time(const Block& block) {
-  std::vector<Expr> roots;
-  for (const ScalarRow& row : block.rows) roots.insert(roots.end(), {row.C, row.Cdot});
-  return std::ranges::any_of(leaves_of(roots), [](Expr leaf) { return leaf->role == Role::time; });
-}
-
 class KernelWriter {
  public:
   explicit KernelWriter(const Kernel& kernel) : kernel_(kernel), joint_(kernel.derivation->joint), functions_(joint_) {}

@@ -77,6 +77,7 @@ struct Kernel {
 };
 
 Kernel plan(const Derivation& derivation);
+bool depends_on_time(const Block& block);  // C or J v
 // Work of the searches for cheap programs, in the units of program/effort.hpp: of all of a kernel, and of each one. The
 // costliest kernel of the catalogue takes 21 million. A second of a usual machine does some 20 million, so that kernels
 // of four bodies and six rows take at most 20 s with their proof.

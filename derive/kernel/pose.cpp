@@ -110,4 +110,10 @@ DefaultValue plan_default(const Joint& joint, int index) {
   return {index, assemble(outputs)};
 }
 
+bool depends_on_time(const Block& block) {
+  std::vector<Expr> roots;
+  for (const ScalarRow& row : block.rows) roots.insert(roots.end(), {row.C, row.Cdot});
+  return std::ranges::any_of(leaves_of(roots), [](Expr leaf) { return leaf->role == Role::time; });
+}
+
 }  // namespace cdot::derive

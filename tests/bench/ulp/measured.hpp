@@ -161,7 +161,7 @@ struct Calls {
   static void impulse(const Inputs& in, T (&lambda)[rows]) {
     T K[triangle], F[triangle];
     if constexpr (which == Measured::impulse_robust) {
-      factor_by_rows<Block, columns>(in.J(), in.m(), F);
+      factor_by_rows<columns>(Block{}, in.J(), in.m(), F);
       Block::solve(F, in.rhs(), lambda);
     } else {
       Block::effective_mass(in.J(), in.m(), K);

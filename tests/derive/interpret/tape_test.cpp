@@ -46,7 +46,7 @@ std::size_t expect_same_bits(const Joint& joint, const KernelBlock& kernel, cons
   for (const KernelFunction& f : kernel.functions) {
     const auto number = std::ranges::find(function_names, f.name) - function_names.begin();
     if (f.isotropic || (number != position && number != jacobian)) continue;
-    const Tape tape(f.program);
+    const NamedTape tape(f.program);
     std::vector<double> inputs, to(tape.outputs().size()), registers = tape.registers();
     for (const std::string& name : tape.inputs()) inputs.push_back(values.at(name));
     tape.run(inputs, registers, to);
@@ -90,7 +90,7 @@ TEST(Tape, RunsRepeatTheirBits) {
   Pool pool;
   const Expr x = pool.symbol("x", Role::given);
   const std::vector<NamedExpr> outputs = {{"y", Rational(1, 3) * call(Fn::sin, x) - pow(x, 3) + pool.number(2)}};
-  const Tape tape(assemble(outputs));
+  const NamedTape tape(assemble(outputs));
   std::vector<double> registers = tape.registers();
   for (const double at : {0.7, -1.2, 0.7}) {
     double y = 0;

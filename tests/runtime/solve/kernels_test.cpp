@@ -73,7 +73,7 @@ TEST(Kernels, FactorsByRowsAreThoseOfK) {
     const planar::InverseMass<double> m[2] = {{0.5, turning}, {2, 0.3 * turning}};
     planar::weld::effective_mass(J, m, K);
     planar::weld::factor(K, from_K);
-    factor_by_rows<planar::weld, 6>(J, m, by_rows);
+    factor_by_rows<6>(planar::weld{}, J, m, by_rows);
     for (int k = 0; k < 6; ++k) EXPECT_NEAR(by_rows[k], from_K[k], 1e-13) << k << ", " << turning;
   }
 }

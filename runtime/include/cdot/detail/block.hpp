@@ -70,6 +70,8 @@ struct BlockOps {
   void (*stiffness)(const Batch<S>&, int slot, const Bodies<S>&, T time, const T* lambda, T* H);
   // The same block with other ways to solve K lambda = rhs; null if there is no difference.
   const BlockOps *fast, *robust;
+  // The object behind a block that is no generated struct; else null.
+  const void* context;
 
   const BlockOps* with(Kernels kernels) const {
     const BlockOps* const other = kernels == Kernels::fast ? fast : kernels == Kernels::robust ? robust : nullptr;

@@ -11,6 +11,16 @@
 
 namespace cdot {
 
+// A generated block is a struct of static functions. A block that a program makes while it runs has an object behind
+// it, and arrays of Parameters and Jacobian with fewer numbers than these structs.
+template <class Block>
+inline constexpr bool is_made_by_program = !std::is_empty_v<Block>;
+template <class Block, class S>
+Block block_of(const Batch<S>& batch) {
+  if constexpr (is_made_by_program<Block>) return Block(batch.ops->context);
+  else return {};
+}
+
 // Joint defines the parameters. Block is the joint, a coordinate, or one of these with an immovable body.
 template <class S, class Joint, class Block, Kernels kernels = Kernels::balanced>
 struct BlockLoops {
@@ -40,14 +50,23 @@ struct BlockLoops {
 
   // Generated structs consist of numbers of type T only; this reads them from arrays of T.
   template <class Struct, class Number>
-  static auto& as(Number* numbers_of, int slot) {
+  static auto& as(Number* numbers_of, int slot, [[maybe_unused]] int stride) {
     using Target = std::conditional_t<std::is_const_v<Number>, const Struct, Struct>;
     if constexpr (std::is_empty_v<Struct>) {
       static Struct nothing;  // no array contains it
       return static_cast<Target&>(nothing);
+    } else if constexpr (is_made_by_program<Block>) {
+      return *reinterpret_cast<Target*>(numbers_of + slot * stride);
     } else {
       return *reinterpret_cast<Target*>(numbers_of + slot * numbers<Struct>());
     }
+  }
+  static const Parameters& parameters(const Batch<S>& batch, int slot) {
+    return as<Parameters>(batch.parameters.data(), slot, batch.ops->parameter_size);
+  }
+  template <class Slots>
+  static auto& entries(Slots& batch, int slot) {
+    return as<Jacobian>(batch.jacobian.data(), slot, batch.ops->jacobian_size);
   }
 
   static const int* bodies_of(const Batch<S>& batch, int slot) { return batch.body.data() + slot * bodies; }
@@ -79,7 +98,7 @@ struct BlockLoops {
     Moving poses[bodies];
     for (int k = 0; k < bodies; ++k) poses[k] = moving(q[k], v[k]);
     using Jets = typename Joint::template Parameters<Jet<T>>;
-    Block::position(poses, jets_of<Jets>(batch, slot, false), Jet<T>{time, T(1), T(0)}, C);
+    block_of<Block>(batch).position(poses, jets_of<Jets>(batch, slot, false), Jet<T>{time, T(1), T(0)}, C);
   }
 
   // dC/dt of the slots whose parameters follow functions of time, into the bias.
@@ -115,13 +134,13 @@ struct BlockLoops {
       Pose q[bodies];
       gather(all.pose, bodies_of(batch, slot), q);
       count_parameters(batch, slot, q, time);
-      const Parameters& p = as<Parameters>(batch.parameters.data(), slot);
+      const Parameters& p = parameters(batch, slot);
       T C[rows];
-      Block::jacobian(q, p, time, C, as<Jacobian>(batch.jacobian.data(), slot));
+      block_of<Block>(batch).jacobian(q, p, time, C, entries(batch, slot));
       count_angle(batch, slot, C);
       for (int r = 0; r < rows; ++r) batch.C[slot * rows + r] = C[r];
       T drift[rows] = {};
-      if constexpr (Block::explicit_time) Block::time_derivative(q, p, time, drift);
+      if constexpr (Block::explicit_time) block_of<Block>(batch).time_derivative(q, p, time, drift);
       for (int r = 0; r < rows; ++r) batch.bias[slot * rows + r] = drift[r];
     }
     if (batch.driven()) Inherited::drift_in_time(batch, begin, end, all, time);
@@ -135,7 +154,7 @@ struct BlockLoops {
       gather(all.pose, bodies_of(batch, slot), q);
       count_parameters(batch, slot, q, time);
       T C[rows];
-      Block::position(q, as<Parameters>(batch.parameters.data(), slot), time, C);
+      block_of<Block>(batch).position(q, parameters(batch, slot), time, C);
       count_angle(batch, slot, C);
       for (int r = 0; r < rows; ++r) batch.C[slot * rows + r] = C[r];
     }
@@ -148,7 +167,7 @@ struct BlockLoops {
       gather(all.pose, bodies_of(batch, slot), q);
       gather(all.velocity, bodies_of(batch, slot), v);
       T g[rows];
-      Block::gamma(q, v, as<Parameters>(batch.parameters.data(), slot), time, g);
+      block_of<Block>(batch).gamma(q, v, parameters(batch, slot), time, g);
       for (int r = 0; r < rows; ++r) out[slot * rows + r] = g[r];
     }
     if (batch.driven()) gamma_in_time(batch, begin, end, all, time, out);
@@ -159,24 +178,24 @@ struct BlockLoops {
       InverseMass m[bodies];
       gather(all.effective_mass, bodies_of(batch, slot), m);
       T K[triangle];
-      Block::effective_mass(as<Jacobian>(batch.jacobian.data(), slot), m, K);
+      block_of<Block>(batch).effective_mass(entries(batch, slot), m, K);
       for (int k = 0; k < triangle; ++k) batch.factor[slot * triangle + k] = K[k];
     }
   }
 
   static void factorize(Batch<S>& batch, int begin, int end, const Bodies<S>& all) {
     for (int slot = begin; slot < end; ++slot) {
-      const Jacobian& J = as<Jacobian>(batch.jacobian.data(), slot);
+      const Jacobian& J = entries(batch, slot);
       InverseMass m[bodies];
       gather(all.effective_mass, bodies_of(batch, slot), m);
       T F[triangle];
       if constexpr (kernels == Kernels::robust) {
-        factor_by_rows<Block, width>(J, m, F);
+        factor_by_rows<width>(block_of<Block>(batch), J, m, F);
       } else {
         T K[triangle];
-        Block::effective_mass(J, m, K);
+        block_of<Block>(batch).effective_mass(J, m, K);
         if constexpr (kernels == Kernels::fast) invert(K, F);
-        else Block::factor(K, F);
+        else block_of<Block>(batch).factor(K, F);
       }
       for (int k = 0; k < triangle; ++k) batch.factor[slot * triangle + k] = F[k];
     }
@@ -189,7 +208,7 @@ struct BlockLoops {
     if constexpr (kernels == Kernels::fast) {
       multiply(F, b, lambda);
     } else {
-      Block::solve(F, b, lambda);
+      block_of<Block>(batch).solve(F, b, lambda);
     }
   }
 
@@ -198,7 +217,7 @@ struct BlockLoops {
       Velocity v[bodies];
       for (int k = 0; k < bodies; ++k) v[k] = of[bodies_of(batch, slot)[k]];
       T Jv[rows];
-      Block::velocity(as<Jacobian>(batch.jacobian.data(), slot), v, Jv);
+      block_of<Block>(batch).velocity(entries(batch, slot), v, Jv);
       for (int r = 0; r < rows; ++r) out[slot * rows + r] = Jv[r];
     }
   }
@@ -218,7 +237,7 @@ struct BlockLoops {
     InverseMass m[bodies];
     gather(all.effective_mass, body, m);
     for (int k = 0; k < bodies; ++k) v[k] = to[body[k]];
-    Block::apply(as<Jacobian>(batch.jacobian.data(), slot), m, lambda, v);
+    block_of<Block>(batch).apply(entries(batch, slot), m, lambda, v);
     for (int k = 0; k < bodies; ++k) to[body[k]] = v[k];
   }
 
@@ -228,15 +247,15 @@ struct BlockLoops {
                                                   Velocity* of, T* impulses, Change change) {
     for (int slot = begin; slot < end; ++slot) {
       const int* body = bodies_of(batch, slot);
-      const Jacobian& J = as<Jacobian>(batch.jacobian.data(), slot);
+      const Jacobian& J = entries(batch, slot);
       Velocity v[bodies];
       InverseMass m[bodies];
       gather(all.effective_mass, body, m);
       for (int k = 0; k < bodies; ++k) v[k] = of[body[k]];
       T Jv[rows], lambda[rows];
-      Block::velocity(J, v, Jv);
+      block_of<Block>(batch).velocity(J, v, Jv);
       change(slot, J, m, Jv, lambda);
-      Block::apply(J, m, lambda, v);
+      block_of<Block>(batch).apply(J, m, lambda, v);
       for (int k = 0; k < bodies; ++k) of[body[k]] = v[k];
       for (int r = 0; r < rows; ++r) impulses[slot * rows + r] += lambda[r];
     }
@@ -270,9 +289,9 @@ struct BlockLoops {
       if constexpr (rows == 2 && kernels != Kernels::robust) {
         invert(K, F), multiply(F, b, lambda);
       } else {
-        if (kernels == Kernels::robust && soft.share == T(0)) factor_by_rows<Block, width>(J, m, F);
-        else Block::factor(K, F);
-        Block::solve(F, b, lambda);
+        if (kernels == Kernels::robust && soft.share == T(0)) factor_by_rows<width>(block_of<Block>(batch), J, m, F);
+        else block_of<Block>(batch).factor(K, F);
+        block_of<Block>(batch).solve(F, b, lambda);
       }
     };
     sweep(batch, begin, end, all, of, impulses, change);
@@ -296,7 +315,7 @@ struct BlockLoops {
     T lambda[rows];
     gather(all.effective_mass, body, m);
     for (int r = 0; r < rows; ++r) lambda[r] = impulses[r];
-    Block::apply(as<Jacobian>(batch.jacobian.data(), slot), m, lambda, moved);
+    block_of<Block>(batch).apply(entries(batch, slot), m, lambda, moved);
     for (int r = 0; r < rows; ++r) batch.correction[slot * rows + r] += lambda[r];
     for (int k = 0; k < bodies; ++k) {
       if (S::immovable(m[k])) continue;  // infinite impulses would move it by NaN, for good
@@ -306,17 +325,31 @@ struct BlockLoops {
     }
   }
 
+  // The numbers of J in K's number type.
+  static auto exact_entries(const Batch<S>& batch, int slot) {
+    using Exact = typename Block::template Jacobian<Real>;
+    if constexpr (is_made_by_program<Block>) {
+      Exact numbers;
+      const int count = batch.ops->jacobian_size;
+      std::copy_n(batch.jacobian.data() + slot * count, count, numbers.number);
+      return numbers;
+    } else {
+      return exact<Exact, T>(entries(batch, slot));
+    }
+  }
+
   static void dense(const Batch<S>& batch, int slot, const Bodies<S>& all, Real* J, Real* weighted, Real* K,
                     int stride) {
     using Exact = typename S::Exact;
     typename Exact::InverseMass m[bodies];
     for (int k = 0; k < bodies; ++k)
       m[k] = exact<typename Exact::InverseMass, T>(all.effective_mass[static_cast<size_t>(bodies_of(batch, slot)[k])]);
-    const auto entries = exact<typename Block::template Jacobian<Real>, T>(as<Jacobian>(batch.jacobian.data(), slot));
+    const auto numbers = exact_entries(batch, slot);
     Real own[triangle];
-    Block::dense(entries, *reinterpret_cast<Real(*)[rows][width]>(J));
-    Block::inverse_mass_jacobian(entries, m, *reinterpret_cast<Real(*)[rows][width]>(weighted));
-    Block::effective_mass(entries, m, own);
+    const Block block = block_of<Block>(batch);
+    block.dense(numbers, *reinterpret_cast<Real(*)[rows][width]>(J));
+    block.inverse_mass_jacobian(numbers, m, *reinterpret_cast<Real(*)[rows][width]>(weighted));
+    block.effective_mass(numbers, m, own);
     for (int r = 0; r < rows; ++r)
       for (int s = 0; s <= r; ++s) K[r * stride + s] = own[r * (r + 1) / 2 + s];
   }
@@ -325,7 +358,7 @@ struct BlockLoops {
                            T (&H)[width][width]) {
     Pose q[bodies];
     gather(all.pose, bodies_of(batch, slot), q);
-    Block::stiffness(q, as<Parameters>(batch.parameters.data(), slot), time, lambda, H);
+    block_of<Block>(batch).stiffness(q, parameters(batch, slot), time, lambda, H);
   }
 
   static void stiffness(const Batch<S>& batch, int slot, const Bodies<S>& all, T time, const T* impulses, T* to) {
@@ -373,6 +406,7 @@ struct BlockLoops {
             dense,
             Inherited::add_stiffness,
             Inherited::stiffness,
+            nullptr,
             nullptr,
             nullptr};
   }

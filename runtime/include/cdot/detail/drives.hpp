@@ -34,7 +34,7 @@ Numbers jets_of(const Batch<S>& batch, int slot, bool of_row) {
   using T = typename S::Scalar;
   Numbers jets{};
   if constexpr (!std::is_empty_v<Numbers>) {
-    constexpr int count = static_cast<int>(sizeof(Numbers) / sizeof(Jet<T>));
+    const int count = of_row ? batch.law->constants : batch.ops->parameter_size;
     const T* const from = (of_row ? batch.constants : batch.parameters).data() + slot * count;
     auto* const to = reinterpret_cast<Jet<T>*>(&jets);
     for (int k = 0; k < count; ++k) to[k] = from[k];

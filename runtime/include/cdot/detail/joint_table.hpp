@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -55,7 +56,8 @@ struct JointEntry {
   BlockVariants<S> rows;
   std::vector<BlockVariants<S>> coordinates;  // in the order of JointType::coordinates
   // Writes the default of parameter `index`, computed from the poses, the earlier parameters and the time.
-  void (*default_value)(int index, const typename S::Pose* q, typename S::Scalar* parameters, typename S::Scalar time);
+  std::function<void(int index, const typename S::Pose* q, typename S::Scalar* parameters, typename S::Scalar time)>
+      default_value;
   const Law<S>* law = nullptr;  // of an effect
   std::vector<BoundedEntry<S>> bounded{};
 };

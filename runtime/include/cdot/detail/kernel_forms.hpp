@@ -11,13 +11,13 @@ namespace cdot {
 // so no pivot is a difference of large numbers. The relative error of K's pivots grows with the square of the block's
 // condition, as for a long arm on a body of little inertia. The error of these pivots grows with the condition. F has
 // the layout of the kernel's factor.
-template <class Block, int columns, class Jacobian, class InverseMass, class T, int triangle>
-void factor_by_rows(const Jacobian& J, const InverseMass (&m)[Block::bodies], T (&F)[triangle]) {
+template <int columns, class Block, class Jacobian, class InverseMass, class T, int triangle>
+void factor_by_rows(const Block& block, const Jacobian& J, const InverseMass (&m)[Block::bodies], T (&F)[triangle]) {
   constexpr int rows = Block::rows;
   const T round_off = T(64 * std::numeric_limits<typename ScalarOf<T>::type>::epsilon());
   T D[rows][columns], W[rows][columns];
-  Block::dense(J, D);
-  Block::inverse_mass_jacobian(J, m, W);
+  block.dense(J, D);
+  block.inverse_mass_jacobian(J, m, W);
   const auto product = [](const T(&x)[columns], const T(&y)[columns]) {
     T sum = x[0] * y[0];
     for (int c = 1; c < columns; ++c) sum = sum + x[c] * y[c];

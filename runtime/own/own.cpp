@@ -1,0 +1,119 @@
+// A spec -> its kernel of tapes -> entries in the tables by which Worlds find joints.
+#include "runtime/own/own.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include <cdot/detail/joint_table.hpp>
+#include <cdot/planar.hpp>
+#include <cdot/spatial.hpp>
+
+#include "runtime/own/check_own.hpp"
+#include "runtime/own/own_rows.hpp"
+#include "runtime/own/own_tables.hpp"
+
+namespace cdot {
+namespace {
+
+// A kernel and the texts that its JointType refers to, for ever.
+struct Registered {
+  std::string name;
+  std::shared_ptr<const OwnKernel> kernel;
+};
+
+JointType described(const Registered& own) {
+  const OwnKernel& kernel = *own.kernel;
+  JointType type{};
+  type.name = own.name, type.title = kernel.title;
+  type.bodies = kernel.bodies();
+  type.body_names.assign(kernel.body_names.begin(), kernel.body_names.end());
+  type.row_names.assign(kernel.rows.row_names.begin(), kernel.rows.row_names.end());
+  for (const int kind : kernel.rows.row_kinds) type.row_kinds.push_back(static_cast<RowKind>(kind));
+  for (const OwnParameter& p : kernel.parameters)
+    type.parameters.push_back({p.name, static_cast<ParameterKind>(p.kind), p.body, p.unit, p.offset, p.size,
+                               p.has_default, p.above, p.below, p.from});
+  for (const OwnBlock& coordinate : kernel.coordinates) type.coordinates.push_back({coordinate.name, coordinate.unit});
+  type.parameter_size = kernel.parameter_size();
+  type.explicit_time = kernel.rows.explicit_time;
+  return type;
+}
+
+template <class S>
+JointEntry<S> entry_of(std::shared_ptr<const OwnKernel> kernel) {
+  using T = typename S::Scalar;
+  JointEntry<S> entry{{own_block_ops<S>(*kernel, kernel->rows), {}}, {}, {}};
+  for (const OwnBlock& variant : kernel->variants)
+    entry.rows.immovable.emplace_back(variant.immovable, own_block_ops<S>(*kernel, variant));
+  for (const OwnBlock& coordinate : kernel->coordinates)
+    entry.coordinates.push_back({own_block_ops<S>(*kernel, coordinate), {}});
+  entry.default_value = [kernel](int index, const typename S::Pose* q, T* parameters, T time) {
+    const OwnParameter& parameter = kernel->parameters[static_cast<std::size_t>(index)];
+    run_own<T>(parameter.by_default, {.pose = reinterpret_cast<const T*>(q), .parameters = parameters, .time = &time},
+               parameters);
+  };
+  return entry;
+}
+
+template <template <class> class Space>
+void add_entries(const std::shared_ptr<const OwnKernel>& kernel) {
+  joint_entries<Space<double>>().push_back(entry_of<Space<double>>(kernel));
+  joint_entries<Space<float>>().push_back(entry_of<Space<float>>(kernel));
+}
+
+// Why these tapes cannot stand for a compiled kernel; empty if they can.
+std::string obstacle(const OwnKernel& kernel) {
+  const std::string compile = "Likely fix: cdot_add_joints compiles it into a program";
+  if (kernel.bodies() > most_own_bodies || kernel.rows.rows() > most_own_rows)
+    return fmt::format("it has {} bodies and {} rows, the most without a compiler are {} and {}. {}", kernel.bodies(),
+                       kernel.rows.rows(), most_own_bodies, most_own_rows, compile);
+  if (kernel.parameter_size() > most_own_parameters || kernel.rows.jacobian_size > most_own_entries)
+    return fmt::format(
+        "its parameters have {} numbers and its Jacobian {}, the most without a compiler are {} and {}. {}",
+        kernel.parameter_size(), kernel.rows.jacobian_size, most_own_parameters, most_own_entries, compile);
+  for (const OwnParameter& parameter : kernel.parameters)
+    if (parameter.unit == "rad" && parameter.name.ends_with("_turns"))
+      return fmt::format("its parameter {} counts turns. {}", parameter.name, compile);
+  const std::string wrong = wrong_rate(kernel);
+  return wrong.empty() ? wrong : wrong + ". Please report this spec";
+}
+
+std::string free_name(Dimension dimension, const std::string& wanted) {
+  std::string name = wanted;
+  for (int k = 2; find_joint_type(dimension, name); ++k) name = fmt::format("{}#{}", wanted, k);
+  return name;
+}
+
+std::string content_of(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+OwnType add_own_type(const std::string& file) {
+  struct Known {
+    std::string content;
+    OwnType type;
+  };
+  static std::map<std::string, Known> known;
+  Known& last = known[file];
+  const std::string content = content_of(file);
+  if (!last.type.name.empty() && last.content == content) return last.type;
+  const auto [kernel, problems] = read_own_kernel(file);
+  if (!kernel) return {"", problems};
+  if (const std::string why = obstacle(*kernel); !why.empty())
+    return {"", fmt::format("{}{}: error: the joint cannot run: {}\n", problems, file, why)};
+  const Dimension dimension = kernel->dimension == 2 ? Dimension::planar : Dimension::spatial;
+  static std::vector<std::unique_ptr<Registered>> all;
+  all.push_back(std::make_unique<Registered>(Registered{free_name(dimension, kernel->name), kernel}));
+  add_joint_type(dimension, described(*all.back()));
+  if (dimension == Dimension::planar) add_entries<Planar>(kernel);
+  else add_entries<Spatial>(kernel);
+  last = {content, {all.back()->name, problems}};
+  return last.type;
+}
+
+}  // namespace cdot

@@ -1,0 +1,171 @@
+// Joints without a compiler move as compiled ones, bit for bit: every joint of the catalogue, by all methods.
+#include "runtime/own/own.hpp"
+
+#include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+
+#include "derive/own/own_kernel.hpp"
+#include "runtime/own/check_own.hpp"
+#include "tests/runtime/support.hpp"
+
+namespace cdot::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Method {
+  const char* name;
+  Settings settings;
+};
+
+std::vector<Method> methods() {
+  std::vector<Method> list = {{"euler", settings(Solver::direct, Drift::projection, -9.81)},
+                              {"sweeps", settings(Solver::iterative, Drift::projection, -9.81)},
+                              {"soft sweeps", settings(Solver::iterative, Drift::soft, -9.81)}};
+  for (const Integrator integrator : {Integrator::implicit, Integrator::rattle, Integrator::rk4, Integrator::radau5}) {
+    list.push_back(list.front());
+    list.back().settings.integrator = integrator;
+    list.back().name = "another integrator";
+  }
+  for (const Kernels kernels : {Kernels::fast, Kernels::robust}) {
+    list.push_back({"sweeps of other kernels", settings(Solver::iterative, Drift::projection, -9.81)});
+    list.back().settings.kernels = kernels;
+  }
+  return list;
+}
+
+void place(planar::Pose<double>*, BodyDefinition& d, int k) { d.angle = 0.4 * k - 0.3; }
+void place(spatial::Pose<double>*, SpatialBodyDefinition& d, int k) {
+  d.e0 = 1, d.e1 = 0.1 * k, d.e2 = 0.2 - 0.1 * k, d.e3 = 0.3;
+}
+
+// The poses and velocities after some steps, or the step that failed.
+template <class S>
+std::vector<double> run_of(const std::string& type, const JointType& info, const Settings& settings, bool grounded) {
+  BasicWorld<S> world(settings);
+  std::vector<int> bodies;
+  for (int k = 0; k < info.bodies; ++k) {
+    typename S::BodyDefinition d;
+    d.x = 0.7 * k, d.y = 0.3 - 0.2 * k, d.mass = 1 + k, d.vx = 0.2 - 0.1 * k;
+    place(static_cast<typename S::InDoubles::Pose*>(nullptr), d, k);
+    bodies.push_back(grounded && k + 1 == info.bodies && k > 0 ? world.ground() : world.add_body(d));
+  }
+  const int joint = world.add_joint({type, bodies, some_values(info), {}});
+  std::vector<double> numbers;
+  for (int k = 0; k < 12; ++k) {
+    if (!world.step(0.004)) return numbers.push_back(k), numbers;
+    for (const int body : bodies) {
+      const auto pose = world.pose(body);
+      const auto velocity = world.velocity(body);
+      for (std::size_t i = 0; i < sizeof pose / sizeof(typename S::Scalar); ++i)
+        numbers.push_back(double(reinterpret_cast<const typename S::Scalar*>(&pose)[i]));
+      for (std::size_t i = 0; i < sizeof velocity / sizeof(typename S::Scalar); ++i)
+        numbers.push_back(double(reinterpret_cast<const typename S::Scalar*>(&velocity)[i]));
+    }
+  }
+  for (std::size_t c = 0; c < info.coordinates.size(); ++c)
+    numbers.push_back(world.coordinate(joint, info.coordinates[c].name));
+  return numbers;
+}
+
+template <class S>
+int expect_same_runs(const std::string& compiled, const std::string& own) {
+  const JointType& info = *find_joint_type(S::dimension, compiled);
+  int finite = 0;
+  for (const Method& method : methods()) {
+    if (std::is_same_v<typename S::Scalar, float> && method.settings.integrator != Integrator::euler) continue;
+    for (const bool grounded : {false, true}) {
+      const std::vector<double> a = run_of<S>(compiled, info, method.settings, grounded);
+      const std::vector<double> b = run_of<S>(own, info, method.settings, grounded);
+      EXPECT_EQ(a.size(), b.size()) << compiled << " by " << method.name;
+      if (a.size() == b.size()) {
+        EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(double)), 0) << compiled << " by " << method.name;
+      }
+      finite += a.size() > 1;
+    }
+  }
+  return finite;
+}
+
+class InFolder : public testing::TestWithParam<const char*> {};
+
+TEST_P(InFolder, EveryJointMovesAsCompiled) {
+  const std::string folder = GetParam();
+  int joints = 0, runs = 0;
+  std::string refused;
+  for (const auto& entry : fs::directory_iterator(fs::path(CDOT_SOURCE_DIR "/specs") / folder)) {
+    if (entry.path().extension() != ".joint") continue;
+    const std::string compiled = entry.path().stem().string();
+    const OwnType own = add_own_type(entry.path().string());
+    if (own.name.empty()) {
+      EXPECT_TRUE(compiled == "gear" || compiled == "lesson_example") << own.problems;
+      EXPECT_NE(own.problems.find("Likely fix: cdot_add_joints compiles it"), std::string::npos) << own.problems;
+      refused += " " + compiled;
+      continue;
+    }
+    ++joints;
+    EXPECT_EQ(own.name, compiled + "#2");
+    runs += folder == "planar" ? expect_same_runs<Planar<double>>(compiled, own.name) +
+                                     expect_same_runs<Planar<float>>(compiled, own.name)
+                               : expect_same_runs<Spatial<double>>(compiled, own.name) +
+                                     expect_same_runs<Spatial<float>>(compiled, own.name);
+  }
+  fmt::print("{}: {} joints in {} runs; refused:{}\n", folder, joints, runs, refused);
+  EXPECT_GT(joints, 20);
+  EXPECT_GT(runs, 10 * joints);
+}
+INSTANTIATE_TEST_SUITE_P(Own, InFolder, testing::Values("planar", "spatial"));
+
+// A motor acts on the coordinate of a joint without a compiler, in the plane and beyond half a turn in space.
+TEST(Own, EffectsActOnItsCoordinates) {
+  const auto turned = [](const std::string& type) {
+    BasicWorld<Spatial<double>> world{Settings{}};
+    SpatialBodyDefinition d;
+    d.mass = 1, d.inertia = {1, 1, 1};
+    const int body = world.add_body(d);
+    const int joint =
+        world.add_joint({type, {world.ground(), body}, {{"pa", {0, 0, 0}}, {"fa", {1, 0, 0, 0, 1, 0}}}, {}});
+    add_motor(world, joint, "angle", {2.0, 50.0});
+    for (int k = 0; k < 400; ++k) world.step(0.01);
+    return world.coordinate(joint, "angle");
+  };
+  const OwnType own = add_own_type(CDOT_SOURCE_DIR "/specs/spatial/hinge.joint");
+  ASSERT_EQ(own.problems.find("error"), std::string::npos) << own.problems;
+  EXPECT_GT(turned("hinge"), 7);
+  EXPECT_EQ(turned("hinge"), turned(own.name));
+}
+
+// A second route finds a wrong derivation: here a spoiled number of J.
+TEST(Own, AWrongRateIsFound) {
+  const OwnReading reading = read_own_kernel(CDOT_SOURCE_DIR "/specs/planar/line.joint");
+  ASSERT_TRUE(reading.kernel) << reading.problems;
+  EXPECT_EQ(wrong_rate(*reading.kernel), "");
+  OwnKernel spoiled = *reading.kernel;
+  Tape& tape = spoiled.rows.functions[static_cast<std::size_t>(OwnFunctionName::velocity)].tape;
+  const auto minus = std::ranges::find(tape.steps, Tape::Code::subtract, &Tape::Step::code);
+  ASSERT_NE(minus, tape.steps.end());
+  minus->code = Tape::Code::add;
+  EXPECT_NE(wrong_rate(spoiled).find("row line: its derived rate is"), std::string::npos) << wrong_rate(spoiled);
+}
+
+TEST(Own, AFileThatChangedIsAnotherType) {
+  const fs::path file = fs::temp_directory_path() / "own_that_changes.joint";
+  const auto write = [&](const char* length) {
+    std::ofstream(file) << fmt::format(
+        "joint own_that_changes planar\n  \"x\"\n  point pa on a\n  point pb on b\n"
+        "  norm(pa - pb) = {}\n",
+        length);
+  };
+  write("1 [m]");
+  const std::string first = add_own_type(file.string()).name;
+  EXPECT_EQ(first, "own_that_changes");
+  EXPECT_EQ(add_own_type(file.string()).name, first);
+  write("2 [m]");
+  EXPECT_EQ(add_own_type(file.string()).name, "own_that_changes#2");
+  fs::remove(file);
+}
+
+}  // namespace
+}  // namespace cdot::test
