@@ -1,6 +1,7 @@
 // The parts of the search for a singular K: minors of J, and sentences about where they vanish.
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 #include "derive/check/mass.hpp"
 #include "derive/syntax/source.hpp"

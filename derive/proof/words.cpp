@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include "derive/derivation/derivation.hpp"
+#include "derive/expression/functions.hpp"
 #include "derive/expression/shared.hpp"
 #include "derive/expression/symbols.hpp"
 
