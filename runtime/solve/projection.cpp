@@ -66,8 +66,7 @@ bool stays_misfit(const WorldData<S>& world, const Island<S>& island, typename S
   constexpr T unchanged = T(1e-9), of_round_off = T(1) / 16;
   const T left = island.residual;
   // In float round-off leaves errors too, and these are to be corrected: else a slack bridge sags.
-  const T known = std::is_same_v<T, float> ? foreign<T> : converged<T>;
-  return left > known * island.scale &&
+  return !std::is_same_v<T, float> && left > converged<T> * island.scale &&
          std::abs(error - left) <= std::max(unchanged * error, of_round_off * round_off_of(world, island));
 }
 
