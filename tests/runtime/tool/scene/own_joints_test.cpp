@@ -48,9 +48,10 @@ TEST(OwnJoints, OfAFileBesideTheScene) {
   write(folder / "bead_on_ellipse.joint", ellipse);
   for (const char* type : {"bead_on_ellipse", "bead_on_ellipse.joint"}) {
     write(folder / "scene.toml", scene_of(type));
-    const CommandResult run = cdot_run(fmt::format("simulate '{}' -o '{}'", folder / "scene.toml", folder / "run.csv"));
+    const std::string scene = folder / "scene.toml", csv_path = folder / "run.csv";
+    const CommandResult run = cdot_run(fmt::format("simulate '{}' -o '{}'", scene, csv_path));
     ASSERT_EQ(run.status, 0) << run.out << run.err;
-    std::ifstream csv(folder / "run.csv");
+    std::ifstream csv(csv_path);
     std::string line, last;
     while (std::getline(csv, line)) last = line;
     double t = 0, x = 0, y = 0;
@@ -66,7 +67,7 @@ TEST(OwnJoints, MistakesOfTheSpecAreShownWithTheirLines) {
   wrong.replace(wrong.find("let u = pa"), 10, "let u = pc");
   write(folder / "bead_on_ellipse.joint", wrong);
   write(folder / "scene.toml", scene_of("bead_on_ellipse"));
-  const CommandResult run = cdot_run(fmt::format("simulate '{}'", folder / "scene.toml"));
+  const CommandResult run = cdot_run(fmt::format("simulate '{}'", (folder / "scene.toml").string()));
   EXPECT_EQ(run.status, 2);
   for (const char* words : {"scene.toml:9:8: error: ", "bead_on_ellipse.joint cannot be used:",
                             "bead_on_ellipse.joint:8:11: error: ", "pc"})
@@ -79,7 +80,7 @@ TEST(OwnJoints, OfTheOtherSpaceAreRefused) {
   spatial.replace(spatial.find("planar"), 6, "spatial");
   write(folder / "bead_on_ellipse.joint", spatial);
   write(folder / "scene.toml", scene_of("bead_on_ellipse"));
-  const CommandResult run = cdot_run(fmt::format("simulate '{}'", folder / "scene.toml"));
+  const CommandResult run = cdot_run(fmt::format("simulate '{}'", (folder / "scene.toml").string()));
   EXPECT_EQ(run.status, 2);
   EXPECT_NE(run.err.find("is a joint in space, and this scene is planar"), std::string::npos) << run.err;
 }
