@@ -13,8 +13,8 @@ void name_gradients(const Joint& joint, ScalarRow& row);
 
 // True if the factor of an angular velocity is a sum, but not of levers u × n with the n of the velocity.
 bool has_long_lever(const ScalarRow& row);
-// Of a row between two bodies: a turn of both about the centre of one changes no C of their relative pose. From the J of
-// both, `whole` = [n', (r × n)', -n', w'], follows w = -((x_a + r - x_b) × n), where `row.J` has a sum.
+// Of a row between two bodies: a turn of both about the centre of one changes no C of their relative pose. From the J
+// of both, `whole` = [n', (r × n)', -n', w'], follows w = -((x_a + r - x_b) × n), where `row.J` has a sum.
 void shorten_lever_of_carrier(const Joint& joint, ScalarRow& row, const std::vector<JacobianEntry>& whole);
 
 }  // namespace cdot::derive

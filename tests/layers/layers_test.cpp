@@ -145,7 +145,8 @@ TEST(Layers, NoRoomIncludesARoomBelowIt) {
   ASSERT_GT(all.size(), 500u);
   for (const Include& i : all) {
     EXPECT_TRUE(fs::exists(source_dir / i.of_file)) << i.file << " includes " << i.of_file;
-    const bool by_the_door = doors.contains(i.of_file) && (i.room.starts_with("runtime/tool/") || i.room == "runtime/own");
+    const bool by_the_door =
+        doors.contains(i.of_file) && (i.room.starts_with("runtime/tool/") || i.room == "runtime/own");
     EXPECT_TRUE(i.room.starts_with(bridge) || by_the_door || shared_rooms.contains(i.of_room) ||
                 half_of(i.room) == half_of(i.of_room))
         << i.file << " includes " << i.of_file << ": derive/ and runtime/ do not know each other";

@@ -5,7 +5,6 @@
 #include <functional>
 #include <limits>
 #include <optional>
-#include <ranges>
 #include <tuple>
 
 #include <cdot/methods.hpp>
@@ -285,9 +284,9 @@ void Search::try_candidate(Integrator integrator, double most) {
 void Search::try_stiff(double most) {
   try_candidate(Integrator::implicit, 3 * price_of({Integrator::implicit}));
   auto begun = std::move(begun_);
-  for (const IntegratorRow& row : std::views::reverse(integrator_rows)) {
-    if (row.integrator == Integrator::implicit) begun_ = std::move(begun);
-    if ((row.stiffens || row.stable_radians == always) && !done()) try_candidate(row.integrator, most);
+  for (auto row = integrator_rows.rbegin(); row != integrator_rows.rend(); ++row) {
+    if (row->integrator == Integrator::implicit) begun_ = std::move(begun);
+    if ((row->stiffens || row->stable_radians == always) && !done()) try_candidate(row->integrator, most);
   }
 }
 
