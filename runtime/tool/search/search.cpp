@@ -230,7 +230,7 @@ std::optional<Try> Search::after_early_end(const Attempt& last, const Attempt& n
   return finer(now.knob, 1 / (jump * stricter_for(now.knob.row()) > 1 ? least_jump : jump), shorter_after(now));
 }
 
-// What moves along a line or a parabola costs fixed steps of a low order next to nothing, and they are exact: if they
+// Fixed steps of a low order are exact for motions along a line or a parabola, and cost next to nothing. If they
 // agree with a first run of another method, they are delivered.
 void Search::try_even_steps(const Attempt& even) {
   const bool is_slow = stiff_at_start_ <= slow * yardstick_.mechanisms();
