@@ -14,6 +14,7 @@ constexpr cdot::command_line::Command commands[] = {
     {"diff",    "Compare hand derivations with the generated one, entry by entry, and name each mistake: a missing\n"
                 "or extra term, a sign, a factor, a wrong body", diff_command},
     {"check",   "Report errors and risks of a spec, before any code exists", check_command},
+    {"emit",    "Write a joint as a header that makes it one of another engine: its kernel and an adapter", emit_command},
     {"compile", "Write a scene as its own step: a C++ header of straight lines", compile_command},
 };
 // clang-format on
@@ -26,6 +27,7 @@ constexpr cdot::command_line::Program program = {
     "  cdot explain specs/planar/line.joint    the derivation, step by step\n"
     "  cdot diff    line                       published derivations against the generated one\n"
     "  cdot derive                             all specs to generated/, proved\n"
+    "  cdot emit    hinge --for bullet         a header that makes it a joint of that engine\n"
     "  cdot compile specs/scenes/four_bar.toml a scene as its own step, in C++\n\n"
     "The language is described in specs/README.md.",
     "Exit status: 0 all well; 1 the answer is no (differs, not current); 2 bad usage or input."};

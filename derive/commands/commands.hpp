@@ -17,6 +17,7 @@ Run derive_command(Line& line);
 Run explain_command(Line& line);
 Run diff_command(Line& line);
 Run check_command(Line& line);
+Run emit_command(Line& line);
 Run compile_command(Line& line);  // its line in the help
 
 // `cdot compile`: becomes the program `cdot-compile`, which lies beside `cdot`. Returns the exit status if it cannot.

@@ -73,7 +73,8 @@ void judge_hand(const fs::path& spec, const ReadResult& read, Outcome& outcome) 
 
 }  // namespace
 
-Outcome derive_spec(const fs::path& spec, const SpecsFolder& folder, const ProofRecord& record, SearchBounds bounds) {
+Outcome derive_spec(const fs::path& spec, const SpecsFolder& folder, const ProofRecord& record, SearchBounds bounds,
+                    const UseKernel& use) {
   Outcome outcome;
   const ReadResult read = folder.read(spec);  // text to C(q) = 0
   outcome.complaints = render(*read.file, read.diagnostics);
@@ -86,6 +87,10 @@ Outcome derive_spec(const fs::path& spec, const SpecsFolder& folder, const Proof
   const Kernel planned = plan(derivation);                        // one program a function
   const Kernel kernel = simplified(planned, &cut_short, bounds);  // common terms and factors shared
   outcome.complaints += warning_of(cut_short, derivation.joint);
+  if (use) {
+    use(kernel);
+    return outcome;
+  }
   outcome.joint = print(kernel);  // C++ and what it costs
   judge_hand(spec, read, outcome);
   return outcome;

@@ -9,6 +9,7 @@
 //   proofs       the only cache that outlives a run: generated/proofs.csv, by content (proof_record.hpp)
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,11 @@ struct Outcome {
   std::vector<LedgerRow> hand_costs;  // of the published derivations beside it that agree
 };
 
-// Proves what is not on record. Warns of programs whose search for fewer operations these bounds ended.
+using UseKernel = std::function<void(const Kernel&)>;
+
+// Proves what is not on record. Warns of programs whose search for fewer operations these bounds ended. `use` gets the
+// kernel instead of the printer and of the published derivations.
 Outcome derive_spec(const std::filesystem::path& spec, const SpecsFolder& folder, const ProofRecord& record,
-                    SearchBounds bounds = usual_bounds);
+                    SearchBounds bounds = usual_bounds, const UseKernel& use = {});
 
 }  // namespace cdot::derive

@@ -45,6 +45,7 @@ const std::vector<std::string> rooms = {
     "derive/explain",      // the derivation as a lecture
     "derive/proof",        // the laws, by GiNaC
     "derive/kernel",       // programs to C++
+    "derive/engines",      // kernels to joints of other engines
     "derive/own",          // a kernel as tapes, for programs without a compiler
     "derive/check", "derive/diff",
     "derive/pipeline",     // read, derive, prove, print
@@ -66,6 +67,7 @@ const std::vector<std::string> rooms = {
     "runtime/effects",     // effects of specs on coordinates, their short forms; breaking
     "runtime/diagnose",
     "runtime/own",         // joints made while a program runs
+    "runtime/engines",     // kernels in other engines: texts of `cdot emit`, built by its tests alone
     // cdot-run.
     "runtime/tool/scene",
     "runtime/tool/watch",  // ranks and concerns along a run

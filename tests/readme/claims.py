@@ -60,7 +60,7 @@ def front_page():
     for before, language, lines in blocks("README.md"):
         first = lines[0]
         commands = re.findall(r"`(cdot \w+ [\w/.]+(?: --\w+(?: \w+)?)*)`", before)
-        files = re.findall(r"\]\(((?:specs|generated)/[^)]+)\)", before)
+        files = re.findall(r"\]\(((?:specs|generated|tests)/[^)]+)\)", before)
         if language == "cmake":
             kind = "cmake"  # tests/install does what it says
         elif first.startswith("./"):
