@@ -13,11 +13,14 @@ namespace {
 const Adapter plain = {"PLAIN", adapter_plain};
 const std::vector<std::string_view> in_rows = {"position", "jacobian", "effective_mass", "factor",
                                                "solve",    "velocity", "dense",          "time_derivative"};
+const std::vector<std::string_view> in_impulses = {"position", "jacobian", "effective_mass", "factor",
+                                                   "solve",    "velocity", "apply",          "time_derivative"};
 
 // clang-format off
 const std::vector<Engine> table = {
     {"plain",  "no engine: impulses for a loop of your own, in any number type", "plain::Joint<T, BLOCKS>", "template <class T>\n", 0, 0, {plain}, {}},
     {"bullet", "Bullet 3: a btTypedConstraint",                                  "bullet::Constraint<BLOCKS>", "", 3, 2, {plain, {"BULLET", adapter_bullet}}, in_rows},
+    {"box2d",  "Box2D 2.4: a b2Joint",                                           "box2d::Joint<BLOCKS>", "", 2, 2, {plain, {"BOX2D", adapter_box2d}}, in_impulses},
 };
 // clang-format on
 

@@ -174,7 +174,7 @@ class Constraint : public btTypedConstraint {
     Coordinate::time_derivative(q.of, parameters, time, rate);
     Coordinate::dense(J, D);
     values_[i] = plain::with_turns<Coordinate>(C[0], values_[i]);
-    const btScalar erp = erp_ >= 0 ? erp_ : info.erp;
+    const btScalar erp = erp_ >= 0 ? erp_ : info.erp;  // as for its own stops
     if (drive.has_motor()) {
       write_jacobian(info, next, D[0]);
       write_aim(info, next++, drive.speed - rate[0], -drive.most * h, drive.most * h);

@@ -31,6 +31,7 @@ template <class T>
 struct Drive {
   T speed = T(0), most = T(0);  // rate = speed, by a force or torque of at most `most`; 0: no motor
   T lower = T(-HUGE_VAL), upper = T(HUGE_VAL);
+  T error_reduction = T(0.2);  // part that a step takes back where the coordinate lies beyond a limit
   bool has_motor() const { return most > T(0); }
 };
 
@@ -69,8 +70,9 @@ class Rows {
 
   T impulse[rows] = {};  // of the last step, where the next one starts
 
+  // `ratio` is that of this step's length to the last one's.
   template <class Pose, class Mass, class Parameters>
-  void prepare(const Pose (&q)[bodies], const Mass (&m)[bodies], const Parameters& p, T time, T h,
+  void prepare(const Pose (&q)[bodies], const Mass (&m)[bodies], const Parameters& p, T time, T h, T ratio,
                const Stiffness<T>& stiffness) {
     T C[rows];
     Block::jacobian(q, p, time, C, J_);
@@ -80,10 +82,15 @@ class Rows {
     for (int i = 0; i < rows; ++i) {
       const bool bound = Block::row_kinds[i] == RowKind::inequality;
       bias_[i] += bound ? bias_of_bound(C[i], step.reduction, h) : C[i] * step.reduction / h;
+      impulse[i] *= ratio;
       softness_[i] = step.softness * K_[diagonal(i)];
       K_[diagonal(i)] += softness_[i];
     }
     Block::factor(K_, F_);
+  }
+
+  void forget() {
+    for (T& x : impulse) x = T(0);
   }
 
   template <class Mass, class Velocity>
@@ -150,19 +157,22 @@ class DriveRows {
   T motor = T(0), lower = T(0), upper = T(0);  // impulses of the last step
 
   template <class Pose, class Mass, class Parameters>
-  void prepare(const Pose (&q)[bodies], const Mass (&m)[bodies], const Parameters& p, T time, T h,
-               const Drive<T>& drive, T error_reduction) {
+  void prepare(const Pose (&q)[bodies], const Mass (&m)[bodies], const Parameters& p, T time, T h, T ratio,
+               const Drive<T>& drive) {
     T C[1], K[1];
     Block::jacobian(q, p, time, C, J_);
     Block::time_derivative(q, p, time, rate_);
     Block::effective_mass(J_, m, K);
     value_ = with_turns<Block>(C[0], value_);
     inverse_K_ = pivot(K[0], K[0]);
+    motor *= ratio, lower *= ratio, upper *= ratio;
     speed_ = drive.speed;
     most_ = drive.most * h;
-    lower_bias_ = bias_of_bound(value_ - drive.lower, error_reduction, h);
-    upper_bias_ = bias_of_bound(drive.upper - value_, error_reduction, h);
+    lower_bias_ = bias_of_bound(value_ - drive.lower, drive.error_reduction, h);
+    upper_bias_ = bias_of_bound(drive.upper - value_, drive.error_reduction, h);
   }
+
+  void forget() { motor = lower = upper = T(0); }
 
   template <class Mass, class Velocity>
   void warm_start(const Mass (&m)[bodies], Velocity (&v)[bodies]) const {
@@ -280,12 +290,14 @@ class Joint {
   // Before the velocities are solved, at the poses of the beginning of the step.
   template <class Pose, class Mass>
   void prepare(const Pose (&q)[bodies], const Mass (&m)[bodies], T time, T h) {
-    rows_.prepare(q, m, parameters, time, h, stiffness);
+    const T ratio = h * inverse(h_ > T(0) ? h_ : h);
+    h_ = h;
+    rows_.prepare(q, m, parameters, time, h, ratio, stiffness);
     int i = 0;
-    drive_rows_.each(
-        [&](auto& row) { row.prepare(q, m, parameters, time, h, drives[i++], stiffness.error_reduction); });
+    drive_rows_.each([&](auto& row) { row.prepare(q, m, parameters, time, h, ratio, drives[i++]); });
   }
-  // Once for all joints, before the first solve().
+  // Once for all joints, before the first solve(). Of bodies at rest with inverse masses 1 it makes J^T lambda: the
+  // impulses that the joint exerts, with those of its drives.
   template <class Mass, class Velocity>
   void warm_start(const Mass (&m)[bodies], Velocity (&v)[bodies]) {
     drive_rows_.each([&](auto& row) { row.warm_start(m, v); });
@@ -308,7 +320,10 @@ class Joint {
   }
 
   const T (&impulses() const)[rows] { return rows_.impulse; }  // of the last step: h times force or torque
-  void forget() { *this = copy_of_settings(); }                // after a jump of a body, no impulse is a good guess
+  void forget() {                                              // after a jump of a body, no impulse is a good guess
+    rows_.forget();
+    drive_rows_.each([](auto& row) { row.forget(); });
+  }
 
  private:
   template <class Velocity>
@@ -317,14 +332,8 @@ class Joint {
   };
   static Shift<planar::Velocity<T>> still(const planar::Pose<T>&) { return {}; }
   static Shift<spatial::Velocity<T>> still(const spatial::Pose<T>&) { return {}; }
-  Joint copy_of_settings() const {
-    Joint fresh;
-    fresh.parameters = parameters;
-    fresh.stiffness = stiffness;
-    for (int i = 0; i < coordinates; ++i) fresh.drives[i] = drives[i];
-    return fresh;
-  }
 
+  T h_ = T(0);  // of the last step
   Rows<Block, T> rows_;
   AllDriveRows<T, Coordinates...> drive_rows_;
 };
