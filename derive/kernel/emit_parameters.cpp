@@ -86,17 +86,20 @@ std::vector<std::string> parameters_alone(const Joint& joint) {
   std::string names;
   for (const Parameter& p : joint.parameters) names += "index_of_" + p.name + ", ";
   lines.push_back(fmt::format("enum Index {{ {}index_end }};  // of default_value()", names));
-  lines.insert(lines.end(), {"", "// The same points of a body after its origin moved by `r`.", "template <class T>",
-                             fmt::format("static void move_origin(Parameters<T>& p, int body, const T (&r)[{}]) {{",
-                                         joint.dimension)});
+  std::vector<std::string> moves;
   for (const Parameter& p : joint.parameters) {
     if (p.kind != ParameterKind::point || p.body < 0) continue;
-    std::string moves;
     const std::vector<std::string> fields = fields_of(joint, p);
+    std::string move = fmt::format("  if (body == {})", p.body);
     for (std::size_t k = 0; k < fields.size(); ++k)
-      moves += fmt::format("{}p.{} -= r[{}]", k ? ", " : "", fields[k], k);
-    lines.push_back(fmt::format("  if (body == {}) {};", p.body, moves));
+      move += fmt::format("{} p.{} -= r[{}]", k == 0 ? "" : ",", fields[k], k);
+    moves.push_back(move + ";");
   }
+  lines.insert(lines.end(),
+               {"", "// The same points of a body after its origin moved by `r`.", "template <class T>",
+                fmt::format("static void move_origin({0}Parameters<T>& p, {0}int body, {0}const T (&r)[{1}]) {{",
+                            moves.empty() ? "[[maybe_unused]] " : "", joint.dimension)});
+  lines.insert(lines.end(), moves.begin(), moves.end());
   lines.push_back("}");
   return lines;
 }

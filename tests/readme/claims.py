@@ -90,6 +90,14 @@ def front_page():
             claim(any(source.glob(name)), f"{name} exists")
 
 
+def kernel_loop():
+    """Its code is that of the example."""
+    example = (source / "tests/examples/engine.cpp").read_text()
+    for _, _, lines in blocks("runtime/include/cdot/kernel.md"):
+        missing = occur(lines, example)
+        claim(missing is None, "kernel.md shows the example's " + lines[0] + (f", but for: {missing}" if missing else ""))
+
+
 def verdicts():
     """The count of published formulas by verdict."""
     text = " ".join((source / "README.md").read_text().split())
@@ -188,9 +196,10 @@ with tempfile.TemporaryDirectory() as folder:
     os.environ["PATH"] = f"{folder}:" + os.environ["PATH"]
     (Path(folder) / "cdot").symlink_to(cdot)
     (Path(folder) / "cdot-run").symlink_to(cdot_run)
-    for page in ("README.md", "specs/README.md", "specs/scenes/README.md"):
+    for page in ("README.md", "specs/README.md", "specs/scenes/README.md", "runtime/include/cdot/kernel.md"):
         links(page)
     front_page()
+    kernel_loop()
     verdicts()
     pictures()
     teaching_message()
