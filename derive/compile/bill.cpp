@@ -13,11 +13,14 @@ constexpr double most_seconds = 120;  // of compiling and counting
 
 // Bodies that nothing acts on.
 Mechanism bare(Mechanism mechanism) {
-  mechanism.gravity_x = mechanism.gravity_y = 0;
+  mechanism.gravity = {};
   mechanism.joints.clear();
   mechanism.effects.clear();
   mechanism.bounded.clear();
-  for (Body& b : mechanism.bodies) b.ax = b.ay = b.aw = b.linear_drag = b.angular_drag = 0;
+  for (Body& b : mechanism.bodies) {
+    std::ranges::fill(b.acceleration, 0);
+    b.torque = {}, b.linear_drag = b.angular_drag = 0;
+  }
   return mechanism;
 }
 
@@ -26,9 +29,8 @@ class Parts {
   explicit Parts(const Mechanism& mechanism) : all_(mechanism) {}
 
   std::vector<Part> list() {
-    if (all_.gravity_x != 0 || all_.gravity_y != 0)
-      add("gravity",
-          [](const Mechanism& from, Mechanism& to) { to.gravity_x = from.gravity_x, to.gravity_y = from.gravity_y; });
+    if (all_.gravity != decltype(all_.gravity){})
+      add("gravity", [](const Mechanism& from, Mechanism& to) { to.gravity = from.gravity; });
     for (std::size_t b = 0; b < all_.bodies.size(); ++b) list_body(b);
     for (std::size_t j = 0; j < all_.joints.size(); ++j)
       add_of(fmt::format("joint {} ({})", all_.joints[j].name, all_.joints[j].type), &Mechanism::joints, j);
@@ -60,10 +62,11 @@ class Parts {
   void list_body(std::size_t b) {
     const Body& body = all_.bodies[b];
     if (!body.moves) return;
-    if (body.ax != 0 || body.ay != 0 || body.aw != 0)
+    const auto acts = [](double number) { return number != 0; };
+    if (std::ranges::any_of(body.acceleration, acts) || std::ranges::any_of(body.torque, acts))
       add("force on " + body.name, [b](const Mechanism& from, Mechanism& to) {
         const Body& of = from.bodies[b];
-        to.bodies[b].ax = of.ax, to.bodies[b].ay = of.ay, to.bodies[b].aw = of.aw;
+        to.bodies[b].acceleration = of.acceleration, to.bodies[b].torque = of.torque;
       });
     if (body.linear_drag != 0 || body.angular_drag != 0)
       add("damping of " + body.name, [b](const Mechanism& from, Mechanism& to) {

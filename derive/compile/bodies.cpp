@@ -2,64 +2,82 @@
 
 #include <fmt/format.h>
 
+#include "derive/compile/gyroscopes.hpp"
+
 namespace cdot::compile {
 namespace {
 
-std::string pushed(const std::string& name, const std::string& member, double a, double drag) {
-  const std::string v = fmt::format("v[{}].{}", name, member);
+// Drag, then an acceleration: a number, or the text of one.
+std::string pushed(const std::string& v, double drag, const std::string& a) {
   std::string text;
   if (drag != 0) text += fmt::format("    {0} = {0} * (T(1) / (T(1) + h * T({1})));\n", v, drag);
-  if (a != 0) text += fmt::format("    {0} = {0} + h * T({1});\n", v, a);
+  if (!a.empty()) text += fmt::format("    {0} = {0} + h * {1};\n", v, a);
   return text;
 }
+
+std::string number(double x) { return x == 0 ? "" : fmt::format("T({})", x); }
 
 }  // namespace
 
 std::string BodyTexts::turn(const std::set<std::string>& turning) const {
-  std::string text = R"(
-  static Pose moved(const Pose& q, const Velocity& d) { return {q.x + d.x, q.y + d.y, q.angle + d.w, q.c, q.s}; }
-
-  static void turn(Pose (&q)[bodies]) {
-)";
+  std::string text = "\n  static void turn(Pose (&q)[bodies]) {\n";
   each([&](const Body&, const std::string& name) {
-    text += turning.contains(name) ? fmt::format("    sin_cos(q[{0}].angle, q[{0}].s, q[{0}].c);\n", name)
-                                   : fmt::format("    q[{0}].c = T(1), q[{0}].s = T(0);  // read by no joint\n", name);
+    if (mechanism.spatial()) text += fmt::format("    orient(q[{}]);\n", name);
+    else if (turning.contains(name)) text += fmt::format("    sin_cos(q[{0}].angle, q[{0}].s, q[{0}].c);\n", name);
+    else text += fmt::format("    q[{0}].c = T(1), q[{0}].s = T(0);  // read by no joint\n", name);
   });
   return text + "  }\n";
 }
 
 std::string BodyTexts::push() const {
-  std::string text = R"(
+  std::string text = fmt::format(R"(
   // Forces other than the joints' act for h. Drag is implicit: v / (1 + h d).
-  static void push(Velocity (&v)[bodies], const T& h) {
-)";
+  static void push({}Velocity (&v)[bodies], const T& h) {{
+)",
+                                 pose_argument(mechanism));
   each([&](const Body& b, const std::string& name) {
-    text += pushed(name, "x", mechanism.gravity_x + b.ax, b.linear_drag);
-    text += pushed(name, "y", mechanism.gravity_y + b.ay, b.linear_drag);
-    text += pushed(name, "w", b.aw, b.angular_drag);
+    const std::string torque = torque_of(b, name);
+    if (!torque.empty()) text += torque;
+    for (std::size_t c = 0; c < mechanism.columns(); ++c) {
+      const bool turns = c >= mechanism.linear();
+      const std::string a = turns && !torque.empty() ? fmt::format("{}_rate.{}", name, "xyz"[c - mechanism.linear()])
+                                                     : number(mechanism.push(b, c));
+      text += pushed(fmt::format("v[{}].{}", name, mechanism.column(c)), turns ? b.angular_drag : b.linear_drag, a);
+    }
   });
-  return text + "    (void)v, (void)h;\n  }\n";
+  return text + (pose_argument(mechanism).empty() ? "" : "    (void)q;\n") + "    (void)v, (void)h;\n  }\n";
 }
 
 std::string BodyTexts::weighed() const {
   std::string text = R"(
   // Twice the kinetic energy.
-  static T weighed(const Velocity (&v)[bodies]) {
+  static T weighed(const Pose (&q)[bodies], const Velocity (&v)[bodies]) {
+    (void)q;
     T sum = T(0);
 )";
   each([&](const Body& b, const std::string& name) {
-    const auto square = [&](const std::string& member) { return fmt::format("v[{0}].{1} * v[{0}].{1}", name, member); };
-    if (b.inv_m > 0) text += fmt::format("    sum = sum + T({}) * ({} + {});\n", 1 / b.inv_m, square("x"), square("y"));
-    if (b.inv_I > 0) text += fmt::format("    sum = sum + T({}) * ({});\n", 1 / b.inv_I, square("w"));
+    const auto squares = [&](std::size_t begin, std::size_t end) {
+      std::string sum;
+      for (std::size_t c = begin; c < end; ++c)
+        sum += fmt::format("{0}v[{1}].{2} * v[{1}].{2}", c == begin ? "" : " + ", name, mechanism.column(c));
+      return sum;
+    };
+    if (b.inv_m > 0)
+      text += fmt::format("    sum = sum + T({}) * ({});\n", 1 / b.inv_m, squares(0, mechanism.linear()));
+    if (b.inertia_turns) text += spin_energy_of(b, name);
+    else if (b.inv_I > 0)
+      text +=
+          fmt::format("    sum = sum + T({}) * ({});\n", 1 / b.inv_I, squares(mechanism.linear(), mechanism.columns()));
   });
   return text + "    return sum;\n  }\n";
 }
 
+// A constant torque has a potential in the plane only.
 std::string BodyTexts::energy(bool has_effects) const {
   std::string text = R"(
   // Kinetic energy, that of effects, and the potential of gravity and constant forces, which is 0 at the start [J].
   static T energy(const State& s) {
-    T sum = T(0.5) * weighed(s.v);
+    T sum = T(0.5) * weighed(s.q, s.v);
 )";
   if (has_effects) text += "    T E;  // of the effects\n    potential($ss.q, s.time, E);\n    sum = sum + E;\n";
   each([&](const Body& b, const std::string& name) {
@@ -67,9 +85,9 @@ std::string BodyTexts::energy(bool has_effects) const {
       if (force == 0) return;
       text += fmt::format("    sum = sum - T({}) * (s.q[{}].{} - T({}));\n", force, name, member, start);
     };
-    if (b.inv_m > 0) add((mechanism.gravity_x + b.ax) / b.inv_m, "x", b.x);
-    if (b.inv_m > 0) add((mechanism.gravity_y + b.ay) / b.inv_m, "y", b.y);
-    if (b.inv_I > 0) add(b.aw / b.inv_I, "angle", b.angle);
+    for (std::size_t c = 0; b.inv_m > 0 && c < mechanism.linear(); ++c)
+      add(mechanism.push(b, c) / b.inv_m, mechanism.column(c), b.pose[c]);
+    if (b.inv_I > 0 && !mechanism.spatial()) add(b.acceleration[2] / b.inv_I, "angle", b.pose[2]);
   });
   return text + "    return sum;\n  }\n";
 }

@@ -13,7 +13,7 @@ struct BodyTexts {
   const Mechanism& mechanism;
   const std::vector<std::string>& names;  // in C++
 
-  // moved() and turn(): sine and cosine of the bodies in `turning`.
+  // turn(): sine and cosine of the bodies in `turning`; rotation matrices.
   std::string turn(const std::set<std::string>& turning) const;
   // push(): forces other than the joints' for a step of Euler's method.
   std::string push() const;

@@ -21,7 +21,7 @@ constexpr const char* close_begins = R"(
   // Newton on C, with J as it is evaluated: anew where a round leaves more than the share `slow` of the error. Adds up
   // the moves. Returns the error before. A lane that is done waits for the others unchanged.
   static T close(State& s, Evaluated& at, const T& slow, Velocity (&moves)[bodies]) {
-    for (int i = 0; i < bodies; ++i) moves[i] = {T(0), T(0), T(0)};
+    for (int i = 0; i < bodies; ++i) moves[i] = still();
     const T left = s.residual;
     T before = T(1e30), error = T(0);
     auto goes_on = T(0) < T(1), renewed = T(1) < T(0);
@@ -60,12 +60,8 @@ constexpr const char* renews = R"(      const auto is_slow = goes_on && {0}worst
       if (!any(goes_on) || round == 20) return error;
       const auto renews = goes_on && is_slow;
       if (any(renews)) {{
-        at.time = select(renews, s.time, at.time);
-        for (int i = 0; i < bodies; ++i) {{
-          Pose& q = at.q[i];
-          q = {{select(renews, s.q[i].x, q.x), select(renews, s.q[i].y, q.y), select(renews, s.q[i].angle, q.angle),
-               select(renews, s.q[i].c, q.c), select(renews, s.q[i].s, q.s)}};
-        }}
+{2}        at.time = select(renews, s.time, at.time);
+        for (int i = 0; i < bodies; ++i) at.q[i] = choose(renews, s.q[i], at.q[i]);
 {1}        renewed = renewed || renews;
       }}
       before = worst;
@@ -74,11 +70,11 @@ constexpr const char* renews = R"(      const auto is_slow = goes_on && {0}worst
 constexpr const char* moves_of_rows = R"(      T unused[rows];
       for (T& of_row : C) of_row = -of_row;
       Velocity d[bodies];
-      solve(s.J, C, unused, d);
+      solve($qs.J, C, unused, d);
 )";
 
 constexpr const char* no_moves = R"(      Velocity d[bodies];
-      for (int i = 0; i < bodies; ++i) d[i] = {T(0), T(0), T(0)};
+      for (int i = 0; i < bodies; ++i) d[i] = still();
 )";
 
 constexpr const char* moves_of_ends = R"(      auto passed = T(1) < T(0);
@@ -95,12 +91,25 @@ constexpr const char* moves_of_ends = R"(      auto passed = T(1) < T(0);
       }}
 )";
 
-constexpr const char* round_ends = R"(      for (int i = 0; i < bodies; ++i) {
-        d[i] = {select(goes_on, d[i].x, T(0)), select(goes_on, d[i].y, T(0)), select(goes_on, d[i].w, T(0))};
+constexpr const char* moves_bodies = R"(      for (int i = 0; i < bodies; ++i) {
+        d[i] = choose(goes_on, d[i], still());
         moves[i] = moves[i] + d[i];
         s.q[i] = moved(s.q[i], d[i]);
       }
       turn(s.q);
+    }
+  }
+)";
+
+// Turning a pose by nothing would change its bits, in a lane that waits.
+constexpr const char* moves_bodies_in_space = R"(      Pose next[bodies];
+      for (int i = 0; i < bodies; ++i) {
+        d[i] = choose(goes_on, d[i], still());
+        moves[i] = moves[i] + d[i];
+        next[i] = moved(s.q[i], d[i]);
+      }
+      turn(next);
+      for (int i = 0; i < bodies; ++i) s.q[i] = choose(goes_on, next[i], s.q[i]);
     }
   }
 )";
@@ -112,7 +121,7 @@ constexpr const char* project = R"(
     rates(s.J, s.v, b);
     for (T& of_row : b) of_row = -of_row;
     Velocity d[bodies];
-    solve(s.J, b, unused, d);
+    solve($qs.J, b, unused, d);
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + d[i];
   }
 )";
@@ -125,7 +134,6 @@ constexpr const char* bounded_type = R"(
 {0}    T S[bounded * (bounded + 1) / 2], c[bounded], low[bounded], high[bounded], K[bounded];
   }};
   static constexpr bool is_rate[bounded] = {{{1}}};
-  using Mask = decltype(T(0) < T(1));
 )";
 
 constexpr const char* solves_bounded = R"(
@@ -268,7 +276,7 @@ constexpr const char* solves_bounded = R"(
 
 }  // namespace
 
-std::string corrections_of(double tolerance, const Contents& has) {
+std::string corrections_of(double tolerance, const Contents& has, const std::string& renew) {
   std::string text;
   if (has.closes()) {
     text += close_begins;
@@ -282,10 +290,11 @@ std::string corrections_of(double tolerance, const Contents& has) {
     text += when(has.ends, ends_join);
     text += fmt::format(
         renews, has.ends ? "!more && " : "",
-        when(has.rows, "        evaluate($sat.q, at.time, s.J);\n") + when(has.ends, "        reached = false;\n"));
+        when(has.rows, "        evaluate($sat.q, at.time, s.J);\n") + when(has.ends, "        reached = false;\n"),
+        renew);
     text += has.rows ? moves_of_rows : no_moves;
     if (has.ends) text += fmt::format(moves_of_ends, has.rows ? "s.J, " : "");
-    text += round_ends;
+    text += has.spatial ? moves_bodies_in_space : moves_bodies;
   }
   if (has.rows) text += project;
   return text;

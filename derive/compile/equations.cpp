@@ -25,6 +25,7 @@ class EquationWriter {
 
   Equations write() {
     out_.constants.inputs = {mechanism_.inputs.begin(), mechanism_.inputs.end()};
+    blocks_.note_start(out_.constants);
     if (system().size() > 0) {
       out_.evaluate = joints_.evaluate(out_.constants, out_.stored);
       write_errors();

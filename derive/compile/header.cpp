@@ -7,9 +7,12 @@
 #include "derive/compile/arithmetic.hpp"
 #include "derive/compile/bodies.hpp"
 #include "derive/compile/equations.hpp"
+#include "derive/compile/gyroscopes.hpp"
 #include "derive/compile/identifiers.hpp"
+#include "derive/compile/space.hpp"
 #include "derive/compile/steps.hpp"
 #include "derive/compile/texts.hpp"
+#include "derive/compile/types.hpp"
 #include "derive/program/print.hpp"
 
 namespace cdot::compile {
@@ -34,33 +37,43 @@ class HeaderWriter {
     write_types();
     write_start();
     const BodyTexts bodies{mechanism_, names_.bodies};
-    text_ += bodies.turn(equations_.turning);
+    text_ += bodies.turn(equations_.turning) + gyroscopes_of(mechanism_, names_.bodies);
     if (!on_accelerations() && !has_effects()) text_ += bodies.push();
     text_ += bodies.weighed() + bodies.energy(has_effects());
     write_equations();
     write_corrections();
     text_ += step_of(mechanism_.method, has());
     text_ += "};\n\n}  // namespace cdot::scenes\n";
-    return {with_inputs(std::move(text_)), name_, operations(), state_bytes()};
+    return {with_arguments(std::move(text_)), name_, operations(), state_bytes()};
   }
 
  private:
   bool on_accelerations() const { return mechanism_.method != Method::euler; }
   Contents has() const {
-    return {!equations_.rows.empty(), !mechanism_.effects.empty(), !mechanism_.bounded.empty(), equations_.has_ends};
+    return {!equations_.rows.empty(), !mechanism_.effects.empty(), !mechanism_.bounded.empty(),
+            equations_.has_ends,      mechanism_.spatial(),        has_gyroscopes(mechanism_)};
   }
   bool has_rows() const { return has().rows; }
   bool has_effects() const { return has().effects || has().bounded; }
 
   bool has_inputs() const { return !equations_.constants.inputs.empty(); }
 
-  // Functions take the inputs: "$d" declares them, "$s" passes those of a State, "$p" those of the caller.
-  std::string with_inputs(std::string text) const {
-    const std::pair<std::string_view, std::string_view> marks[] = {
-        {"$d", "const Inputs& p, "}, {"$s", "s.p, "}, {"$p", "p, "}};
+  // Functions take the inputs: "$d" declares them, "$s" passes those of a State, "$p" those of the caller. Functions
+  // that weigh take poses where inertias turn: "$g" declares them, "$q" passes those of a State. Poses get their
+  // inertias by
+  // "$w" at a stage, by "$W" at the end of a step.
+  std::string with_arguments(std::string text) const {
+    const bool inputs = has_inputs(), turns = has().gyroscopes;
+    const std::pair<std::string_view, std::string> marks[] = {{"$d", inputs ? "const Inputs& p, " : ""},
+                                                              {"$s", inputs ? "s.p, " : ""},
+                                                              {"$p", inputs ? "p, " : ""},
+                                                              {"$g", pose_argument(mechanism_)},
+                                                              {"$q", turns ? "s.q, " : ""},
+                                                              {"$w", turns ? "    weigh(at.q, T(0) < T(1));\n" : ""},
+                                                              {"$W", turns ? "    weigh(s.q, T(0) < T(1));\n" : ""}};
     for (const auto& [mark, argument] : marks)
       for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos;)
-        text.replace(at, mark.size(), has_inputs() ? argument : std::string_view());
+        text.replace(at, mark.size(), argument);
     return text;
   }
 
@@ -76,10 +89,11 @@ class HeaderWriter {
   }
 
   long state_bytes() const {
-    const long bodies = std::ranges::count_if(mechanism_.bodies, &Body::moves);
+    long of_bodies = 0;
+    for (const Body& body : mechanism_.bodies) of_bodies += numbers_of(mechanism_, body);
     const long of_rows = long(equations_.rows.size()) + long(equations_.stored.size()) + (has().closes() ? 1 : 0);
-    return long{sizeof(double)} * (1 + bodies * (on_accelerations() ? 11 : 8) + of_rows +
-                                   long(mechanism_.bounded.size()) + long(equations_.constants.inputs.size()));
+    return long{sizeof(double)} *
+           (1 + of_bodies + of_rows + long(mechanism_.bounded.size()) + long(equations_.constants.inputs.size()));
   }
 
   // f(body, its name) for those that move.
@@ -101,8 +115,9 @@ class HeaderWriter {
     line("// where GCC 12 may use fused operations. No heap, no exceptions.");
     line("#pragma once");
     line();
-    if (calls_functions()) line("#include <cmath>"), line();
+    if (calls_functions() || mechanism_.spatial()) line("#include <cmath>"), line();
     text_ += arithmetic;
+    if (mechanism_.spatial()) text_ += space;
     line("namespace cdot::scenes {");
     line();
     line("template <class T>");
@@ -122,19 +137,7 @@ class HeaderWriter {
     line(fmt::format("  static constexpr double default_step = {};  // [s]", mechanism_.step));
     for (const auto& [name, value] : equations_.constants.named)
       line(fmt::format("  static constexpr double {} = {};", name, value));
-    text_ += R"(
-  struct Pose {
-    T x, y, angle;  // centre of mass [m], [rad]
-    T c, s;         // cosine and sine of the angle
-  };
-  struct Velocity {  // also an acceleration or a displacement
-    T x, y, w;
-    friend Velocity operator+(const Velocity& a, const Velocity& b) { return {a.x + b.x, a.y + b.y, a.w + b.w}; }
-    friend Velocity operator-(const Velocity& a, const Velocity& b) { return {a.x - b.x, a.y - b.y, a.w - b.w}; }
-    friend Velocity operator-(const Velocity& a) { return {-a.x, -a.y, -a.w}; }
-    friend Velocity operator*(const T& a, const Velocity& b) { return {a * b.x, a * b.y, a * b.w}; }
-  };
-)";
+    text_ += types_of(mechanism_);
     if (has_rows()) {
       line("  // The numbers of J, and K = J M^-1 J^T = L D L^T with the rows numbered in the order of elimination.");
       line("  struct Jacobian {");
@@ -152,6 +155,8 @@ class HeaderWriter {
     line("    T time;  // [s]");
     line("    Pose q[bodies];");
     line("    Velocity v[bodies];");
+    if (has().gyroscopes && !on_accelerations())
+      line(fmt::format("    Gyroscope g[{}];", std::ranges::count_if(mechanism_.bodies, &Body::inertia_turns)));
     if (on_accelerations()) line("    Velocity a[bodies];");
     if (has_rows())
       line(fmt::format("    T lambda[rows];  // {} of the joints",
@@ -174,11 +179,7 @@ class HeaderWriter {
     line("  // The start of the scene.");
     line("  static void reset(State& s) {");
     line("    s.time = T(0);");
-    each_body([&](const Body& b, const std::string& name) {
-      line(fmt::format("    s.q[{}].x = T({}), s.q[{}].y = T({}), s.q[{}].angle = T({});", name, b.x, name, b.y, name,
-                       b.angle));
-      line(fmt::format("    s.v[{}] = {{T({}), T({}), T({})}};", name, b.vx, b.vy, b.w));
-    });
+    each_body([&](const Body& b, const std::string& name) { write_start_of(b, name); });
     for (const auto& [name, value] : equations_.constants.inputs_read)
       line(fmt::format("    s.p.{} = T({});", name, value));
     if (has().bounded) line("    for (T& of_row : s.hold) of_row = T(0);");
@@ -187,10 +188,23 @@ class HeaderWriter {
     text_ += begin_of(mechanism_.method, has());
   }
 
+  void write_start_of(const Body& b, const std::string& name) {
+    const char* const plane[] = {"x", "y", "angle"};
+    const char* const space[] = {"x", "y", "z", "e0", "e1", "e2", "e3"};
+    std::string pose, velocity;
+    for (std::size_t k = 0; k < b.pose.size(); ++k)
+      pose += fmt::format("{}s.q[{}].{} = T({})", k == 0 ? "" : ", ", name, (mechanism_.spatial() ? space : plane)[k],
+                          b.pose[k]);
+    for (const double number : b.velocity) velocity += fmt::format("{}T({})", velocity.empty() ? "" : ", ", number);
+    for (const std::string& wrapped : derive::wrapped("    " + pose + ";")) line(wrapped);
+    for (const std::string& wrapped : derive::wrapped("    s.v[" + name + "] = {" + velocity + "};")) line(wrapped);
+  }
+
   void write_function(const std::string& comment, const std::string& head, const Program& program) {
     line();
     line("  // " + comment + ": " + derive::text(derive::count(program)));
-    for (const std::string& wrapped : derive::wrapped("  static void " + with_inputs(head) + " {")) line(wrapped);
+    const std::string arguments = with_arguments(head);
+    for (const std::string& wrapped : derive::wrapped("  static void " + arguments + " {")) line(wrapped);
     derive::Printing printing;
     printing.indent = "    ";
     printing.reserved = used_;
@@ -200,8 +214,8 @@ class HeaderWriter {
     for (const std::string& statement : lines) line(statement);
     if (has_inputs() && head.find("$d") != std::string::npos) line("    (void)p;");
     for (const char* argument : {"q", "v", "time", "J", "b", "h"}) {
-      const bool takes = head.find(fmt::format(" {}", argument)) != std::string::npos ||
-                         head.find(fmt::format("(&{})", argument)) != std::string::npos;
+      const bool takes = arguments.find(fmt::format(" {}", argument)) != std::string::npos ||
+                         arguments.find(fmt::format("(&{})", argument)) != std::string::npos;
       if (takes) line(fmt::format("    (void){};", argument));
     }
     line("  }");
@@ -235,7 +249,7 @@ class HeaderWriter {
       write_function("C", "errors(" + at + ", T (&C)[rows])", equations_.errors);
       write_function("J v + dC/dt", "rates(const Jacobian& J, " + moving + ", T (&Cdot)[rows])", equations_.rates);
       write_function("K lambda = b, d = M^-1 J^T lambda",
-                     "solve(const Jacobian& J, const T (&b)[rows], T (&lambda)[rows], Velocity (&d)[bodies])",
+                     "solve($gconst Jacobian& J, const T (&b)[rows], T (&lambda)[rows], Velocity (&d)[bodies])",
                      equations_.solve);
     }
     if (has_effects())
@@ -271,7 +285,10 @@ class HeaderWriter {
     text_ += slope;
   }
 
-  void write_corrections() { text_ += corrections_of(mechanism_.tolerance, has()); }
+  void write_corrections() {
+    const char* const renew = on_accelerations() ? "        weigh(s.q, renews);\n" : "        follow(s, renews);\n";
+    text_ += corrections_of(mechanism_.tolerance, has(), has().gyroscopes ? renew : "");
+  }
 
   const Mechanism& mechanism_;
   const Request& request_;

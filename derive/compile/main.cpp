@@ -44,8 +44,7 @@ int run(const Options& options) {
 }
 
 void add_options(Line& line, Options& options) {
-  line.add("SCENE", &options.scene,
-           "A planar scene: a TOML file, the name of one in specs/scenes, or - for standard input")
+  line.add("SCENE", &options.scene, "A scene: a TOML file, the name of one in specs/scenes, or - for standard input")
       .required();
   line.add("-o,--output", &options.output, "File to write; - is standard output").shown_as("FILE");
   line.add("--integrator", &options.wishes.integrator,

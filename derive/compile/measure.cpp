@@ -52,35 +52,30 @@ class Folder {
 // The states of the whole scene, one after the other.
 constexpr const char* whole_program = R"(#include "{0}"
 using Scene = cdot::scenes::{1}<double>;
-extern "C" void cdot_whole(double (*q)[3], double (*v)[3], double& time) {{
+extern "C" void cdot_whole(Scene::Pose* q, Scene::Velocity* v, double& time) {{
   static Scene::State state;
   static bool runs = false;
   if (runs) Scene::step(state);
   else Scene::reset(state);
   runs = true;
   time = state.time;
-  for (int i = 0; i < Scene::bodies; ++i) {{
-    q[i][0] = state.q[i].x, q[i][1] = state.q[i].y, q[i][2] = state.q[i].angle;
-    v[i][0] = state.v[i].x, v[i][1] = state.v[i].y, v[i][2] = state.v[i].w;
-  }}
+  for (int i = 0; i < Scene::bodies; ++i) q[i] = state.q[i], v[i] = state.v[i];
 }}
 )";
 
 // A step of a variant from each of them.
 constexpr const char* variant_program = R"(#include "{0}"
 using Scene = cdot::scenes::{1}<double>;
-extern "C" void cdot_whole(double (*q)[3], double (*v)[3], double& time);
+extern "C" void cdot_whole(Scene::Pose* q, Scene::Velocity* v, double& time);
 extern "C" __attribute__((noinline)) void cdot_begin(Scene::State& state) {{ Scene::begin(state); }}
 extern "C" __attribute__((noinline)) void cdot_step(Scene::State& state) {{ Scene::step(state); }}
 int main() {{
   static Scene::State state;
-  double q[Scene::bodies][3], v[Scene::bodies][3];
+  Scene::Pose q[Scene::bodies];
+  Scene::Velocity v[Scene::bodies];
   for (int k = 0; k < {2}; ++k) {{
     cdot_whole(q, v, state.time);
-    for (int i = 0; i < Scene::bodies; ++i) {{
-      state.q[i].x = q[i][0], state.q[i].y = q[i][1], state.q[i].angle = q[i][2];
-      state.v[i] = {{v[i][0], v[i][1], v[i][2]}};
-    }}
+    for (int i = 0; i < Scene::bodies; ++i) state.q[i] = q[i], state.v[i] = v[i];
     cdot_begin(state);
     cdot_step(state);
   }}
@@ -97,9 +92,10 @@ class Bench {
   bool counts() const { return counts_; }
   const std::string& compiler() const { return compiler_; }
 
-  // `error` gets the first complaint of the compiler.
+  // `error` gets the first complaint of the compiler. Its struct gets a name of its own: else the linker would take its
+  // functions for those of the variants.
   bool compile_whole(const Source& source, std::string& error) const {
-    return compile(source, whole_program, "whole", error);
+    return compile(source, whole_program, "whole", error, fmt::format("-D{0}=whole_{0}", source.struct_name));
   }
 
   Measured measure(const Source& source, std::size_t number, std::string& error) const {
@@ -118,12 +114,13 @@ class Bench {
   }
 
  private:
-  bool compile(const Source& source, const char* text, const std::string& file, std::string& error) const {
+  bool compile(const Source& source, const char* text, const std::string& file, std::string& error,
+               const std::string& option = {}) const {
     const std::string name = folder_.file(file);
     std::ofstream(name + ".hpp") << source.header;
     std::ofstream(name + ".cpp") << fmt::format(fmt::runtime(text), name + ".hpp", source.struct_name, measured_steps);
-    const Ran built =
-        shell(fmt::format("{0} {1} -ffunction-sections -c {2}.cpp -o {2}.o", compiler_, measured_options, name));
+    const Ran built = shell(
+        fmt::format("{0} {1} {3} -ffunction-sections -c {2}.cpp -o {2}.o", compiler_, measured_options, name, option));
     if (!built.well) error = built.output.substr(0, built.output.find('\n'));
     return built.well;
   }

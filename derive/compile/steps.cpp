@@ -21,12 +21,12 @@ constexpr const char* euler_begins = R"(
   static T step(State& s, T h = T(default_step)) {
 )";
 
-constexpr const char* euler_by_joints = R"(    push(s.v, h);
+constexpr const char* euler_by_joints = R"(    push($qs.v, h);
     T b[rows];
     rates(s.J, s.v, b);
     for (T& of_row : b) of_row = -of_row;
     Velocity d[bodies];
-    solve(s.J, b, s.lambda, d);
+    solve($qs.J, b, s.lambda, d);
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + d[i];
 )";
 
@@ -48,13 +48,12 @@ constexpr const char* adds_impulses = R"(    for (int e = 0; e < bounded; ++e)
 
 constexpr const char* euler_moves = R"(    for (int i = 0; i < bodies; ++i) s.q[i] = moved(s.q[i], h * s.v[i]);
     turn(s.q);
-    s.time = s.time + h;
 )";
 
 constexpr const char* euler_corrects = R"(    Velocity moves[bodies];
     const T error = close(s, at, T(0.2), moves);
     // A displacement beyond the motion of the step, or of an error older than it, would add energy.
-    const auto keep = left <= T(0.1) * error && T(4) * weighed(moves) <= h * h * weighed(s.v);
+    const auto keep = left <= T(0.1) * error && T(4) * weighed(s.q, moves) <= h * h * weighed(s.q, s.v);
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + select(keep, T(1) / h, T(0)) * moves[i];
 )";
 
@@ -64,14 +63,14 @@ constexpr const char* stages_begin = R"(
     Slope k[{1}][bodies];
     Evaluated at;
     Velocity v[bodies];
-{3}    for (int i = 0; i < bodies; ++i) k[0][i] = {{s.v[i], s.a[i]}};
+{3}    for (int i = 0; i < bodies; ++i) k[0][i] = {{rate_of(s.q[i], s.v[i]), s.a[i]}};
 )";
 
 constexpr const char* stages_end = R"(    for (int i = 0; i < bodies; ++i) {{
       const Slope k_end = {0};
       s.q[i] = moved(s.q[i], h * k_end.v);
       s.v[i] = s.v[i] + h * k_end.a;
-    }}
+{2}    }}
     turn(s.q);
     s.time = s.time + h;
 {1}  }}
@@ -79,13 +78,13 @@ constexpr const char* stages_end = R"(    for (int i = 0; i < bodies; ++i) {{
 
 constexpr const char* ends_on_joints = R"(    Velocity moves[bodies];
     close(s, at, T(0.5), moves);
-    evaluate($ss.q, s.time, s.J);
+$W    evaluate($ss.q, s.time, s.J);
     project(s);
     accelerate($ss.q, s.time, s.v, s.J, s.lambda, s.a);
     return s.residual;
 )";
 
-constexpr const char* ends_freely = R"(    fall($ss.q, s.time, s.v, s.a);
+constexpr const char* ends_freely = R"($W    fall($ss.q, s.time, s.v, s.a);
     return T(0);
 )";
 
@@ -102,7 +101,8 @@ std::string combined(const Method& method, int stage) {
 }
 
 template <class Method>
-std::string runge_kutta(const Method& method, const char* title, bool rows) {
+std::string runge_kutta(const Method& method, const char* title, const Contents& has) {
+  const bool rows = has.rows;
   std::string text = fmt::format(stages_begin, title, method.stages, rows ? "; then C = 0 and J v = -dC/dt" : "",
                                  rows ? "    T forces[rows];\n" : "");
   for (int stage = 1; stage < method.stages; ++stage) {
@@ -112,7 +112,8 @@ std::string runge_kutta(const Method& method, const char* title, bool rows) {
     text += fmt::format("    at.time = s.time + T({}) * h;\n", double(method.c[stage]));
     text += fmt::format("    slope($sat, v, {}k[{}]);\n", rows ? "s.J, forces, " : "", stage);
   }
-  return text + fmt::format(stages_end, combined(method, method.stages), rows ? ends_on_joints : ends_freely);
+  return text + fmt::format(stages_end, combined(method, method.stages), rows ? ends_on_joints : ends_freely,
+                            has.gyroscopes ? "      s.q[i].I = at.q[i].I;  // as J, of the last stage\n" : "");
 }
 
 std::string euler(const Contents& has) {
@@ -124,11 +125,13 @@ std::string euler(const Contents& has) {
         fmt::format(euler_by_kick, has.bounded ? fmt::format(kick_with_bounds, arguments, has.rows ? adds_impulses : "")
                                                : fmt::format("    kick({});\n", arguments));
   } else {
-    text += has.rows ? euler_by_joints : "    push(s.v, h);\n";
+    text += has.rows ? euler_by_joints : "    push($qs.v, h);\n";
   }
   if (has.closes()) text += "    const T left = s.residual;\n" + std::string(notes_poses);
-  text += euler_moves;
+  text += has.gyroscopes ? "    drift(s, h);\n" : euler_moves;
+  text += "    s.time = s.time + h;\n";
   if (has.closes()) text += euler_corrects;
+  if (has.gyroscopes && has.closes()) text += "    follow(s, T(0) < T(1));\n";
   if (has.rows) text += std::string(evaluates) + "    project(s);\n";
   return text + fmt::format("    return {};\n  }}\n", has.closes() ? "s.residual" : "T(0)");
 }
@@ -156,10 +159,12 @@ std::string begin_of(Method method, const Contents& has) {
   std::string text =
       "\n  // Makes a State whole after its poses, velocities or time were set.\n  static void begin(State& s) {\n"
       "    turn(s.q);\n";
+  if (has.gyroscopes) text += accelerates ? "$W" : "    wind(s);\n";
   if (has.rows) text += "    for (T& of_row : s.lambda) of_row = T(0);\n";
   if (has.closes()) text += "    s.residual = T(1e30);\n";
   if (has.rows) text += evaluates;
   if (has.closes()) text += notes_poses + fmt::format(closes, 0.2);
+  if (has.closes() && has.gyroscopes) text += accelerates ? "$W" : "    follow(s, T(0) < T(1));\n";
   if (has.rows) text += evaluates;
   if (accelerates && has.rows) text += "    project(s);\n    accelerate($ss.q, s.time, s.v, s.J, s.lambda, s.a);\n";
   else if (accelerates) text += "    fall($ss.q, s.time, s.v, s.a);\n";
@@ -168,8 +173,8 @@ std::string begin_of(Method method, const Contents& has) {
 
 std::string step_of(Method method, const Contents& has) {
   if (method == Method::euler) return euler(has);
-  if (method == Method::rk4) return runge_kutta(rk4<double>, "The Runge-Kutta method of order 4", has.rows);
-  return runge_kutta(dop853<double>, "Dormand and Prince's method of order 8", has.rows);
+  if (method == Method::rk4) return runge_kutta(rk4<double>, "The Runge-Kutta method of order 4", has);
+  return runge_kutta(dop853<double>, "Dormand and Prince's method of order 8", has);
 }
 
 }  // namespace cdot::compile

@@ -4,7 +4,8 @@
 namespace cdot::compile {
 
 inline constexpr const char* slope_type = R"(  struct Slope {
-    Velocity v, a;
+    Rate v;
+    Velocity a;
     friend Slope operator+(const Slope& k, const Slope& l) { return {k.v + l.v, k.a + l.a}; }
     friend Slope operator-(const Slope& k, const Slope& l) { return {k.v - l.v, k.a - l.a}; }
     friend Slope operator-(const Slope& k) { return {-k.v, -k.a}; }
@@ -30,10 +31,10 @@ inline constexpr const char* slope = R"(
   // The rates of change at a stage of a Runge-Kutta method.
   static void slope($dEvaluated& at, const Velocity (&v)[bodies], Jacobian& J, T (&forces)[rows], Slope (&k)[bodies]) {
     turn(at.q);
-    evaluate($pat.q, at.time, J);
+$w    evaluate($pat.q, at.time, J);
     Velocity a[bodies];
     accelerate($pat.q, at.time, v, J, forces, a);
-    for (int i = 0; i < bodies; ++i) k[i] = {v[i], a[i]};
+    for (int i = 0; i < bodies; ++i) k[i] = {rate_of(at.q[i], v[i]), a[i]};
   }
 )";
 
@@ -42,9 +43,9 @@ inline constexpr const char* free_slope = R"(
   // The rates of change at a stage of a Runge-Kutta method.
   static void slope($dEvaluated& at, const Velocity (&v)[bodies], Slope (&k)[bodies]) {
     turn(at.q);
-    Velocity a[bodies];
+$w    Velocity a[bodies];
     fall($pat.q, at.time, v, a);
-    for (int i = 0; i < bodies; ++i) k[i] = {v[i], a[i]};
+    for (int i = 0; i < bodies; ++i) k[i] = {rate_of(at.q[i], v[i]), a[i]};
   }
 )";
 

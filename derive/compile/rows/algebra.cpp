@@ -13,7 +13,7 @@ constexpr int finest = 64, largest = 4096;  // exact numbers: multiples of 1/64 
 int Algebra::value(double number, const std::string& name) {
   if (!name.empty()) constants_.known.insert(name);
   if (constants_.inputs.contains(name)) {
-    constants_.inputs_read[name] = number;
+    constants_.inputs_read[name] = constants_.at_start["p." + name] = number;
     return input("p." + name);
   }
   return fixed(number, name);
@@ -45,6 +45,24 @@ std::optional<double> Algebra::constant(int op) const {
   if (o.kind != OpKind::sum || o.args.size() != 1) return std::nullopt;
   const std::optional<double> inner = constant(o.args[0]);
   return inner ? std::optional(o.coefs[0].value() * *inner) : std::nullopt;
+}
+
+double Algebra::at_start(int op) {
+  if (const auto known = at_start_.find(op); known != at_start_.end()) return known->second;
+  const Operation o = builder_.at(op);
+  std::vector<double> args;
+  for (const int arg : o.args) args.push_back(at_start(arg));
+  double value = 0;
+  if (const std::optional<double> constant = this->constant(op)) value = *constant;
+  else if (o.kind == OpKind::input) value = constants_.at_start.at(o.input);
+  else if (o.kind == OpKind::sum)
+    for (std::size_t i = 0; i < args.size(); ++i) value += o.coefs[i].value() * args[i];
+  else if (o.kind == OpKind::function) value = derive::function_of(o.fn).value(args.data());
+  else {
+    value = o.kind == OpKind::product ? 1 : o.value.value();
+    for (std::size_t i = 0; i < args.size(); ++i) value *= std::pow(args[i], o.exponents[i]);
+  }
+  return at_start_[op] = value;
 }
 
 bool Algebra::is_zero(int op) const { return is_number(op) && builder_.at(op).value.is_zero(); }

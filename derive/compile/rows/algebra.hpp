@@ -24,6 +24,7 @@ struct Constants {
   std::map<std::string, double> named;        // those that the header names
   std::map<std::string, double> inputs_read;  // values of the inputs that occur
   std::set<std::string> known;                // every name
+  std::map<std::string, double> at_start;     // inputs of programs in the state in which the scene starts
 };
 
 class Algebra {
@@ -46,6 +47,8 @@ class Algebra {
                                      const std::string& prefix);
 
   std::optional<double> constant(int op) const;
+  // Its value in the state in which the scene starts.
+  double at_start(int op);
   bool is_zero(int op) const;
   void output(const std::string& name, int op) { builder_.output(name, op); }
   Program finish() { return builder_.finish(); }
@@ -55,6 +58,7 @@ class Algebra {
 
   derive::ProgramBuilder builder_;
   std::map<int, double> real_;  // constants that are no numbers of the program
+  std::map<int, double> at_start_;
   Constants& constants_;
 };
 

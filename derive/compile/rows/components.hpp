@@ -8,7 +8,7 @@
 
 namespace cdot::compile {
 
-// Of a body's velocity: x, y or w.
+// Of a body's velocity.
 struct Component {
   int body;
   std::size_t column;
@@ -24,18 +24,18 @@ void each_component(const RowBlocks& blocks, F f) {
   const Mechanism& all = blocks.mechanism();
   for (int b = 0; b < static_cast<int>(all.bodies.size()); ++b) {
     const Body& body = all.bodies[static_cast<std::size_t>(b)];
-    const double a[] = {all.gravity_x + body.ax, all.gravity_y + body.ay, body.aw};
-    const double drag[] = {body.linear_drag, body.linear_drag, body.angular_drag};
-    for (std::size_t c = 0; body.moves && c < 3; ++c)
-      f(Component{b, c, fmt::format("{}.{}", blocks.body_name(b), "xyw"[c])}, a[c], drag[c]);
+    for (std::size_t c = 0; body.moves && c < all.columns(); ++c)
+      f(Component{b, c, fmt::format("{}.{}", blocks.body_name(b), all.column(c))}, all.push(body, c),
+        c < all.linear() ? body.linear_drag : body.angular_drag);
   }
 }
 
 // M^-1 force of one component.
 inline int change_of(const RowBlocks& blocks, Algebra& algebra, const Component& component, const Forces& forces) {
-  const auto force = forces.find({component.body, component.column});
-  if (force == forces.end()) return algebra.value(0);
-  return algebra.times(blocks.inverse_mass(algebra, component.body, component.column), algebra.sum(force->second));
+  return blocks.weighted(algebra, component.body, component.column, [&](std::size_t column) {
+    const auto force = forces.find({component.body, column});
+    return force == forces.end() ? algebra.value(0) : algebra.sum(force->second);
+  });
 }
 
 }  // namespace cdot::compile

@@ -24,7 +24,10 @@ Program JointRows::evaluate(Constants& constants, std::vector<std::string>& stor
   Algebra algebra(constants);
   const auto store = [&](const std::string& member, int op) {
     const std::optional<double> constant = algebra.constant(op);
-    if (!constant) algebra.output("J." + member, op), stored.push_back(member);
+    if (!constant) {
+      algebra.output("J." + member, op), stored.push_back(member);
+      constants.at_start["J." + member] = algebra.at_start(op);
+    }
     return Stored{constant, member};
   };
   for (std::size_t k = 0; k < J_.size(); ++k) {

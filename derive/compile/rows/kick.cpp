@@ -213,12 +213,15 @@ class KickWriter {
 
   // Gravity, constant forces, drag and the known impulses act. Drag is implicit: v / (1 + h d).
   Values pushed() {
+    Forces torques;
+    blocks_.add_torques(algebra_, torques);
     Values velocities;
     each_component(blocks_, [&](const Component& component, double a, double drag) {
       const int slowed = algebra_.sum({{algebra_.value(1), algebra_.times(h_, algebra_.value(drag))}, {1, 1}});
       const int v = algebra_.times(algebra_.input(component.in("v")), algebra_.function(Fn::inverse, {slowed}));
+      const int rate = algebra_.sum({{algebra_.value(a), change_of(blocks_, algebra_, component, torques)}, {1, 1}});
       const int change = change_of(blocks_, algebra_, component, given_);
-      velocities[component.name] = algebra_.sum({{v, algebra_.times(h_, algebra_.value(a)), change}, {1, 1, 1}});
+      velocities[component.name] = algebra_.sum({{v, algebra_.times(h_, rate), change}, {1, 1, 1}});
     });
     return velocities;
   }

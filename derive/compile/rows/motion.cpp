@@ -5,6 +5,17 @@
 
 namespace cdot::compile {
 
+namespace {
+
+int gyroscopic_rate(const RowBlocks& blocks, Algebra& algebra, const Component& component) {
+  const Mechanism& all = blocks.mechanism();
+  if (component.column < all.linear() || !all.bodies[static_cast<std::size_t>(component.body)].inertia_turns)
+    return algebra.value(0);
+  return blocks.gyroscopic_rates(algebra, component.body)[component.column - all.linear()];
+}
+
+}  // namespace
+
 Values free_accelerations(const RowBlocks& blocks, Algebra& algebra) {
   Forces forces;
   for (std::size_t e = 0; e < blocks.mechanism().effects.size(); ++e) {
@@ -13,11 +24,13 @@ Values free_accelerations(const RowBlocks& blocks, Algebra& algebra) {
     const LawWriter law(blocks, algebra, blocks.mechanism().effects[e], block, in);
     blocks.add_forces(algebra, block, in, law.force(), forces);
   }
+  blocks.add_torques(algebra, forces);
   Values accelerations;
   each_component(blocks, [&](const Component& component, double a, double drag) {
     const int slowed = algebra.times(algebra.value(drag), algebra.input(component.in("v")));
     const int change = change_of(blocks, algebra, component, forces);
-    accelerations[component.name] = algebra.sum({{algebra.value(a), slowed, change}, {1, -1, 1}});
+    accelerations[component.name] =
+        algebra.sum({{algebra.value(a), slowed, change, gyroscopic_rate(blocks, algebra, component)}, {1, -1, 1, 1}});
   });
   return accelerations;
 }

@@ -1,7 +1,6 @@
 #include "derive/compile/rows/row_blocks.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 
 #include "derive/kernel/factor.hpp"
@@ -28,7 +27,8 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
       if (!effect.coordinate.empty()) of_type.insert(effect.coordinate);
       if (!effect.law_type.empty()) coordinates[effect.law_type];
     }
-  for (const auto& [type, of_type] : coordinates) types_[type] = programs_of(specs, type, of_type);
+  for (const auto& [type, of_type] : coordinates)
+    types_[type] = programs_of(specs, mechanism.spatial() ? "spatial/" : "planar/", type, of_type);
   for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
     const Joint& joint = mechanism.joints[j];
     const SpecPrograms& spec = types_.at(joint.type);
@@ -78,40 +78,6 @@ Values RowBlocks::inputs_with_jacobian(Algebra& algebra, const RowBlock& block) 
   return in;
 }
 
-void RowBlocks::add_body(Algebra& algebra, Values& in, const std::string& L, int index) const {
-  const Body& b = mechanism_.bodies[static_cast<std::size_t>(index)];
-  const std::string& name = body_name(index);
-  const auto place = [&](double number, const std::string& member) {
-    return b.moves ? algebra.input(fmt::format("q[{}].{}", name, member), member.size() == 1 && member > "w")
-                   : algebra.value(number);
-  };
-  const auto speed = [&](const std::string& member) {
-    return b.moves ? algebra.input(fmt::format("v[{}].{}", name, member)) : algebra.value(0);
-  };
-  in["x_" + L + "_x"] = place(b.x, "x"), in["x_" + L + "_y"] = place(b.y, "y");
-  in["theta_" + L] = place(b.angle, "angle");
-  in[L + ".c"] = place(std::cos(b.angle), "c"), in[L + ".s"] = place(std::sin(b.angle), "s");
-  in["v_" + L + "_x"] = speed("x"), in["v_" + L + "_y"] = speed("y"), in["w_" + L] = speed("w");
-  in["inv_m_" + L] = inverse_mass(algebra, index, 0), in["inv_I_" + L] = inverse_mass(algebra, index, 2);
-}
-
-void RowBlocks::replace_velocities(Values& in, const RowBlock& block, const Values& velocities) const {
-  for (std::size_t k = 0; k < block.spec->bodies.size() && !velocities.empty(); ++k) {
-    const int body = (*block.bodies)[k];
-    if (!mechanism_.bodies[static_cast<std::size_t>(body)].moves) continue;
-    const std::string &L = block.spec->bodies[k], &name = body_name(body);
-    in["v_" + L + "_x"] = velocities.at(name + ".x"), in["v_" + L + "_y"] = velocities.at(name + ".y");
-    in["w_" + L] = velocities.at(name + ".w");
-  }
-}
-
-int RowBlocks::inverse_mass(Algebra& algebra, int index, std::size_t column) const {
-  const Body& b = mechanism_.bodies[static_cast<std::size_t>(index)];
-  if (!b.moves) return algebra.value(0);
-  return column < 2 ? algebra.fixed(b.inv_m, body_name(index) + "_inv_m")
-                    : algebra.fixed(b.inv_I, body_name(index) + "_inv_I");
-}
-
 Values RowBlocks::call(Algebra& algebra, const RowBlock& block, const std::string& function, const Values& in) const {
   return algebra.inlined(
       block.rows->function(function), [&](const std::string& text) { return in.at(text); }, block.name);
@@ -121,14 +87,18 @@ Values RowBlocks::call(Algebra& algebra, const RowBlock& block, const std::strin
 void RowBlocks::add_forces(Algebra& algebra, const RowBlock& block, Values in, const std::vector<int>& lambda,
                            Forces& forces) const {
   for (const std::string& L : block.spec->bodies) {
-    in["inv_m_" + L] = in["inv_I_" + L] = algebra.value(1);
-    in["v_" + L + "_x"] = in["v_" + L + "_y"] = in["w_" + L] = algebra.value(0);
+    in["inv_m_" + L] = algebra.value(1);
+    if (!mechanism_.spatial()) in["inv_I_" + L] = algebra.value(1);
+    else
+      for (const std::string_view entry : {"xx", "yy", "zz", "xy", "xz", "yz"})
+        in[fmt::format("inv_I_{}_{}", L, entry)] = algebra.value(entry[0] == entry[1] ? 1 : 0);
+    each_speed(L, [&](const std::string& input, std::size_t) { in[input] = algebra.value(0); });
   }
   for (std::size_t r = 0; r < lambda.size(); ++r) in[fmt::format("lambda_{}", r + 1)] = lambda[r];
   const Values v = call(algebra, block, "apply", in);
   for (std::size_t k = 0; k < block.spec->bodies.size(); ++k)
-    for (std::size_t c = 0; c < 3; ++c)
-      if (const auto found = v.find(element("v", k) + "." + "xyw"[c]); found != v.end())
+    for (std::size_t c = 0; c < mechanism_.columns(); ++c)
+      if (const auto found = v.find(element("v", k) + "." + mechanism_.column(c)); found != v.end())
         forces[{(*block.bodies)[k], c}].add(1, found->second);
 }
 

@@ -1,6 +1,8 @@
 // The rows of a mechanism as blocks: a kernel with its bodies and parameters in this scene, to be inlined.
 #pragma once
 
+#include <array>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -28,7 +30,7 @@ struct RowBlock {
   const std::vector<double>* parameters = nullptr;
 };
 
-// Forces by body and column: x, y, angle.
+// Forces by body and column.
 using Forces = std::map<std::pair<int, std::size_t>, Summands>;
 
 // Of a parameter of a kernel, "p.pa_x" or "phi", in the header.
@@ -56,8 +58,15 @@ class RowBlocks {
   void replace_velocities(Values& in, const RowBlock& block, const Values& velocities) const;
   // One of its functions.
   Values call(Algebra& algebra, const RowBlock& block, const std::string& function, const Values& in) const;
-  // The column is 0, 1 for x and y, 2 for the angle.
-  int inverse_mass(Algebra& algebra, int body, std::size_t column) const;
+  // M^-1 f of a body in a column, from f by columns.
+  int weighted(Algebra& algebra, int body, std::size_t column, const std::function<int(std::size_t column)>& f) const;
+  // The rates of the spin of a body whose inertia turns, by its gyroscopic torque: -I^-1 (w x I w), in the world's
+  // axes.
+  std::array<int, 3> gyroscopic_rates(Algebra& algebra, int body) const;
+  // Poses, velocities, time and step of the start, as inputs of programs.
+  void note_start(Constants& constants) const;
+  // Adds the constant torque of such bodies.
+  void add_torques(Algebra& algebra, Forces& forces) const;
   // forces += J^T lambda, with J among `in`.
   void add_forces(Algebra& algebra, const RowBlock& block, Values in, const std::vector<int>& lambda,
                   Forces& forces) const;
@@ -66,6 +75,21 @@ class RowBlocks {
   std::string owner_of(const std::string& name, const Effect& effect) const;
   RowBlock block_of(const std::string& name, const Effect& effect) const;
   void add_body(Algebra& algebra, Values& in, const std::string& L, int index) const;
+  void add_place(Algebra& algebra, Values& in, const std::string& L, int index) const;
+  void add_masses(Algebra& algebra, Values& in, const std::string& L, int index) const;
+  // f(name of a kernel's input, column) for each column of a body's velocity
+  template <class F>
+  void each_speed(const std::string& L, F f) const {
+    for (std::size_t c = 0; c < mechanism_.columns(); ++c) {
+      const std::string column = mechanism_.column(c);
+      if (column.front() != 'w') f("v_" + L + "_" + column, c);
+      else f("w_" + L + (mechanism_.spatial() ? "_" + column.substr(1) : ""), c);
+    }
+  }
+  const Body& body(int index) const { return mechanism_.bodies[static_cast<std::size_t>(index)]; }
+  int inverse_mass(Algebra& algebra, int body) const;
+  // An entry of I^-1 in the world's axes; in the plane, of the axis 0.
+  int inverse_inertia(Algebra& algebra, int body, std::size_t i, std::size_t j) const;
 
   const Mechanism& mechanism_;
   const Names& names_;

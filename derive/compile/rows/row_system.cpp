@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "derive/compile/rows/components.hpp"
 #include "derive/kernel/factor.hpp"
 #include "runtime/direct/elimination_order.hpp"
+#include "runtime/direct/ldlt.hpp"
 
 namespace cdot::compile {
 
@@ -62,15 +64,18 @@ void RowSystem::couple(Algebra& algebra) {
 // K_ik = sum over columns of J_i M^-1 J_k.
 void RowSystem::couple(Algebra& algebra, std::size_t i, std::size_t k) {
   const std::vector<int>&of_i = *blocks_[i].bodies, &of_k = *blocks_[k].bodies;
+  const std::size_t columns = rows_.mechanism().columns();
   for (std::size_t r = 0; r < blocks_[i].rows->count(); ++r) {
     for (std::size_t s = 0; s < blocks_[k].rows->count(); ++s) {
       Summands terms;
       for (std::size_t a = 0; a < of_i.size(); ++a)
         for (std::size_t b = 0; b < of_k.size(); ++b)
-          for (std::size_t c = 0; of_i[a] == of_k[b] && c < 3; ++c) {
-            const int x = dense_[i].at(element(element("D", r), 3 * a + c));
-            const int y = dense_[k].at(element(element("D", s), 3 * b + c));
-            terms.add(1, algebra.product({rows_.inverse_mass(algebra, of_i[a], c), x, y}, {1, 1, 1}));
+          for (std::size_t c = 0; of_i[a] == of_k[b] && c < columns; ++c) {
+            const auto y = [&](std::size_t column) {
+              return dense_[k].at(element(element("D", s), columns * b + column));
+            };
+            const int x = dense_[i].at(element(element("D", r), columns * a + c));
+            terms.add(1, algebra.times(x, rows_.weighted(algebra, of_i[a], c, y)));
           }
       const int K = algebra.sum(terms);
       if (!algebra.is_zero(K)) K_[first_[i] + r][first_[k] + s] = K;
@@ -87,8 +92,18 @@ void RowSystem::soften(Algebra& algebra, std::size_t row, int by) {
   }
 }
 
+int RowSystem::inverse_pivot(Algebra& algebra, std::size_t j, int D, double noise) const {
+  const int diagonal = K(order_[j], order_[j]);
+  const std::string name = "inv_D_" + std::to_string(j);
+  if (algebra.at_start(D) > noise) return algebra.function(Fn::pivot, {D, diagonal}, name);
+  const int share = algebra.times(algebra.value(dense::lasting_share), diagonal), zero = algebra.value(0);
+  return algebra.function(Fn::select, {algebra.sum({{D, share}, {1, -1}}), algebra.function(Fn::inverse, {D}), zero},
+                          name);
+}
+
 void RowSystem::factor(Algebra& algebra, const Store& store) {
   const std::size_t n = order_.size();
+  std::vector<double> noise(n);  // of the pivots at the start
   std::vector<std::vector<int>> U(n, std::vector<int>(n, -1)), L(U);
   for (std::size_t j = 0; j < n; ++j) {
     const std::string at = std::to_string(j);
@@ -102,7 +117,8 @@ void RowSystem::factor(Algebra& algebra, const Store& store) {
       const std::string place = i == j ? at : fmt::format("{}_{}", i, j);
       const int entry = algebra.sum(terms, (i == j ? "D_" : "U_") + place);
       if (i == j) {
-        inverse = algebra.function(Fn::pivot, {entry, K(order_[j], order_[j])}, "inv_D_" + at);
+        noise[j] += dense::pivot_noise<double> * algebra.at_start(K(order_[j], order_[j]));
+        inverse = inverse_pivot(algebra, j, entry, noise[j]);
         store("inv_D_" + at, inverse);
         continue;
       }
@@ -110,6 +126,8 @@ void RowSystem::factor(Algebra& algebra, const Store& store) {
       U[i][j] = entry;
       L[i][j] = algebra.times(entry, inverse, "L_" + place);
       L_[i][j] = true;
+      const double share = algebra.at_start(L[i][j]);
+      noise[i] += share * share * noise[j];
       store("L_" + place, L[i][j]);
     }
   }
@@ -142,11 +160,9 @@ void RowSystem::write_changes(Algebra& algebra, const std::vector<int>& lambda,
     rows_.add_forces(algebra, blocks_[k], inputs(k),
                      {first, first + static_cast<std::ptrdiff_t>(blocks_[k].rows->count())}, forces);
   }
-  const std::vector<Body>& bodies = rows_.mechanism().bodies;
-  for (int b = 0; b < static_cast<int>(bodies.size()); ++b)
-    for (std::size_t c = 0; bodies[static_cast<std::size_t>(b)].moves && c < 3; ++c)
-      algebra.output(fmt::format("d[{}].{}", rows_.body_name(b), "xyw"[c]),
-                     algebra.times(rows_.inverse_mass(algebra, b, c), algebra.sum(forces[{b, c}])));
+  each_component(rows_, [&](const Component& component, double, double) {
+    algebra.output(component.in("d"), change_of(rows_, algebra, component, forces));
+  });
 }
 
 }  // namespace cdot::compile

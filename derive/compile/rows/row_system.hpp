@@ -28,7 +28,8 @@ class RowSystem {
   // Row and column times `by`, and 1 on the diagonal.
   void soften(Algebra& algebra, std::size_t row, int by);
   // K = L D L^T, U = L D. The numbers in names are places in the order. store("L_5_4", operation) gives what solve()
-  // reads.
+  // reads. A row that depends on others at the start is redundant by design, as in the World: it takes no part until
+  // its pivot exceeds a share of its diagonal, else round-off of its pivot would magnify that of C.
   using Store = std::function<void(const std::string& name, int op)>;
   void factor(Algebra& algebra, const Store& store);
 
@@ -46,6 +47,8 @@ class RowSystem {
   void order_rows();
   bool share_a_body(std::size_t i, std::size_t k) const;
   void couple(Algebra& algebra, std::size_t i, std::size_t k);
+  // 1/D of the place j in the order.
+  int inverse_pivot(Algebra& algebra, std::size_t j, int D, double noise) const;
   int K(std::size_t i, std::size_t j) const { return K_[std::max(i, j)][std::min(i, j)]; }
 
   const RowBlocks& rows_;

@@ -22,7 +22,7 @@ bool is_zero(const derive::Program& program) {
 }
 
 void keep_needed(derive::KernelBlock& block) {
-  std::erase_if(block.functions, [](const derive::KernelFunction& f) { return !is_needed(f); });
+  std::erase_if(block.functions, [](const derive::KernelFunction& f) { return f.isotropic || !is_needed(f); });
   block.variants.clear();
 }
 
@@ -52,9 +52,9 @@ std::map<std::string, std::string> leaves_of_law(const derive::Joint& joint) {
 
 }  // namespace
 
-SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& spec,
+SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& folder, const std::string& spec,
                          const std::set<std::string>& coordinates) {
-  const derive::ReadResult read = specs.read(specs.find("planar/" + spec));
+  const derive::ReadResult read = specs.read(specs.find(folder + spec));
   if (!read.joint) throw std::runtime_error(render(*read.file, read.diagnostics));
   const derive::Derivation derivation = derive::derive(*read.joint);
   derive::Kernel kernel = derive::plan(derivation);

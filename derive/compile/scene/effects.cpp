@@ -13,9 +13,10 @@ bool is_damper(const CoordinateSpring& spring) {
   return !spring.softness.by_frequency && spring.softness.stiffness == 0;
 }
 
+template <class S>
 class EffectReader {
  public:
-  EffectReader(const Scene& scene, BasicWorld<Space>& world, const RefuseEffect& refuse, Mechanism& mechanism)
+  EffectReader(const Scene& scene, BasicWorld<S>& world, const RefuseEffect& refuse, Mechanism& mechanism)
       : scene_(scene), world_(world), refuse_(refuse), mechanism_(mechanism) {}
 
   void read() {
@@ -33,14 +34,12 @@ class EffectReader {
 
  private:
   const JointRecord& record(int joint) { return world_.data().joints[static_cast<std::size_t>(joint)]; }
-  const Batch<Space>& batch_of(const Place& place) {
-    return *world_.data().batches[static_cast<std::size_t>(place.batch)];
-  }
+  const Batch<S>& batch_of(const Place& place) { return *world_.data().batches[static_cast<std::size_t>(place.batch)]; }
   bool is_bounded(const Place& place) { return batch_of(place).law && batch_of(place).law->guard; }
   bool has_limits(const Place& place) { return batch_of(place).law->within_limits != nullptr; }
 
   std::vector<double> constants_of(const Place& place) {
-    const Batch<Space>& batch = batch_of(place);
+    const Batch<S>& batch = batch_of(place);
     const int count = batch.law->constants;
     const double* const first = batch.constants.data() + slot_of(world_.data(), place) * count;
     return {first, first + count};
@@ -110,6 +109,9 @@ class EffectReader {
     effect.numbers = constants_of(place);
     const std::string what = name_law(kind, effect);
     effect.name += "." + what;
+    if (batch_of(place).ops->counters > 0)
+      return refuse_(&source,
+                     fmt::format("{}, which is on an angle in space, whose turns would be counted", effect.name));
     if (is_bounded(place)) return add_bounded(source, effect, place);
     if (has_limits(place) && mechanism_.method == Method::euler) {
       effect.law = Effect::limited;
@@ -151,15 +153,19 @@ class EffectReader {
   }
 
   const Scene& scene_;
-  BasicWorld<Space>& world_;
+  BasicWorld<S>& world_;
   const RefuseEffect& refuse_;
   Mechanism& mechanism_;
 };
 
 }  // namespace
 
-void read_effects(const Scene& scene, BasicWorld<Space>& world, const RefuseEffect& refuse, Mechanism& mechanism) {
-  EffectReader(scene, world, refuse, mechanism).read();
+template <class S>
+void read_effects(const Scene& scene, BasicWorld<S>& world, const RefuseEffect& refuse, Mechanism& mechanism) {
+  EffectReader<S>(scene, world, refuse, mechanism).read();
 }
+
+template void read_effects(const Scene&, BasicWorld<Planar<double>>&, const RefuseEffect&, Mechanism&);
+template void read_effects(const Scene&, BasicWorld<Spatial<double>>&, const RefuseEffect&, Mechanism&);
 
 }  // namespace cdot::compile

@@ -11,11 +11,10 @@
 
 namespace cdot::compile {
 
-using Space = Planar<double>;
-
 // refuse(joint of the scene, or null for a spring; what it is): for effects that cannot be compiled.
 using RefuseEffect = std::function<void(const SceneJoint*, const std::string&)>;
 
-void read_effects(const Scene& scene, BasicWorld<Space>& world, const RefuseEffect& refuse, Mechanism& mechanism);
+template <class S>
+void read_effects(const Scene& scene, BasicWorld<S>& world, const RefuseEffect& refuse, Mechanism& mechanism);
 
 }  // namespace cdot::compile

@@ -32,7 +32,7 @@ class Refusals {
   int count_ = 0;
 };
 
-void refuse_joint(const SceneJoint& joint, Refusals& refusals) {
+void refuse_joint(const SceneJoint& joint, Dimension dimension, Refusals& refusals) {
   const std::string& name = joint.name;
   const auto refuse = [&](const std::string& part) {
     refusals.add(joint.where, fmt::format("{}: cdot compile knows no {}", name, part), "leave it to cdot-run");
@@ -43,7 +43,7 @@ void refuse_joint(const SceneJoint& joint, Refusals& refusals) {
   };
   if (in_time(joint.definition.parameters) || std::ranges::any_of(joint.effects, follows))
     refuse("numbers that follow functions of time");
-  const JointType* type = find_joint_type(Dimension::planar, joint.definition.type);
+  const JointType* type = find_joint_type(dimension, joint.definition.type);
   if (type && std::ranges::find(type->row_kinds, RowKind::inequality) != type->row_kinds.end())
     refuse(fmt::format("inequality, as {} has: it would end the fixed pattern of the equations", type->name));
 }
@@ -54,9 +54,7 @@ void refuse_parts(const Scene& scene) {
     if (unknown) refusals.add({}, cause, fix);
   };
   const Settings& s = scene.settings;
-  refuse(scene.dimension != Dimension::planar, "cdot compile knows planar scenes only", "leave it to cdot-run");
-  if (scene.dimension == Dimension::planar)
-    for (const SceneJoint& joint : scene.joints) refuse_joint(joint, refusals);
+  for (const SceneJoint& joint : scene.joints) refuse_joint(joint, scene.dimension, refusals);
   refuse(s.solver != Solver::direct, "a compiled step solves all rows at once", "write solver = \"direct\"");
   refuse(s.drift != Drift::projection, "a compiled step projects its end", "write drift = \"projection\"");
   refuse(s.local_error > 0, "a compiled step has a fixed length", "give --step in place of local_error");
@@ -92,24 +90,59 @@ void settle_method(Scene& scene, const Wishes& wishes) {
   settle_drift(scene);
 }
 
-Body body_of(const Scene& scene, const BasicWorld<Space>& world, int index) {
+void set_pose(const BasicWorld<Planar<double>>& world, int index, Body& body) {
+  const auto q = world.place(index);
+  const auto v = world.velocity(index);
+  const auto m = world.inverse_mass(index);
+  body.pose = {q.x, q.y, q.angle}, body.velocity = {v.x, v.y, v.w};
+  body.inv_m = m.m, body.inv_I = m.I;
+}
+
+void set_pose(const BasicWorld<Spatial<double>>& world, int index, Body& body) {
+  const auto q = world.place(index);
+  const auto v = world.velocity(index);
+  const auto m = world.inverse_mass(index);
+  body.pose = {q.x, q.y, q.z, q.e0, q.e1, q.e2, q.e3}, body.velocity = {v.x, v.y, v.z, v.wx, v.wy, v.wz};
+  body.inv_m = m.m, body.inv_I = m.Ixx;
+}
+
+void set_forces(const BodyDefinition& d, Body& body) {
+  body.acceleration = {body.inv_m * d.force_x, body.inv_m * d.force_y, body.inv_I * d.torque};
+}
+
+void set_forces(const SpatialBodyDefinition& d, Body& body) {
+  using S = Spatial<double>;
+  if (S::is_gyroscope(d)) {
+    const S::Gyroscope g = S::gyroscope_of(d);
+    const auto numbers = [](const S::Symmetric& I) { return Tensor{I.xx, I.yy, I.zz, I.xy, I.xz, I.yz}; };
+    body.inertia_turns = true, body.inv_I = 0;
+    body.inertia = numbers(g.inertia), body.inverse_inertia = numbers(g.inverse);
+    body.torque = {d.torque_x, d.torque_y, d.torque_z};
+  }
+  body.acceleration = {body.inv_m * d.force_x,  body.inv_m * d.force_y,  body.inv_m * d.force_z,
+                       body.inv_I * d.torque_x, body.inv_I * d.torque_y, body.inv_I * d.torque_z};
+}
+
+template <class S>
+const auto& definition_of(const SceneBody& body) {
+  if constexpr (S::dimension == Dimension::planar) return body.definition;
+  else return body.spatial;
+}
+
+template <class S>
+Body body_of(const Scene& scene, const BasicWorld<S>& world, int index) {
   const SceneBody& source = scene.bodies[static_cast<std::size_t>(index)];
-  const BodyDefinition& d = source.definition;
-  const auto pose = world.place(index);
-  const auto velocity = world.velocity(index);
-  const auto mass = world.inverse_mass(index);
+  const auto& d = definition_of<S>(source);
   Body body;
-  body.name = source.name, body.moves = !Space::immovable(mass);
-  body.x = pose.x, body.y = pose.y, body.angle = pose.angle;
-  body.vx = velocity.x, body.vy = velocity.y, body.w = velocity.w;
-  body.inv_m = mass.m, body.inv_I = mass.I;
-  body.ax = mass.m * d.force_x, body.ay = mass.m * d.force_y;
-  body.aw = mass.I * d.torque;
+  body.name = source.name, body.moves = !S::immovable(world.inverse_mass(index));
+  set_pose(world, index, body);
+  set_forces(d, body);
   body.linear_drag = d.linear_damping, body.angular_drag = d.angular_damping;
   return body;
 }
 
-Joint joint_of(const Scene& scene, const BasicWorld<Space>& world, int index) {
+template <class S>
+Joint joint_of(const Scene& scene, const BasicWorld<S>& world, int index) {
   const SceneJoint& source = scene.joints[static_cast<std::size_t>(index)];
   Joint joint{source.name, source.definition.type, {}, world.joint_parameters(index)};
   const int ground = static_cast<int>(scene.bodies.size());
@@ -125,7 +158,8 @@ double tolerance_of(const Scene& scene) {
   return converged<double> * scale;
 }
 
-void add_effects(const Scene& scene, BasicWorld<Space>& world, Mechanism& mechanism) {
+template <class S>
+void add_effects(const Scene& scene, BasicWorld<S>& world, Mechanism& mechanism) {
   Refusals refusals(scene);
   const auto refuse = [&](const SceneJoint* joint, const std::string& what) {
     refusals.add(joint->where, fmt::format("{}: cdot compile does not know {}", joint->name, what),
@@ -136,6 +170,22 @@ void add_effects(const Scene& scene, BasicWorld<Space>& world, Mechanism& mechan
   refusals.throw_any();
 }
 
+template <class S>
+void add_parts(const Scene& scene, Mechanism& mechanism) {
+  BasicWorld<S> world = build_world_in<S>(scene);
+  if (scene.project) world.project(1e-12);
+  for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) mechanism.bodies.push_back(body_of(scene, world, i));
+  mechanism.bodies.emplace_back();
+  Body& ground = mechanism.bodies.back();
+  ground.name = "world", ground.moves = false;
+  ground.pose =
+      S::dimension == Dimension::planar ? std::vector<double>{0, 0, 0} : std::vector<double>{0, 0, 0, 1, 0, 0, 0};
+  for (int i = 0; i < static_cast<int>(scene.joints.size()); ++i)
+    if (!world.joint_type(i).is_effect && !scene.joints[static_cast<std::size_t>(i)].definition.soft)
+      mechanism.joints.push_back(joint_of(scene, world, i));
+  add_effects(scene, world, mechanism);
+}
+
 }  // namespace
 
 Mechanism read_mechanism(const std::string& file, const Wishes& wishes) {
@@ -144,22 +194,16 @@ Mechanism read_mechanism(const std::string& file, const Wishes& wishes) {
   refuse_parts(scene);
   Mechanism mechanism;
   mechanism.file = file, mechanism.title = scene.title;
+  mechanism.dimension = scene.dimension == Dimension::planar ? 2 : 3;
   mechanism.method_name = row_of(scene.settings.integrator).name;
   mechanism.method = method_of(scene);
   mechanism.step = scene.step;
   mechanism.tolerance = tolerance_of(scene);
   mechanism.inputs = wishes.inputs;
   for (std::string& name : mechanism.inputs) std::ranges::replace(name, '.', '_');
-  mechanism.gravity_x = scene.settings.gravity_x, mechanism.gravity_y = scene.settings.gravity_y;
-  BasicWorld<Space> world = build_world<double>(scene);
-  if (scene.project) world.project(1e-12);
-  for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) mechanism.bodies.push_back(body_of(scene, world, i));
-  mechanism.bodies.emplace_back();
-  mechanism.bodies.back().name = "world", mechanism.bodies.back().moves = false;
-  for (int i = 0; i < static_cast<int>(scene.joints.size()); ++i)
-    if (!world.joint_type(i).is_effect && !scene.joints[static_cast<std::size_t>(i)].definition.soft)
-      mechanism.joints.push_back(joint_of(scene, world, i));
-  add_effects(scene, world, mechanism);
+  mechanism.gravity = {scene.settings.gravity_x, scene.settings.gravity_y, scene.settings.gravity_z};
+  if (mechanism.spatial()) add_parts<Spatial<double>>(scene, mechanism);
+  else add_parts<Planar<double>>(scene, mechanism);
   return mechanism;
 }
 

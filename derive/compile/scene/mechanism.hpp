@@ -1,18 +1,26 @@
 // A scene as numbers: what the compiler of scenes knows of the runtime. World and scene stay behind mechanism.cpp.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 namespace cdot::compile {
 
+using Tensor = std::array<double, 6>;  // xx, yy, zz, xy, xz, yz
+
+// Numbers of a velocity go by columns: x, y, w; in space x, y, z, wx, wy, wz.
 struct Body {
   std::string name;
   bool moves = true;
-  double x = 0, y = 0, angle = 0;  // at the start [m], [rad]
-  double vx = 0, vy = 0, w = 0;
-  double inv_m = 0, inv_I = 0;               // [1/kg], [1/(kg m^2)]
-  double ax = 0, ay = 0, aw = 0;             // of constant forces and torques [m/s^2], [rad/s^2]
+  std::vector<double> pose;      // at the start: x, y, angle; in space x, y, z, e0, e1, e2, e3 [m], [rad]
+  std::vector<double> velocity;  // at the start, by columns
+  double inv_m = 0, inv_I = 0;   // [1/kg], [1/(kg m^2)]; inv_I: if `inertia_turns`, 0
+  // In space, where the moments of inertia differ: the tensor and its inverse, in the body's axes.
+  bool inertia_turns = false;
+  Tensor inertia{}, inverse_inertia{};
+  std::vector<double> acceleration;          // of constant forces and torques, by columns [m/s^2], [rad/s^2]
+  std::array<double, 3> torque{};            // the constant one, if `inertia_turns` [N m]
   double linear_drag = 0, angular_drag = 0;  // [1/s]
 };
 
@@ -49,15 +57,26 @@ enum class Method { euler, rk4, dop853 };
 
 struct Mechanism {
   std::string file, title, method_name;
+  int dimension = 2;
   Method method = Method::rk4;
-  double step = 0;                      // [s]
-  double tolerance = 0;                 // of C [m], [rad]
-  double gravity_x = 0, gravity_y = 0;  // [m/s^2]
-  std::vector<std::string> inputs;      // numbers that a run may change, as a header names them
-  std::vector<Body> bodies;             // the last one is the world
+  double step = 0;                  // [s]
+  double tolerance = 0;             // of C [m], [rad]
+  std::array<double, 3> gravity{};  // [m/s^2]
+  std::vector<std::string> inputs;  // numbers that a run may change, as a header names them
+  std::vector<Body> bodies;         // the last one is the world
   std::vector<Joint> joints;
   std::vector<Effect> effects;  // by forces
   std::vector<Effect> bounded;  // rows with bounds
+
+  bool spatial() const { return dimension == 3; }
+  std::size_t linear() const { return static_cast<std::size_t>(dimension); }  // columns before the angular ones
+  std::size_t columns() const { return spatial() ? 6 : 3; }
+  std::string column(std::size_t c) const {
+    constexpr const char *plane[] = {"x", "y", "w"}, *space[] = {"x", "y", "z", "wx", "wy", "wz"};
+    return spatial() ? space[c] : plane[c];
+  }
+  // Acceleration of a body by gravity and constant forces; without its torque if its inertia turns.
+  double push(const Body& body, std::size_t c) const { return (c < linear() ? gravity[c] : 0) + body.acceleration[c]; }
 };
 
 // Choices of the command line in place of the scene's; empty and 0: as the scene has it.

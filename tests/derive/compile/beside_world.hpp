@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <gtest/gtest.h>
 #include <limits>
 #include <string>
+#include <type_traits>
 
 #include <cdot/pack.hpp>
 #include <cdot/world.hpp>
@@ -15,40 +17,58 @@
 
 namespace cdot {
 
-inline World<double> world_of(Scene scene, Integrator integrator) {
+template <class S = Planar<double>>
+BasicWorld<S> world_of(Scene scene, Integrator integrator) {
   scene.settings.integrator = integrator;
   scene.accuracy = 0;
   settle_drift(scene);
-  return build_world<double>(scene);
+  BasicWorld<S> world = build_world_in<S>(scene);
+  if (scene.project) world.project(1e-12);
+  return world;
+}
+
+template <class Compiled>
+constexpr bool is_spatial = requires(typename Compiled::Pose q) {
+  q.e0;
+};
+
+// Of a pose: places, and the angle or the quaternion.
+template <class Compiled, class T>
+auto numbers_of(const T& q) {
+  if constexpr (is_spatial<Compiled>) return std::array{q.x, q.y, q.z, q.e0, q.e1, q.e2, q.e3};
+  else return std::array{q.x, q.y, q.angle};
 }
 
 // The largest distance [m], [rad] between the bodies of both.
-template <class Compiled>
-double distance(const typename Compiled::State& state, const World<double>& world) {
+template <class Compiled, class S>
+double distance(const typename Compiled::State& state, const BasicWorld<S>& world) {
   double farthest = 0;
   for (int body = 0, k = 0; body < world.body_count() && k < Compiled::bodies; ++body) {
     if (world.is_static(body)) continue;
-    const auto place = world.place(body);
-    const auto& q = state.q[k++];
-    farthest = std::max({farthest, std::abs(place.x - q.x), std::abs(place.y - q.y), std::abs(place.angle - q.angle)});
-    if (!std::isfinite(q.x + q.y + q.angle)) return std::numeric_limits<double>::infinity();
+    const auto place = numbers_of<Compiled>(world.place(body)), q = numbers_of<Compiled>(state.q[k++]);
+    for (std::size_t n = 0; n < q.size(); ++n) {
+      if (!std::isfinite(q[n])) return std::numeric_limits<double>::infinity();
+      farthest = std::max(farthest, std::abs(place[n] - q[n]));
+    }
   }
   return farthest;
 }
 
 template <class Compiled>
-void runs_as_the_world(const std::string& file, Integrator integrator, double within = 1e-10, double until = 0.7) {
-  constexpr double step = 0.001;  // [s]; the four-bar is singular at 0.708 s
-  auto world = world_of(read_scene(std::string(CDOT_SOURCE_DIR) + "/" + file), integrator);
+void runs_as_the_world(const std::string& file, Integrator integrator, double within = 1e-10, double until = 0.7,
+                       double step = 0.001) {  // [s]; the four-bar is singular at 0.708 s
+  using S = std::conditional_t<is_spatial<Compiled>, Spatial<double>, Planar<double>>;
+  auto world = world_of<S>(read_scene(std::string(CDOT_SOURCE_DIR) + "/" + file), integrator);
   typename Compiled::State state;
   Compiled::reset(state);
   double farthest = 0, moved = 0;
   const auto start = state.q[0];
-  for (int k = 0; k < static_cast<int>(until / step); ++k) {
+  for (int k = 0; k < static_cast<int>(std::lround(until / step)); ++k) {
     ASSERT_TRUE(world.step(step));
     EXPECT_LT(Compiled::step(state, step), 1e-12) << file;
     farthest = std::max(farthest, distance<Compiled>(state, world));
-    moved = std::max({moved, std::abs(state.q[0].y - start.y), std::abs(state.q[0].angle - start.angle)});
+    const auto from = numbers_of<Compiled>(start), now = numbers_of<Compiled>(state.q[0]);
+    for (std::size_t n = 0; n < now.size(); ++n) moved = std::max(moved, std::abs(now[n] - from[n]));
   }
   EXPECT_LT(farthest, within) << file;
   EXPECT_NEAR(Compiled::energy(state), world.energy(), 10 * within) << file;
@@ -56,34 +76,44 @@ void runs_as_the_world(const std::string& file, Integrator integrator, double wi
   ::testing::Test::RecordProperty(file, std::to_string(farthest * 1e15));
 }
 
+// Of the first body about an axis.
+template <class Compiled>
+auto& spin_in(typename Compiled::State& state) {
+  if constexpr (is_spatial<Compiled>) return state.v[0].wy;
+  else return state.v[0].w;
+}
+
 // Lane k starts with its first body turning k times as fast.
-template <template <class> class Compiled>
+template <template <class> class Compiled, class T = double>
 void lanes_are_as_alone() {
   constexpr int lanes = 4;
-  using Lanes = Pack<double, lanes>;
-  typename Compiled<Lanes>::State together;
-  typename Compiled<double>::State alone[lanes];
-  Compiled<Lanes>::reset(together);
+  using Lanes = Compiled<Pack<T, lanes>>;
+  using Alone = Compiled<T>;
+  typename Lanes::State together;
+  typename Alone::State alone[lanes];
+  Lanes::reset(together);
   for (int lane = 0; lane < lanes; ++lane) {
-    Compiled<double>::reset(alone[lane]);
-    alone[lane].v[0].w = 0.5 * lane;
-    together.v[0].w.set(lane, 0.5 * lane);
-    Compiled<double>::begin(alone[lane]);
+    Alone::reset(alone[lane]);
+    spin_in<Alone>(alone[lane]) = T(0.5 * lane);
+    spin_in<Lanes>(together).set(lane, T(0.5 * lane));
+    Alone::begin(alone[lane]);
   }
-  Compiled<Lanes>::begin(together);
+  Lanes::begin(together);
   for (int k = 0; k < 300; ++k) {
-    Compiled<Lanes>::step(together);
+    Lanes::step(together);
     for (int lane = 0; lane < lanes; ++lane) {
-      Compiled<double>::step(alone[lane]);
-      for (int i = 0; i < Compiled<double>::bodies; ++i) {
-        const auto& q = together.q[i];
-        const double of_lane[] = {q.x[lane], q.y[lane], q.angle[lane]};
-        const double of_alone[] = {alone[lane].q[i].x, alone[lane].q[i].y, alone[lane].q[i].angle};
-        ASSERT_EQ(std::memcmp(of_lane, of_alone, sizeof of_lane), 0) << "lane " << lane << ", step " << k;
+      Alone::step(alone[lane]);
+      for (int i = 0; i < Alone::bodies; ++i) {
+        const auto q = numbers_of<Lanes>(together.q[i]);
+        const auto of_alone = numbers_of<Alone>(alone[lane].q[i]);
+        auto of_lane = of_alone;
+        for (std::size_t n = 0; n < q.size(); ++n) of_lane[n] = q[n][lane];
+        ASSERT_EQ(std::memcmp(&of_lane, &of_alone, sizeof of_lane), 0) << "lane " << lane << ", step " << k;
       }
     }
   }
-  EXPECT_NE(together.q[0].angle[0], together.q[0].angle[lanes - 1]);
+  const auto q = numbers_of<Lanes>(together.q[0]);
+  EXPECT_NE(q.back()[0], q.back()[lanes - 1]);
 }
 
 }  // namespace cdot

@@ -27,9 +27,6 @@ TEST(CompileCommand, RefusesPartsThatItDoesNotKnowWithTheirLines) {
                 "specs/scenes/machine.toml:58:1: error: axle: cdot compile does not know axle.angle.motor by rk4"),
             std::string::npos)
       << effects.text;
-  const Outcome space = compile("specs/scenes/spatial/gyroscope.toml");
-  EXPECT_EQ(space.status, 2);
-  EXPECT_NE(space.text.find("planar scenes only"), std::string::npos) << space.text;
   const Outcome implicit = compile("specs/scenes/catenary_100.toml");
   EXPECT_EQ(implicit.status, 2);
   EXPECT_NE(implicit.text.find("no integrator implicit"), std::string::npos) << implicit.text;

@@ -1,0 +1,122 @@
+#include "derive/compile/gyroscopes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace cdot::compile {
+namespace {
+
+bool is_diagonal(const Tensor& I) { return I[3] == 0 && I[4] == 0 && I[5] == 0; }
+
+std::string text_of(const Tensor& I, double unit, bool whole) {
+  if (is_diagonal(I) && !whole)
+    return fmt::format("Vector<T>{{T({}), T({}), T({})}}", unit * I[0], unit * I[1], unit * I[2]);
+  return fmt::format("Tensor<T>{{T({}), T({}), T({}), T({}), T({}), T({})}}", unit * I[0], unit * I[1], unit * I[2],
+                     unit * I[3], unit * I[4], unit * I[5]);
+}
+std::string moments(const Tensor& I) { return text_of(I, 1, false); }
+
+// The axis about which the body is symmetric, as mean_spin() of the runtime finds it; -1: none.
+int symmetry_axis(const Tensor& I) {
+  const double slight = 8 * 2.220446049250313e-16 * (I[0] + I[1] + I[2]);
+  if (std::abs(I[3]) + std::abs(I[4]) + std::abs(I[5]) > slight) return -1;
+  const auto equal = [&](double a, double b) { return std::abs(a - b) <= slight; };
+  return equal(I[0], I[1]) ? 2 : equal(I[1], I[2]) ? 0 : equal(I[0], I[2]) ? 1 : -1;
+}
+
+std::string spin_of(const std::string& name) {
+  return fmt::format("Vector<T>{{v[{0}].wx, v[{0}].wy, v[{0}].wz}}", name);
+}
+
+// Lines of drift() for one body. The rotation does not depend on the scale of the inertia: of about 1 it suits floats.
+std::string drifted(const Body& body, const std::string& name) {
+  if (!body.inertia_turns) return fmt::format("    s.q[{0}] = moved(s.q[{0}], h * s.v[{0}]);\n", name);
+  const double unit = std::scalbn(1, -std::ilogb(std::max({body.inertia[0], body.inertia[1], body.inertia[2]})));
+  const int axis = symmetry_axis(body.inertia);
+  if (axis < 0)
+    return fmt::format("    s.q[{0}] = spun(s.q[{0}], s.v[{0}], {1}, {2}, h);\n", name,
+                       text_of(body.inertia, unit, true), text_of(body.inverse_inertia, 1 / unit, true));
+  const Tensor& I = body.inertia;
+  const double along = I[static_cast<std::size_t>(axis)];
+  const std::string e = fmt::format("Vector<T>{{T({}), T({}), T({})}}", int{axis == 0}, int{axis == 1}, int{axis == 2});
+  return fmt::format("    s.q[{0}] = spun(s.q[{0}], s.v[{0}], {1}, T({2}), {3}, h);\n", name, e,
+                     0.5 * unit * (I[0] + I[1] + I[2] - along), text_of(I, unit, false));
+}
+
+constexpr const char* momentum_functions = R"(
+  // Keeps I w of a body that moved, in the lanes of `now`.
+  template <class Moments>
+  static void follow(Pose& q, Velocity& v, Gyroscope& g, const Moments& I, const Moments& inverse, const Mask& now) {
+    const Vector<T> w = {v.wx, v.wy, v.wz}, L = g.momentum + g.I * (w - g.spin);
+    const Tensor<T> W = turned<T>(q, inverse);
+    const Vector<T> spin = W * L;
+    q.I = scenes::choose(now, W, q.I), g.I = scenes::choose(now, turned<T>(q, I), g.I);
+    g.momentum = scenes::choose(now, L, g.momentum), g.spin = scenes::choose(now, spin, g.spin);
+    v.wx = select(now, spin.x, v.wx), v.wy = select(now, spin.y, v.wy), v.wz = select(now, spin.z, v.wz);
+  }
+  template <class Moments>
+  static void wind(Pose& q, const Velocity& v, Gyroscope& g, const Moments& I, const Moments& inverse) {
+    g.spin = {v.wx, v.wy, v.wz};
+    q.I = turned<T>(q, inverse), g.I = turned<T>(q, I), g.momentum = g.I * g.spin;
+  }
+  // The pose after h by the mean spin: of a body that is symmetric about e, and of any other.
+  static Pose spun(const Pose& q, const Velocity& v, const Vector<T>& e, const T& across, const Vector<T>& I, const T& h) {
+    const Vector<T> W = to_body(q, Vector<T>{v.wx, v.wy, v.wz});
+    T c;
+    const Vector<T> half = free_turn(e, across, W, times(I, W), h, c);
+    Pose to = turned_by(q, c, to_world(q, half));
+    to.x = q.x + h * v.x, to.y = q.y + h * v.y, to.z = q.z + h * v.z;
+    return to;
+  }
+  static Pose spun(const Pose& q, const Velocity& v, const Tensor<T>& I, const Tensor<T>& inverse, const T& h) {
+    const Vector<T> w = to_world(q, mean_spin(I, inverse, to_body(q, Vector<T>{v.wx, v.wy, v.wz}), h));
+    return moved(q, {h * v.x, h * v.y, h * v.z, h * w.x, h * w.y, h * w.z});
+  }
+)";
+
+}  // namespace
+
+bool has_gyroscopes(const Mechanism& mechanism) { return std::ranges::any_of(mechanism.bodies, &Body::inertia_turns); }
+
+std::string pose_argument(const Mechanism& mechanism) {
+  return has_gyroscopes(mechanism) ? "const Pose (&q)[bodies], " : "";
+}
+
+std::string gyroscopes_of(const Mechanism& mechanism, const std::vector<std::string>& names) {
+  if (!has_gyroscopes(mechanism)) return {};
+  std::string weigh, wind, follow, drift;
+  int count = 0;
+  for (std::size_t b = 0; b < names.size(); ++b) {
+    const Body& body = mechanism.bodies[b];
+    if (!body.moves) continue;
+    drift += drifted(body, names[b]);
+    if (!body.inertia_turns) continue;
+    const std::string inverse = moments(body.inverse_inertia), I = moments(body.inertia);
+    weigh += fmt::format("    q[{0}].I = scenes::choose(now, turned<T>(q[{0}], {1}), q[{0}].I);\n", names[b], inverse);
+    wind += fmt::format("    wind(s.q[{0}], s.v[{0}], s.g[{1}], {2}, {3});\n", names[b], count, I, inverse);
+    follow += fmt::format("    follow(s.q[{0}], s.v[{0}], s.g[{1}], {2}, {3}, now);\n", names[b], count++, I, inverse);
+  }
+  if (mechanism.method != Method::euler)
+    return "\n  // Inverse inertias at the poses, in the lanes of `now`.\n"
+           "  static void weigh(Pose (&q)[bodies], const Mask& now) {\n" +
+           weigh + "  }\n";
+  return momentum_functions + ("  static void wind(State& s) {\n" + wind + "  }\n") +
+         "  static void follow(State& s, const Mask& now) {\n" + follow +
+         "  }\n  static void drift(State& s, const T& h) {\n" + drift +
+         "    turn(s.q);\n    follow(s, T(0) < T(1));\n  }\n";
+}
+
+std::string torque_of(const Body& body, const std::string& name) {
+  if (body.torque == std::array<double, 3>{}) return {};
+  return fmt::format("    const Vector<T> {0}_rate = q[{0}].I * Vector<T>{{T({1}), T({2}), T({3})}};\n", name,
+                     body.torque[0], body.torque[1], body.torque[2]);
+}
+
+std::string spin_energy_of(const Body& body, const std::string& name) {
+  return fmt::format(
+      "    {{\n      const Vector<T> W = to_body(q[{}], {});\n      sum = sum + dot(W, times({}, W));\n    }}\n", name,
+      spin_of(name), moments(body.inertia));
+}
+
+}  // namespace cdot::compile

@@ -1,0 +1,183 @@
+// The part of a compiled header that is the same in all scenes in space: vectors, tensors and rotations, without
+// branches on data, for numbers and for packs of them. The mathematics is that of runtime/space/gyroscope.cpp and of
+// cdot/rotation.hpp.
+#pragma once
+
+namespace cdot::compile {
+
+inline constexpr const char* space = R"(#ifndef CDOT_SCENE_SPACE
+#define CDOT_SCENE_SPACE
+namespace cdot::scenes {
+
+template <class T>
+struct Vector {
+  T x, y, z;
+  friend Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend Vector operator*(const T& s, const Vector& a) { return {s * a.x, s * a.y, s * a.z}; }
+};
+template <class T>
+inline T dot(const Vector<T>& a, const Vector<T>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class T>
+inline Vector<T> cross(const Vector<T>& a, const Vector<T>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class Mask, class T>
+inline Vector<T> choose(const Mask& now, const Vector<T>& a, const Vector<T>& b) {
+  return {select(now, a.x, b.x), select(now, a.y, b.y), select(now, a.z, b.z)};
+}
+
+template <class T>
+struct Tensor {  // symmetric
+  T xx, yy, zz, xy, xz, yz;
+  friend Vector<T> operator*(const Tensor& S, const Vector<T>& a) {
+    return {S.xx * a.x + S.xy * a.y + S.xz * a.z, S.xy * a.x + S.yy * a.y + S.yz * a.z,
+            S.xz * a.x + S.yz * a.y + S.zz * a.z};
+  }
+};
+template <class Mask, class T>
+inline Tensor<T> choose(const Mask& now, const Tensor<T>& A, const Tensor<T>& B) {
+  return {select(now, A.xx, B.xx), select(now, A.yy, B.yy), select(now, A.zz, B.zz),
+          select(now, A.xy, B.xy), select(now, A.xz, B.xz), select(now, A.yz, B.yz)};
+}
+
+// Of moments of inertia about the body's axes, and of a whole tensor.
+template <class T>
+inline Vector<T> times(const Vector<T>& moments, const Vector<T>& a) {
+  return {moments.x * a.x, moments.y * a.y, moments.z * a.z};
+}
+template <class T>
+inline Vector<T> times(const Tensor<T>& S, const Vector<T>& a) {
+  return S * a;
+}
+
+template <class T>
+inline T root(const T& x) {
+  using std::sqrt;
+  return sqrt(x);
+}
+
+// Half a rotation vector's cosine and sine: c = cos(|turn| / 2), and sin(|turn| / 2) / |turn| turn.
+template <class T>
+inline Vector<T> half_turn(const Vector<T>& turn, T& c) {
+  constexpr double slight = sizeof(typename NumberOf<T>::type) == 4 ? 1.2e-7 : 2.3e-16;
+  const T square = dot(turn, turn), angle = root(square);
+  const auto is_slight = square < T(slight);
+  T s;
+  sin_cos(T(0.5) * angle, s, c);
+  return select(is_slight, T(0.5) - square * T(0.02083333333333333333), s / select(is_slight, T(1), angle)) * turn;
+}
+
+// A S A^T
+template <class T, class Pose, class Moments>
+inline Tensor<T> turned(const Pose& q, const Moments& S) {
+  const Vector<T> x = {q.xx, q.xy, q.xz}, y = {q.yx, q.yy, q.yz}, z = {q.zx, q.zy, q.zz};
+  const Vector<T> Sx = times(S, x), Sy = times(S, y), Sz = times(S, z);
+  return {dot(x, Sx), dot(y, Sy), dot(z, Sz), dot(x, Sy), dot(x, Sz), dot(y, Sz)};
+}
+template <class Pose, class T>
+inline Vector<T> to_world(const Pose& q, const Vector<T>& a) {
+  return {q.xx * a.x + q.xy * a.y + q.xz * a.z, q.yx * a.x + q.yy * a.y + q.yz * a.z,
+          q.zx * a.x + q.zy * a.y + q.zz * a.z};
+}
+template <class Pose, class T>
+inline Vector<T> to_body(const Pose& q, const Vector<T>& a) {
+  return {q.xx * a.x + q.yx * a.y + q.zx * a.z, q.xy * a.x + q.yy * a.y + q.zy * a.z,
+          q.xz * a.x + q.yz * a.y + q.zz * a.z};
+}
+
+// q with e turned by (c, v), not yet of length 1.
+template <class Pose, class T>
+inline Pose turned_by(const Pose& from, const T& c, const Vector<T>& v) {
+  Pose q = from;
+  const T e0 = c * q.e0 - v.x * q.e1 - v.y * q.e2 - v.z * q.e3, e1 = c * q.e1 + v.x * q.e0 + v.y * q.e3 - v.z * q.e2;
+  const T e2 = c * q.e2 + v.y * q.e0 + v.z * q.e1 - v.x * q.e3, e3 = c * q.e3 + v.z * q.e0 + v.x * q.e2 - v.y * q.e1;
+  q.e0 = e0, q.e1 = e1, q.e2 = e2, q.e3 = e3;
+  return q;
+}
+
+// Brings e to length 1, and sets its rotation matrix.
+template <class Pose>
+inline void orient(Pose& q) {
+  using T = decltype(q.e0 + q.e0);
+  const T scale = T(1) / root(q.e0 * q.e0 + q.e1 * q.e1 + q.e2 * q.e2 + q.e3 * q.e3), two = T(2);
+  q.e0 = scale * q.e0, q.e1 = scale * q.e1, q.e2 = scale * q.e2, q.e3 = scale * q.e3;
+  q.xx = T(1) - two * (q.e2 * q.e2 + q.e3 * q.e3), q.xy = two * (q.e1 * q.e2 - q.e0 * q.e3);
+  q.xz = two * (q.e1 * q.e3 + q.e0 * q.e2), q.yx = two * (q.e1 * q.e2 + q.e0 * q.e3);
+  q.yy = T(1) - two * (q.e1 * q.e1 + q.e3 * q.e3), q.yz = two * (q.e2 * q.e3 - q.e0 * q.e1);
+  q.zx = two * (q.e1 * q.e3 - q.e0 * q.e2), q.zy = two * (q.e2 * q.e3 + q.e0 * q.e1);
+  q.zz = T(1) - two * (q.e1 * q.e1 + q.e2 * q.e2);
+}
+
+// The rotation of a free body during h that is symmetric about its axis e, in its own axes: it precesses about L at the
+// rate L / I and turns about e by the rest. I: the moment across e.
+template <class T>
+inline Vector<T> free_turn(const Vector<T>& e, const T& I, const Vector<T>& W, const Vector<T>& L, const T& h, T& c) {
+  const Vector<T> round = (h / I) * L, rest = (h * dot(W, e) - dot(round, e)) * e;
+  T a0, b0;
+  const Vector<T> a = half_turn(round, a0), b = half_turn(rest, b0);
+  c = a0 * b0 - dot(a, b);
+  return b0 * a + a0 * b + cross(a, b);
+}
+
+// The solution d of (I - b x T) d = I r, T = E - versine theta x + (theta x)^2 (1 - sinc) / a^2.
+template <class T>
+inline Vector<T> newton_step(const Tensor<T>& I, const Vector<T>& b, const Vector<T>& theta, const T& sinc,
+                             const T& versine, const Vector<T>& r) {
+  const T square = dot(theta, theta), along = dot(b, theta);
+  const auto slight = square < T(0.25);
+  const T last = select(slight, T(0.16666666666666666667) - square * T(0.00833333333333333333),
+                        (T(1) - sinc) / select(slight, T(1), square));
+  const Vector<T> v = b - (last * along) * theta, u = versine * b - last * cross(b, theta);
+  const T diagonal = versine * along;
+  const Vector<T> first = Vector<T>{I.xx - diagonal, I.xy - v.z, I.xz + v.y} + u.x * theta;
+  const Vector<T> second = Vector<T>{I.xy + v.z, I.yy - diagonal, I.yz - v.x} + u.y * theta;
+  const Vector<T> third = Vector<T>{I.xz - v.y, I.yz + v.x, I.zz - diagonal} + u.z * theta, right = I * r;
+  const Vector<T> across = cross(second, third);
+  return (T(1) / dot(first, across)) *
+         Vector<T>{dot(right, across), dot(right, cross(third, first)), dot(right, cross(first, second))};
+}
+
+// The mean spin of any free body during h, in its own axes: theta = h (W + W') / 2 with I W' = exp(-theta) I W, by
+// Newton (Simo and Wong 1991). A lane that is done waits for the others unchanged.
+template <class T>
+inline Vector<T> mean_spin(const Tensor<T>& I, const Tensor<T>& inverse, const Vector<T>& W, const T& h) {
+  constexpr double epsilon = sizeof(typename NumberOf<T>::type) == 4 ? 1.1920929e-07 : 2.220446049250313e-16;
+  const Vector<T> L = I * W, rate = inverse * cross(L, W);
+  const Vector<T> bend = inverse * (cross(I * rate, W) + cross(L, rate));
+  const T fine = T(epsilon) * root(dot(W, W));
+  const T curvature = T(0.125) * h * h * (inverse.xx + inverse.yy + inverse.zz) * root(dot(L, L));
+  Vector<T> after = choose(h * h * dot(W, W) < T(0.25), W + h * (rate + (T(0.5) * h) * bend), W), best = W;
+  T smallest = T(1e30);
+  auto busy = T(0) < T(1);
+  for (int round = 0; round < 12 && any(busy); ++round) {
+    const Vector<T> mean = T(0.5) * (W + after), theta = h * mean;
+    T c;
+    const Vector<T> half = half_turn(theta, c);
+    const T square = dot(theta, theta);
+    const auto slight = square < T(1e-30);
+    const T s = select(slight, T(0.5), root(dot(half, half) / select(slight, T(1), square)));
+    const T sinc = T(2) * s * c, versine = T(2) * s * s;
+    const Vector<T> across = cross(theta, L), turned = L - sinc * across + versine * cross(theta, across);
+    const Vector<T> residual = after - inverse * turned;
+    const T size = root(dot(residual, residual));
+    const auto better = busy && size < smallest, converges = size < T(0.5) * smallest;
+    best = choose(better, mean, best), smallest = select(better, size, smallest);
+    busy = busy && converges && size > fine;
+    const Vector<T> step = newton_step(I, (T(0.5) * h) * turned, theta, sinc, versine, residual);
+    after = choose(busy, after - step, after);
+    const auto last = busy && curvature * dot(step, step) <= fine;
+    best = choose(last, T(0.5) * (W + after), best);
+    busy = busy && !last;
+  }
+  return choose(smallest < T(0.5) * root(dot(W, W)), best, W);
+}
+
+}  // namespace cdot::scenes
+#endif
+
+)";
+
+}  // namespace cdot::compile

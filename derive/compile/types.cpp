@@ -1,0 +1,143 @@
+#include "derive/compile/types.hpp"
+
+#include <fmt/format.h>
+
+#include "derive/compile/gyroscopes.hpp"
+
+namespace cdot::compile {
+namespace {
+
+constexpr const char* planar_types = R"(
+  using Mask = decltype(T(0) < T(1));
+  struct Pose {
+    T x, y, angle;  // centre of mass [m], [rad]
+    T c, s;         // cosine and sine of the angle
+  };
+  struct Velocity {  // also an acceleration or a displacement
+    T x, y, w;
+    friend Velocity operator+(const Velocity& a, const Velocity& b) { return {a.x + b.x, a.y + b.y, a.w + b.w}; }
+    friend Velocity operator-(const Velocity& a, const Velocity& b) { return {a.x - b.x, a.y - b.y, a.w - b.w}; }
+    friend Velocity operator-(const Velocity& a) { return {-a.x, -a.y, -a.w}; }
+    friend Velocity operator*(const T& a, const Velocity& b) { return {a * b.x, a * b.y, a * b.w}; }
+  };
+  using Rate = Velocity;  // of a pose
+  static Velocity still() { return {T(0), T(0), T(0)}; }
+  static Pose choose(const Mask& now, const Pose& q, const Pose& p) {
+    return {select(now, q.x, p.x), select(now, q.y, p.y), select(now, q.angle, p.angle), select(now, q.c, p.c),
+            select(now, q.s, p.s)};
+  }
+  static Velocity choose(const Mask& now, const Velocity& a, const Velocity& b) {
+    return {select(now, a.x, b.x), select(now, a.y, b.y), select(now, a.w, b.w)};
+  }
+  static const Rate& rate_of(const Pose&, const Velocity& v) { return v; }
+  static Pose moved(const Pose& q, const Velocity& d) { return {q.x + d.x, q.y + d.y, q.angle + d.w, q.c, q.s}; }
+)";
+
+constexpr const char* spatial_pose = R"(
+  using Mask = decltype(T(0) < T(1));
+  struct Pose {
+    T x, y, z;                             // centre of mass [m]
+    T e0, e1, e2, e3;                      // orientation, a quaternion of length 1
+    T xx, xy, xz, yx, yy, yz, zx, zy, zz;  // its rotation matrix
+)";
+
+constexpr const char* spatial_inertia =
+    R"(    Tensor<T> I;  // inverse inertia in the world's axes, of bodies whose inertia turns with them
+)";
+
+constexpr const char* spatial_types = R"(  }};
+  struct Velocity {{  // also an acceleration or a displacement
+    T x, y, z, wx, wy, wz;
+    friend Velocity operator+(const Velocity& a, const Velocity& b) {{
+      return {{a.x + b.x, a.y + b.y, a.z + b.z, a.wx + b.wx, a.wy + b.wy, a.wz + b.wz}};
+    }}
+    friend Velocity operator-(const Velocity& a, const Velocity& b) {{
+      return {{a.x - b.x, a.y - b.y, a.z - b.z, a.wx - b.wx, a.wy - b.wy, a.wz - b.wz}};
+    }}
+    friend Velocity operator-(const Velocity& a) {{ return {{-a.x, -a.y, -a.z, -a.wx, -a.wy, -a.wz}}; }}
+    friend Velocity operator*(const T& a, const Velocity& b) {{
+      return {{a * b.x, a * b.y, a * b.z, a * b.wx, a * b.wy, a * b.wz}};
+    }}
+  }};
+  static Velocity still() {{ return {{T(0), T(0), T(0), T(0), T(0), T(0)}}; }}
+  static Pose choose(const Mask& now, const Pose& q, const Pose& p) {{
+    Pose one = p;
+    one.x = select(now, q.x, p.x), one.y = select(now, q.y, p.y), one.z = select(now, q.z, p.z);
+    one.e0 = select(now, q.e0, p.e0), one.e1 = select(now, q.e1, p.e1);
+    one.e2 = select(now, q.e2, p.e2), one.e3 = select(now, q.e3, p.e3);
+    one.xx = select(now, q.xx, p.xx), one.xy = select(now, q.xy, p.xy), one.xz = select(now, q.xz, p.xz);
+    one.yx = select(now, q.yx, p.yx), one.yy = select(now, q.yy, p.yy), one.yz = select(now, q.yz, p.yz);
+    one.zx = select(now, q.zx, p.zx), one.zy = select(now, q.zy, p.zy), one.zz = select(now, q.zz, p.zz);
+{}    return one;
+  }}
+  static Velocity choose(const Mask& now, const Velocity& a, const Velocity& b) {{
+    return {{select(now, a.x, b.x),   select(now, a.y, b.y),   select(now, a.z, b.z),
+            select(now, a.wx, b.wx), select(now, a.wy, b.wy), select(now, a.wz, b.wz)}};
+  }}
+  // By the exact rotation about d.w.
+  static Pose moved(const Pose& q, const Velocity& d) {{
+    T c;
+    const Vector<T> half = half_turn(Vector<T>{{d.wx, d.wy, d.wz}}, c);
+    Pose to = turned_by(q, c, half);
+    to.x = q.x + d.x, to.y = q.y + d.y, to.z = q.z + d.z;
+    return to;
+  }}
+)";
+
+constexpr const char* spatial_rates = R"(  struct Rate {  // of a pose
+    T x, y, z, e0, e1, e2, e3;
+    friend Rate operator+(const Rate& a, const Rate& b) {
+      return {a.x + b.x, a.y + b.y, a.z + b.z, a.e0 + b.e0, a.e1 + b.e1, a.e2 + b.e2, a.e3 + b.e3};
+    }
+    friend Rate operator-(const Rate& a, const Rate& b) {
+      return {a.x - b.x, a.y - b.y, a.z - b.z, a.e0 - b.e0, a.e1 - b.e1, a.e2 - b.e2, a.e3 - b.e3};
+    }
+    friend Rate operator-(const Rate& a) { return {-a.x, -a.y, -a.z, -a.e0, -a.e1, -a.e2, -a.e3}; }
+    friend Rate operator*(const T& a, const Rate& b) {
+      return {a * b.x, a * b.y, a * b.z, a * b.e0, a * b.e1, a * b.e2, a * b.e3};
+    }
+  };
+  // de/dt = (0, w) e / 2
+  static Rate rate_of(const Pose& q, const Velocity& v) {
+    const T x = T(0.5) * v.wx, y = T(0.5) * v.wy, z = T(0.5) * v.wz;
+    return {v.x, v.y, v.z, -x * q.e1 - y * q.e2 - z * q.e3, x * q.e0 + y * q.e3 - z * q.e2,
+            y * q.e0 + z * q.e1 - x * q.e3, z * q.e0 + x * q.e2 - y * q.e1};
+  }
+  static Pose moved(const Pose& from, const Rate& d) {
+    Pose q = from;
+    q.x = q.x + d.x, q.y = q.y + d.y, q.z = q.z + d.z;
+    q.e0 = q.e0 + d.e0, q.e1 = q.e1 + d.e1, q.e2 = q.e2 + d.e2, q.e3 = q.e3 + d.e3;
+    return q;
+  }
+)";
+
+constexpr const char* gyroscope =
+    R"(  // A body whose inertia turns with it keeps its angular momentum, as of the last move.
+  struct Gyroscope {
+    Tensor<T> I;              // inertia in the world's axes
+    Vector<T> momentum, spin;
+  };
+)";
+
+}  // namespace
+
+std::string types_of(const Mechanism& mechanism) {
+  if (!mechanism.spatial()) return planar_types;
+  const bool gyroscopes = has_gyroscopes(mechanism);
+  std::string text = spatial_pose;
+  if (gyroscopes) text += spatial_inertia;
+  text += fmt::format(spatial_types, gyroscopes ? "    one.I = scenes::choose(now, q.I, p.I);\n" : "");
+  if (mechanism.method != Method::euler) text += spatial_rates;
+  else if (gyroscopes) text += gyroscope;
+  return text;
+}
+
+long numbers_of(const Mechanism& mechanism, const Body& body) {
+  if (!body.moves) return 0;
+  const bool accelerates = mechanism.method != Method::euler;
+  const long columns = static_cast<long>(mechanism.columns());
+  const long pose = mechanism.spatial() ? 16 + (has_gyroscopes(mechanism) ? 6 : 0) : 5;
+  return pose + columns * (accelerates ? 2 : 1) + (body.inertia_turns && !accelerates ? 12 : 0);
+}
+
+}  // namespace cdot::compile

@@ -1,0 +1,16 @@
+// Poses, velocities and their sums in a compiled struct, in the plane and in space, as text.
+#pragma once
+
+#include <string>
+
+#include "derive/compile/scene/mechanism.hpp"
+
+namespace cdot::compile {
+
+// Pose, Velocity and Rate, that of a pose; choose(), moved(), rate_of().
+std::string types_of(const Mechanism& mechanism);
+
+// Numbers of a State for each body that moves: with its accelerations or, of a step at velocities, its momentum.
+long numbers_of(const Mechanism& mechanism, const Body& body);
+
+}  // namespace cdot::compile

@@ -1,0 +1,71 @@
+// A compiled scene in space moves as the World does, to round-off.
+#include <gtest/gtest.h>
+
+#include "tests/derive/compile/beside_world.hpp"
+
+#define CDOT_EACH_SCENE_IN_SPACE(X, method) \
+  X(chain_10, method)                       \
+  X(double_pendulum, method)                \
+  X(four_bar, method)                       \
+  X(gyroscope, method)                      \
+  X(three_bodies, method)                   \
+  X(torque_free_body, method)
+
+// clang-format off
+#include "chain_10_space_dop853.hpp"
+#include "chain_10_space_euler.hpp"
+#include "chain_10_space_rk4.hpp"
+#include "double_pendulum_space_dop853.hpp"
+#include "double_pendulum_space_euler.hpp"
+#include "double_pendulum_space_rk4.hpp"
+#include "four_bar_space_dop853.hpp"
+#include "four_bar_space_euler.hpp"
+#include "four_bar_space_rk4.hpp"
+#include "gyroscope_space_dop853.hpp"
+#include "gyroscope_space_euler.hpp"
+#include "gyroscope_space_rk4.hpp"
+#include "slider_crank_space_dop853.hpp"
+#include "slider_crank_space_euler.hpp"
+#include "slider_crank_space_rk4.hpp"
+#include "three_bodies_space_dop853.hpp"
+#include "three_bodies_space_euler.hpp"
+#include "three_bodies_space_rk4.hpp"
+#include "torque_free_body_space_dop853.hpp"
+#include "torque_free_body_space_euler.hpp"
+#include "torque_free_body_space_rk4.hpp"
+// clang-format on
+
+namespace {
+
+using cdot::Integrator;
+
+#define CDOT_RUN_IN_SPACE(scene, method)                                                                        \
+  cdot::runs_as_the_world<cdot::scenes::scene##_space_##method<double>>("specs/scenes/spatial/" #scene ".toml", \
+                                                                        Integrator::method);
+
+const std::string slider_crank = "specs/scenes/spatial/slider_crank.toml";
+
+// With steps of 1 ms, at 150 rad/s, Newton turns a change of 1e-15 at the start into 1e-7.
+TEST(CompiledSpace, MovesByEulerAsTheWorld) {
+  CDOT_EACH_SCENE_IN_SPACE(CDOT_RUN_IN_SPACE, euler)
+  cdot::runs_as_the_world<cdot::scenes::slider_crank_space_euler<double>>(slider_crank, Integrator::euler, 1e-10, 0.07,
+                                                                          1e-4);
+}
+
+TEST(CompiledSpace,
+     MovesByRk4AsTheWorld){CDOT_EACH_SCENE_IN_SPACE(CDOT_RUN_IN_SPACE, rk4) CDOT_RUN_IN_SPACE(slider_crank, rk4)}
+
+TEST(CompiledSpace, MovesByDop853AsTheWorld){CDOT_EACH_SCENE_IN_SPACE(CDOT_RUN_IN_SPACE, dop853)
+                                                 CDOT_RUN_IN_SPACE(slider_crank, dop853)}
+
+// Spins of a symmetric body, of one without symmetry, and of bodies with joints.
+TEST(CompiledSpace, LanesAreAsAlone) {
+  cdot::lanes_are_as_alone<cdot::scenes::gyroscope_space_euler>();
+  cdot::lanes_are_as_alone<cdot::scenes::torque_free_body_space_euler>();
+  cdot::lanes_are_as_alone<cdot::scenes::three_bodies_space_euler>();
+  cdot::lanes_are_as_alone<cdot::scenes::three_bodies_space_rk4>();
+  cdot::lanes_are_as_alone<cdot::scenes::torque_free_body_space_euler, float>();
+  cdot::lanes_are_as_alone<cdot::scenes::gyroscope_space_dop853, float>();
+}
+
+}  // namespace
