@@ -7,7 +7,9 @@
 #include "runtime/tool/commands/options.hpp"
 #include "runtime/tool/run/output.hpp"
 #include "runtime/tool/search/advice.hpp"
+#include "runtime/tool/viewer/plots.hpp"
 #include "runtime/tool/viewer/viewer.hpp"
+#include "runtime/tool/watch/record.hpp"
 
 namespace cdot {
 namespace {
@@ -18,7 +20,8 @@ struct Options {
   SceneOptions scene;
   double accuracy = 0, tolerance = 0, energy_tolerance = 0, trajectory_tolerance = 0, every = 0;
   bool project = false, json = false;
-  std::string csv, html, svg, save_state, from_state;
+  std::string csv, html, svg, plot, save_state, from_state;
+  std::vector<std::string> recorded;
   std::vector<double> times;
   std::optional<double> state_time;
 };
@@ -58,6 +61,15 @@ void add_options(Line& line, Options& options) {
       .excludes("--every");
   line.add("--html", &options.html, "write a self-contained page that plays the mechanism");
   line.add("--svg", &options.svg, "write a picture of the mechanism at several times, with its traces");
+  line.add("--plot", &options.plot,
+           "write the sensors as plots over time, an SVG file; of a scene without sensors, its coordinates");
+  std::vector<std::string> groups{"all"};
+  std::string meanings = "add sensors to CSV, JSON, page and plots, separated by commas";
+  for (const Recordable& group : recordables()) {
+    groups.emplace_back(group.name);
+    meanings += fmt::format("\n{}: {}", group.name, group.meaning);
+  }
+  line.add("--record", &options.recorded, meanings).separated_by_commas().one_of(groups);
   line.add("--save-state", &options.save_state, "write the final state to a file for --from-state");
   line.add("--at", &options.state_time, "save the state at this time [s] instead").not_negative().needs("--save-state");
   line.add("--from-state", &options.from_state,
@@ -75,7 +87,7 @@ RunOptions run_options(const Options& options, const Scene& scene, OutputFile* c
   run.row_times = options.times;
   std::sort(run.row_times.begin(), run.row_times.end());
   if (options.every > 0) run.row_times = every(options.every, scene.duration);
-  if (!options.html.empty() || !options.svg.empty()) run.film_times = film_times(scene);
+  if (!options.html.empty() || !options.svg.empty() || !options.plot.empty()) run.film_times = film_times(scene);
   run.diagnose_times = equal_times(scene.duration, poses_diagnosed, 0);
   run.progress = progress_shown(options.scene);
   if (!options.from_state.empty()) run.from = read_state(options.from_state);
@@ -102,7 +114,9 @@ int run(const Options& options) {
   if (options.trajectory_tolerance > 0) scene.trajectory_tolerance = options.trajectory_tolerance;
   if (options.project) scene.project = true;
   if (options.accuracy > 0) scene.accuracy = options.accuracy;
-  std::FILE* summary = summary_beside({options.csv, options.html, options.svg, options.save_state});
+  record(scene, options.recorded);
+  if (!options.plot.empty() && scene.sensors.empty()) record(scene, {"coordinates"});
+  std::FILE* summary = summary_beside({options.csv, options.html, options.svg, options.plot, options.save_state});
   std::optional<OutputFile> csv;
   if (!options.csv.empty()) csv.emplace(options.csv);
 
@@ -120,6 +134,7 @@ int run(const Options& options) {
     write_file(options.html, html_page(as_run(scene, result), result.film,
                                        result.choice ? choice_text(*result.choice, false) : std::string()));
   if (!options.svg.empty()) write_file(options.svg, svg_still(scene, result.film));
+  if (!options.plot.empty()) write_file(options.plot, plots_svg(scene, result.film));
   text::print_messages(summary, options.json ? summary_json(scene, result) : summary_text(scene, result));
   if (result.interrupted) return stopped;
   return failure(scene, result).empty() ? well : answer_is_no;

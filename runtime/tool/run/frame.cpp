@@ -39,6 +39,19 @@ void turn(const BodyState& a, const BodyState& b, double h, double s, BodyState&
   to.wx = linear(a.wx, b.wx, s), to.wy = linear(a.wy, b.wy, s), to.wz = linear(a.wz, b.wz, s);
 }
 
+// The mean ones of the time between; 0 if there is none.
+Accelerations accelerations_between(const Frame& start, const Frame& end, Dimension dimension) {
+  Accelerations all(end.bodies.size());
+  const double h = end.time - start.time;
+  for (std::size_t k = 0; k < all.size() && h > 0; ++k) {
+    const BodyState &a = start.bodies[k], &b = end.bodies[k];
+    const bool spatial = dimension == Dimension::spatial;
+    all[k] = {(b.vx - a.vx) / h, (b.vy - a.vy) / h, (b.vz - a.vz) / h, (spatial ? b.wx - a.wx : b.w - a.w) / h,
+              (b.wy - a.wy) / h, (b.wz - a.wz) / h};
+  }
+  return all;
+}
+
 }  // namespace
 
 spatial::Pose<double> orientation_of(const BodyState& b) {
@@ -79,6 +92,16 @@ bool finite(const Frame& frame) {
   }
   return true;
 }
+
+template <class S>
+void read_sensors(const Scene& scene, BasicWorld<S>& world, const Frame& start, Frame& frame) {
+  if (!scene.sensors.empty())
+    frame.sensors = sensor_values(scene, world, accelerations_between(start, frame, S::dimension));
+}
+
+#define CDOT_INSTANTIATE(S) template void read_sensors(const Scene&, BasicWorld<S>&, const Frame&, Frame&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 Frame between(const Frame& before, const Frame& after, double time) {
   const double h = after.time - before.time, s = (time - before.time) / h;

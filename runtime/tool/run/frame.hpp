@@ -7,6 +7,8 @@
 #include <cdot/rotation.hpp>
 #include <cdot/world.hpp>
 
+#include "runtime/tool/watch/sensors.hpp"
+
 namespace cdot {
 
 struct BodyState {
@@ -36,6 +38,10 @@ struct Frame {
 template <class S>
 Frame frame_of(const BasicWorld<S>& world, double time, int bodies);
 bool finite(const Frame& frame);
+// Reads the sensors of the scene into `frame`, the state of the World at the end of a step from `start`; at the start
+// of a run they are equal.
+template <class S>
+void read_sensors(const Scene& scene, BasicWorld<S>& world, const Frame& start, Frame& frame);
 
 // Between two steps: positions by the cubic through both ends' positions and velocities, the rest linear. The error is
 // of fourth order in the step.

@@ -149,7 +149,7 @@ std::string summary_text(const Scene& asked, const RunResult& result) {
     const Sensor& sensor = scene.sensors[k];
     const SensorRange& range = result.sensors[k];
     text += fmt::format("  sensor          {}: {:.6g} to {:.6g} {}, {:.6g} at the end\n", sensor.name, range.least,
-                        range.most, sensor.formula.unit(), range.end);
+                        range.most, sensor.unit, range.end);
   }
   text += balance_text(result);
   if (result.error.samples > 0) text += error_text(scene, result.error);
@@ -229,7 +229,7 @@ std::string summary_json(const Scene& asked, const RunResult& result) {
                          {"rescued", result.counts.rescued},         {"steered", result.counts.steered}};
   for (std::size_t k = 0; k < result.sensors.size(); ++k)
     json["sensors"].push_back({{"name", scene.sensors[k].name},
-                               {"unit", scene.sensors[k].formula.unit()},
+                               {"unit", scene.sensors[k].unit},
                                {"least", result.sensors[k].least},
                                {"most", result.sensors[k].most},
                                {"end", result.sensors[k].end}});

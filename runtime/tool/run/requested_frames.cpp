@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "runtime/tool/watch/sensors.hpp"
-
 namespace cdot {
 namespace {
 
@@ -56,11 +54,12 @@ template <class S>
 Frame RequestedFrames<S>::part_of_step(const Frame& before, const Frame& after, double time) {
   if (!part_) part_ = build_world_in<S>(scene_);
   const bool goes_on = adaptive_ && last_;
+  const Frame& start = goes_on ? *last_ : before;
   if (!goes_on) part_->restore(start_);
   // The step itself succeeded, so a part of it hardly ever fails.
-  if (!part_->step(time - (goes_on ? last_->time : before.time))) return between(before, after, time);
+  if (!part_->step(time - start.time)) return between(before, after, time);
   Frame frame = frame_of(*part_, time, static_cast<int>(before.bodies.size()));
-  frame.sensors = sensor_values(scene_, *part_);
+  read_sensors(scene_, *part_, start, frame);
   return frame;
 }
 

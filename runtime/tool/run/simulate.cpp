@@ -8,7 +8,6 @@
 #include "runtime/tool/run/error_estimate.hpp"
 #include "runtime/tool/run/process.hpp"
 #include "runtime/tool/run/requested_frames.hpp"
-#include "runtime/tool/watch/sensors.hpp"
 
 namespace cdot {
 namespace {
@@ -136,7 +135,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
 
   const int bodies = static_cast<int>(scene.bodies.size());
   Frame before = frame_of(world, result.start, bodies);
-  before.sensors = sensor_values(scene, world);
+  read_sensors(scene, world, before, before);
   Frame after = before;
   result.energy_start = before.energy;
   auto next_diagnosis = options.diagnose_times.begin();
@@ -177,7 +176,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     result.steps = k + 1;
     std::swap(before, after);
     after = frame_of(world, steps.time(k + 1), bodies);
-    after.sensors = sensor_values(scene, world);
+    read_sensors(scene, world, before, after);
     if (progress.due())
       progress.show(fmt::format("{}{:3.0f} %  {:.4g} s of {:.4g} s", options.doing, 100 * after.time / scene.duration,
                                 after.time, scene.duration));

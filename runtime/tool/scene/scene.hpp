@@ -78,20 +78,33 @@ struct Measured {
     kinetic,
     coordinate,
     rate,
-    effects,  // force or torque of all effects on a coordinate, or of one
-    power,    // that force times the rate
-    given,    // power of a joint or of an effect between bodies: that of its forces on all of them
-    force,    // of the joint on its last body
-    torque    // likewise, about the centre of mass
+    effects,              // force or torque of all effects on a coordinate, or of one
+    power,                // that force times the rate
+    given,                // power of a joint or of an effect between bodies: that of its forces on all of them
+    force,                // of the joint on its last body
+    torque,               // likewise, about the centre of mass
+    acceleration,         // of a body: the change of its velocity in the last step by its length
+    angular_acceleration  // likewise
   } what = energy;
-  int joint = -1;
+  int joint = -1;  // of an acceleration, the body
   std::string coordinate_name{};
   std::string effect{};  // the type of the only one that counts; empty: all
 };
 
+// All that an expression may measure, and the words for it.
+struct Measurable {
+  Vocabulary words;
+  std::vector<Measured> measured;  // as words.quantities
+
+  void add(std::string name, std::string unit, Measured what, bool vector = false) {
+    words.quantities.push_back({std::move(name), std::move(unit), vector});
+    measured.push_back(std::move(what));
+  }
+};
+
 // An expression that a run evaluates: a column of the output.
 struct Sensor {
-  std::string name;
+  std::string name, unit;  // the unit as people write it: "N", "W"
   Formula formula;
   std::vector<Measured> measured;  // by input of the formula; unused for time and the numbers of bodies
 };
@@ -122,6 +135,9 @@ struct Scene {
   std::vector<Sensor> sensors;
   std::shared_ptr<const Mistakes> source;  // to report errors of the World in its lines
 };
+
+// Of the bodies and joints that it has so far.
+Measurable measurable_of(const Scene& scene);
 
 // True if the run finds its method: for Scene::accuracy, or for default_accuracy if that is 0.
 inline bool chooses_method(const Scene& scene) { return scene.accuracy > 0 || scene.step == 0; }

@@ -9,17 +9,6 @@
 namespace cdot {
 namespace {
 
-// All that an expression may measure, and the words for it.
-struct Measurable {
-  Vocabulary words;
-  std::vector<Measured> measured;  // as words.quantities
-
-  void add(std::string name, std::string unit, Measured what, bool vector = false) {
-    words.quantities.push_back({std::move(name), std::move(unit), vector});
-    measured.push_back(std::move(what));
-  }
-};
-
 std::string unit_of_force(std::string_view unit) { return unit == "rad" ? "N*m" : unit == "m" ? "N" : ""; }
 
 void add_joint_to(Measurable& all, const SceneJoint& joint, int number, Dimension dimension) {
@@ -43,17 +32,6 @@ void add_joint_to(Measurable& all, const SceneJoint& joint, int number, Dimensio
   all.add("torque(" + joint.name + ")", "N*m", {torque, number, ""}, dimension == Dimension::spatial);
 }
 
-Measurable measurable_of(const Scene& scene) {
-  Measurable all;
-  all.words.dimension = scene.dimension == Dimension::planar ? 2 : 3;
-  for (const SceneBody& body : scene.bodies) all.words.bodies.push_back(body.name);
-  for (std::size_t k = 0; k < scene.joints.size(); ++k)
-    add_joint_to(all, scene.joints[k], static_cast<int>(k), scene.dimension);
-  all.add("energy", "J", {Measured::energy});
-  all.add("kinetic", "J", {Measured::kinetic});
-  return all;
-}
-
 struct SensorReading {
   const Measurable& all;
   std::map<std::string, Span>& used;
@@ -62,6 +40,16 @@ struct SensorReading {
 
 void read_sensor_name(Entry& entry, const char*, SensorReading& to) {
   to.sensor.name = read_name(entry, to.used, std::nullopt).value_or("");
+}
+
+// A torque and an energy have the same units, so joules are those of a sensor that measures energy alone.
+std::string usual_unit(const Sensor& sensor) {
+  const std::string& unit = sensor.formula.unit();
+  const auto is_energy = [](const Measured& m) { return m.what == Measured::energy || m.what == Measured::kinetic; };
+  if (unit == "kg*m/s^2") return "N";
+  if (unit == "kg*m^2/s^3") return "W";
+  if (unit != "kg*m^2/s^2") return unit;
+  return std::ranges::all_of(sensor.measured, is_energy) ? "J" : "N*m";
 }
 
 void read_value(Entry& entry, const char* key, SensorReading& to) {
@@ -76,6 +64,7 @@ void read_value(Entry& entry, const char* key, SensorReading& to) {
   for (const Formula::Input& input : to.sensor.formula.inputs())
     to.sensor.measured.push_back(
         input.of == Formula::Input::quantity ? to.all.measured[static_cast<std::size_t>(input.index)] : Measured{});
+  to.sensor.unit = usual_unit(to.sensor);
 }
 
 // clang-format off
@@ -86,6 +75,24 @@ constexpr Key<SensorReading> sensor_keys[] = {
 // clang-format on
 
 }  // namespace
+
+Measurable measurable_of(const Scene& scene) {
+  Measurable all;
+  all.words.dimension = scene.dimension == Dimension::planar ? 2 : 3;
+  for (const SceneBody& body : scene.bodies) all.words.bodies.push_back(body.name);
+  for (std::size_t k = 0; k < scene.joints.size(); ++k)
+    add_joint_to(all, scene.joints[k], static_cast<int>(k), scene.dimension);
+  const bool spatial = scene.dimension == Dimension::spatial;
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
+    const std::string& name = scene.bodies[k].name;
+    all.add("acceleration(" + name + ")", "m/s^2", {Measured::acceleration, static_cast<int>(k)}, true);
+    all.add("angular_acceleration(" + name + ")", "rad/s^2", {Measured::angular_acceleration, static_cast<int>(k)},
+            spatial);
+  }
+  all.add("energy", "J", {Measured::energy});
+  all.add("kinetic", "J", {Measured::kinetic});
+  return all;
+}
 
 void read_sensors(Entry& top, Scene& scene) {
   if (!top.has("sensor")) return;

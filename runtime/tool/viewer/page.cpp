@@ -81,8 +81,7 @@ void add_frames(const Scene& scene, const std::vector<Frame>& film, NumbersOf nu
   for (std::size_t k = 0; k < scene.sensors.size(); ++k) {
     std::vector<double> values;
     for (const Frame& frame : film) values.push_back(frame.sensors[k]);
-    run["sensors"].push_back(
-        {{"name", scene.sensors[k].name}, {"unit", scene.sensors[k].formula.unit()}, {"values", values}});
+    run["sensors"].push_back({{"name", scene.sensors[k].name}, {"unit", scene.sensors[k].unit}, {"values", values}});
   }
 }
 

@@ -71,8 +71,19 @@ double measure(BasicWorld<S>& world, const Measured& m, int component) {
       const auto on = world.reaction(m.joint, world.joint_bodies(m.joint).back());
       return numbers_of(on)[static_cast<std::size_t>(component + (m.what == Measured::torque ? 3 : 0))];
     }
+    case Measured::acceleration:
+    case Measured::angular_acceleration: break;  // not of the World alone
   }
   return 0;
+}
+
+bool is_acceleration(const Measured& m) {
+  return m.what == Measured::acceleration || m.what == Measured::angular_acceleration;
+}
+
+double acceleration(const Accelerations& of, const Measured& m, int component) {
+  const int first = m.what == Measured::acceleration ? 0 : 3;
+  return of[static_cast<std::size_t>(m.joint)][static_cast<std::size_t>(first + component)];
 }
 
 template <class S>
@@ -107,21 +118,24 @@ double state_number(const BasicWorld<S>& world, const Formula::Input& input) {
 }  // namespace
 
 template <class S>
-std::vector<double> sensor_values(const Scene& scene, BasicWorld<S>& world) {
+std::vector<double> sensor_values(const Scene& scene, BasicWorld<S>& world, const Accelerations& accelerations) {
   std::vector<double> values, inputs;
   for (const Sensor& sensor : scene.sensors) {
     inputs.clear();
     for (std::size_t k = 0; k < sensor.measured.size(); ++k) {
       const Formula::Input& input = sensor.formula.inputs()[k];
-      inputs.push_back(input.of == Formula::Input::quantity ? measure(world, sensor.measured[k], input.component)
-                                                            : state_number(world, input));
+      const Measured& measured = sensor.measured[k];
+      inputs.push_back(input.of != Formula::Input::quantity ? state_number(world, input)
+                       : is_acceleration(measured)          ? acceleration(accelerations, measured, input.component)
+                                                            : measure(world, measured, input.component));
     }
     values.push_back(sensor.formula(inputs));
   }
   return values;
 }
 
-#define CDOT_INSTANTIATE(S) template std::vector<double> sensor_values(const Scene&, BasicWorld<S>&);
+#define CDOT_INSTANTIATE(S) \
+  template std::vector<double> sensor_values(const Scene&, BasicWorld<S>&, const Accelerations&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "runtime/tool/run/output.hpp"
 #include "tests/runtime/tool/support.hpp"
 
 namespace cdot::test::shell_test {
@@ -109,6 +110,16 @@ TEST(Shell, AScenesNameIsEnough) {
   const CommandResult misspelt = there("simulate gyrscope");
   EXPECT_EQ(misspelt.status, 2);
   EXPECT_EQ(misspelt.err, "gyrscope: error: there is no such scene\n  fix: did you mean `gyroscope`?\n1 mistake\n");
+}
+
+TEST(Shell, RecordsAndPlots) {
+  const TemporaryFolder folder;
+  const std::string run = "simulate four_bar --until 0.1 --plot ";
+  EXPECT_EQ(cdot_run(run + (folder / "plots.svg").string()).status, 0);
+  EXPECT_NE(read_file((folder / "plots.svg").string()).find(">rate(C1.angle)</text>"), std::string::npos);
+  const CommandResult csv = cdot_run("simulate four_bar --until 0.1 --record coordinates,reactions -o -");
+  EXPECT_NE(csv.out.find(",rate(C1.angle),force(A0).x,"), std::string::npos) << csv.out.substr(0, 900);
+  EXPECT_EQ(cdot_run("simulate four_bar --record speed").status, 2);
 }
 
 }  // namespace

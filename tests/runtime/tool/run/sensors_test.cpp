@@ -1,8 +1,11 @@
 // Sensors beside closed forms: a motor turns a rod at constant speed, a body flies in space.
 #include <cmath>
 #include <gtest/gtest.h>
+#include <regex>
 
 #include "runtime/tool/run/output.hpp"
+#include "runtime/tool/viewer/plots.hpp"
+#include "runtime/tool/watch/record.hpp"
 #include "tests/runtime/tool/support.hpp"
 
 namespace cdot::test {
@@ -118,6 +121,84 @@ TEST(Sensors, ColumnsFollowTheBodies) {
   const std::size_t last = row.rfind(','), before = row.rfind(',', last - 1);
   EXPECT_EQ(row.substr(before + 1, last - before - 1), "5") << row;
   EXPECT_NEAR(std::stod(row.substr(last + 1)), -3, 1e-14);  // its y axis points along -x
+}
+
+// The rod without the sensors of its file, and then some.
+Scene recorded(const std::vector<std::string>& groups) {
+  const std::string text = "integrator = \"dop853\"\nstep = 0.001\n" + turning_rod;
+  Scene scene = read_scene(std::string_view(text.substr(0, text.find("[[sensor]]"))), "test.toml");
+  record(scene, groups);
+  return scene;
+}
+
+TEST(Recorded, GroupsHaveTheirNamesAndUnits) {
+  const auto heads = [](const std::vector<std::string>& groups) {
+    std::string all;
+    for (const Sensor& sensor : recorded(groups).sensors) all += sensor.name + " [" + sensor.unit + "] ";
+    return all;
+  };
+  EXPECT_EQ(heads({}), "");
+  EXPECT_EQ(heads({"coordinates"}), "pin.angle [rad] rate(pin.angle) [rad/s] ");
+  EXPECT_EQ(heads({"drives", "energies"}), "force(pin.angle) [N*m] power(pin.angle) [W] energy [J] kinetic [J] ");
+  EXPECT_EQ(heads({"reactions"}), "force(pin).x [N] force(pin).y [N] torque(pin) [N*m] ");
+  EXPECT_EQ(heads({"accelerations"}),
+            "acceleration(rod).x [m/s^2] acceleration(rod).y [m/s^2] angular_acceleration(rod) [rad/s^2] ");
+  EXPECT_EQ(heads({"all"}), heads({"coordinates"}) + heads({"reactions"}) + heads({"drives"}) +
+                                heads({"accelerations"}) + heads({"energies"}));
+  const Scene twice = read_scene(
+      std::string_view("integrator = \"rk4\"\n" + turning_rod.substr(0, turning_rod.find("name  = \"late\"") - 11)),
+      "test.toml");
+  EXPECT_EQ(twice.sensors[0].unit, "N*m");
+  EXPECT_EQ(twice.sensors[1].unit, "W");
+  EXPECT_EQ(twice.sensors[2].unit, "N");
+  EXPECT_EQ(twice.sensors[4].unit, "J");
+}
+
+// On a circle of 0.5 m at 2 rad/s, by steps and, at 0.2505 s, inside one.
+TEST(Recorded, ValuesAgreeWithClosedForms) {
+  const Scene scene = recorded({"all"});
+  RunOptions options;
+  options.row_times = {0.2505, 0.8};
+  options.row = [&](const Frame& frame) {
+    const double angle = 2 * frame.time;
+    const double ax = -2 * std::cos(angle), ay = -2 * std::sin(angle), torque = 9.81 * std::cos(angle);
+    const double exact[] = {
+        angle, 2,  2 * ax, 2 * ay + 19.62, std::sin(angle) * ax - std::cos(angle) * (ay + 9.81), torque, 2 * torque,
+        ax,    ay, 0};
+    for (std::size_t k = 0; k < std::size(exact); ++k)
+      EXPECT_NEAR(frame.sensors[k], exact[k], 0.003) << scene.sensors[k].name << " at " << frame.time;
+    EXPECT_NEAR(frame.sensors[11], 2. / 3 * 2, 1e-6) << "kinetic";
+  };
+  std::string warnings;
+  simulate(scene, options, warnings);
+}
+
+TEST(Recorded, BodiesInSpaceHaveThreeOfEach) {
+  Scene scene = read_scene(std::string_view(ball_in_space), "test.toml");
+  record(scene, {"accelerations"});
+  ASSERT_EQ(scene.sensors.size(), 8u);
+  EXPECT_EQ(scene.sensors[7].name, "angular_acceleration(ball).z");
+  RunOptions options;
+  options.row_times = {0.5};
+  options.row = [&](const Frame& frame) { EXPECT_NEAR(frame.sensors[4], -9.81, 1e-9); };
+  std::string warnings;
+  simulate(scene, options, warnings);
+}
+
+// The ticks say where a curve runs: the angle is 1 rad at 0.5 s, in the middle of the panel.
+TEST(Plots, AxesBelongToTheirCurves) {
+  Scene scene = recorded({"coordinates", "drives"});
+  RunOptions options;
+  options.film_times = every(0.01, scene.duration);
+  std::string warnings;
+  const std::string svg = plots_svg(scene, simulate(scene, options, warnings).film);
+  for (const char* text :
+       {">[rad]<", ">[rad/s]<", ">[N*m]<", ">[W]<", ">time [s]<", ">pin.angle</text>", ">0.2</text>"})
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
+  std::smatch tick, curve;
+  ASSERT_TRUE(std::regex_search(svg, tick, std::regex("x=\"78.0\" y=\"([0-9.]+)\" text-anchor=\"end\">1</text>")));
+  ASSERT_TRUE(std::regex_search(svg, curve, std::regex("[ML]396.0 ([0-9.]+)L")));
+  EXPECT_NEAR(std::stod(curve[1]), std::stod(tick[1]) - 4, 0.2);
 }
 
 TEST(Sensors, MistakesStandUnderTheirWords) {
