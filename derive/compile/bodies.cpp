@@ -72,7 +72,7 @@ std::string BodyTexts::weighed() const {
   return text + "    return sum;\n  }\n";
 }
 
-// A constant torque has a potential in the plane only.
+// A constant torque has a potential in the plane only. In space its work counts along the shortest rotation.
 std::string BodyTexts::energy(bool has_effects) const {
   std::string text = R"(
   // Kinetic energy, that of effects, and the potential of gravity and constant forces, which is 0 at the start [J].
@@ -88,6 +88,7 @@ std::string BodyTexts::energy(bool has_effects) const {
     for (std::size_t c = 0; b.inv_m > 0 && c < mechanism.linear(); ++c)
       add(mechanism.push(b, c) / b.inv_m, mechanism.column(c), b.pose[c]);
     if (b.inv_I > 0 && !mechanism.spatial()) add(b.acceleration[2] / b.inv_I, "angle", b.pose[2]);
+    if (mechanism.spatial()) text += work_of_torque(b, name);
   });
   return text + "    return sum;\n  }\n";
 }

@@ -32,9 +32,10 @@ class EquationWriter {
       write_rates();
       write_solve();
     }
-    if (mechanism_.method != Method::euler && system().size() > 0)
+    if (mechanism_.on_accelerations() && system().size() > 0)
       out_.accelerate = accelerations_of(blocks_, joints_, out_.constants);
-    else if (mechanism_.method != Method::euler) out_.fall = fall_of(blocks_, out_.constants);
+    else if (mechanism_.on_accelerations() || mechanism_.method == Method::rattle)
+      out_.fall = fall_of(blocks_, out_.constants);
     else if (!mechanism_.effects.empty() || !mechanism_.bounded.empty())
       out_.kick = kick_of(blocks_, joints_, out_.constants);
     if (!mechanism_.effects.empty() || !mechanism_.bounded.empty())

@@ -1,6 +1,7 @@
 #include "derive/compile/gyroscopes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -97,20 +98,38 @@ std::string gyroscopes_of(const Mechanism& mechanism, const std::vector<std::str
     wind += fmt::format("    wind(s.q[{0}], s.v[{0}], s.g[{1}], {2}, {3});\n", names[b], count, I, inverse);
     follow += fmt::format("    follow(s.q[{0}], s.v[{0}], s.g[{1}], {2}, {3}, now);\n", names[b], count++, I, inverse);
   }
-  if (mechanism.method != Method::euler)
+  if (mechanism.on_accelerations())
     return "\n  // Inverse inertias at the poses, in the lanes of `now`.\n"
            "  static void weigh(Pose (&q)[bodies], const Mask& now) {\n" +
            weigh + "  }\n";
   return momentum_functions + ("  static void wind(State& s) {\n" + wind + "  }\n") +
          "  static void follow(State& s, const Mask& now) {\n" + follow +
-         "  }\n  static void drift(State& s, const T& h) {\n" + drift +
-         "    turn(s.q);\n    follow(s, T(0) < T(1));\n  }\n";
+         "  }\n  static void drift(State& s, const T& h) {\n" + drift + "    turn(s.q);\n  }\n";
 }
 
 std::string torque_of(const Body& body, const std::string& name) {
   if (body.torque == std::array<double, 3>{}) return {};
   return fmt::format("    const Vector<T> {0}_rate = q[{0}].I * Vector<T>{{T({1}), T({2}), T({3})}};\n", name,
                      body.torque[0], body.torque[1], body.torque[2]);
+}
+
+std::string work_of_torque(const Body& body, const std::string& name) {
+  std::array<double, 3> torque = body.torque;
+  for (std::size_t i = 0; i < 3 && body.inv_I > 0; ++i) torque[i] = body.acceleration[3 + i] / body.inv_I;
+  if (torque == std::array<double, 3>{}) return {};
+  return fmt::format(R"(    {{  // along the shortest rotation from the start
+      using std::atan2;
+      const Pose& q = s.q[{}];
+      const T e0 = T({}), e1 = T({}), e2 = T({}), e3 = T({}), c = q.e0 * e0 + q.e1 * e1 + q.e2 * e2 + q.e3 * e3;
+      const T side = select(c < T(0), T(-1), T(1));
+      const Vector<T> v = side * Vector<T>{{q.e1 * e0 - q.e0 * e1 - q.e2 * e3 + q.e3 * e2,
+                                           q.e2 * e0 - q.e0 * e2 - q.e3 * e1 + q.e1 * e3,
+                                           q.e3 * e0 - q.e0 * e3 - q.e1 * e2 + q.e2 * e1}};
+      const T sine = root(dot(v, v)), angle = T(2) * atan2(sine, side * c);
+      sum = sum - angle / select(sine > T(0), sine, T(1)) * dot(Vector<T>{{T({}), T({}), T({})}}, v);
+    }}
+)",
+                     name, body.pose[3], body.pose[4], body.pose[5], body.pose[6], torque[0], torque[1], torque[2]);
 }
 
 std::string spin_energy_of(const Body& body, const std::string& name) {

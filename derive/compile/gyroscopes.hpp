@@ -18,6 +18,8 @@ std::string gyroscopes_of(const Mechanism& mechanism, const std::vector<std::str
 
 // A line that declares I^-1 torque of the constant torque as `rod_rate`; empty: there is none.
 std::string torque_of(const Body& body, const std::string& name);
+// Lines of energy() that subtract from `sum` the work of a constant torque in space.
+std::string work_of_torque(const Body& body, const std::string& name);
 // Lines that add w . I w to `sum`.
 std::string spin_energy_of(const Body& body, const std::string& name);
 

@@ -38,17 +38,18 @@ class HeaderWriter {
     write_start();
     const BodyTexts bodies{mechanism_, names_.bodies};
     text_ += bodies.turn(equations_.turning) + gyroscopes_of(mechanism_, names_.bodies);
-    if (!on_accelerations() && !has_effects()) text_ += bodies.push();
+    if (mechanism_.method == Method::euler && !has_effects()) text_ += bodies.push();
     text_ += bodies.weighed() + bodies.energy(has_effects());
     write_equations();
     write_corrections();
-    text_ += step_of(mechanism_.method, has());
+    text_ += step_of(mechanism_, has());
     text_ += "};\n\n}  // namespace cdot::scenes\n";
     return {with_arguments(std::move(text_)), name_, operations(), state_bytes()};
   }
 
  private:
-  bool on_accelerations() const { return mechanism_.method != Method::euler; }
+  bool on_accelerations() const { return mechanism_.on_accelerations(); }
+  bool by_rattle() const { return mechanism_.method == Method::rattle; }
   Contents has() const {
     return {!equations_.rows.empty(), !mechanism_.effects.empty(), !mechanism_.bounded.empty(),
             equations_.has_ends,      mechanism_.spatial(),        has_gyroscopes(mechanism_)};
@@ -158,9 +159,10 @@ class HeaderWriter {
     if (has().gyroscopes && !on_accelerations())
       line(fmt::format("    Gyroscope g[{}];", std::ranges::count_if(mechanism_.bodies, &Body::inertia_turns)));
     if (on_accelerations()) line("    Velocity a[bodies];");
+    if (by_rattle() && has_rows()) line("    Velocity pull[bodies];  // accelerations by the joints");
     if (has_rows())
       line(fmt::format("    T lambda[rows];  // {} of the joints",
-                       on_accelerations() ? "forces" : "impulses before the correction"));
+                       mechanism_.method == Method::euler ? "impulses before the correction" : "forces"));
     if (has().bounded)
       line("    T hold[bounded];  // of the rows with bounds: -1 at the lower one, 1 at the upper one, 0 between");
     if (has_inputs()) line("    Inputs p;");
@@ -254,7 +256,10 @@ class HeaderWriter {
     }
     if (has_effects())
       write_function("Potential energy of the effects", "potential(" + at + ", T& E)", equations_.potential);
-    if (on_accelerations()) write_accelerations(at, moving);
+    if (by_rattle())
+      write_function("Accelerations without joints", "fall(" + at + ", " + moving + ", Velocity (&a)[bodies])",
+                     equations_.fall);
+    else if (on_accelerations()) write_accelerations(at, moving);
     else if (has_effects())
       write_function("Velocities after h with the effects, implicit as far as their slopes say",
                      "kick(" + at + ", " + moving + (has_rows() ? ", const Jacobian& J" : "") +

@@ -15,6 +15,6 @@ struct Calls {
 Calls calls_of(Method method, const Contents& has);
 
 std::string begin_of(Method method, const Contents& has);
-std::string step_of(Method method, const Contents& has);
+std::string step_of(const Mechanism& mechanism, const Contents& has);
 
 }  // namespace cdot::compile

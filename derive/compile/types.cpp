@@ -127,17 +127,17 @@ std::string types_of(const Mechanism& mechanism) {
   std::string text = spatial_pose;
   if (gyroscopes) text += spatial_inertia;
   text += fmt::format(spatial_types, gyroscopes ? "    one.I = scenes::choose(now, q.I, p.I);\n" : "");
-  if (mechanism.method != Method::euler) text += spatial_rates;
+  if (mechanism.on_accelerations()) text += spatial_rates;
   else if (gyroscopes) text += gyroscope;
   return text;
 }
 
 long numbers_of(const Mechanism& mechanism, const Body& body) {
   if (!body.moves) return 0;
-  const bool accelerates = mechanism.method != Method::euler;
+  const bool accelerates = mechanism.on_accelerations();
   const long columns = static_cast<long>(mechanism.columns());
   const long pose = mechanism.spatial() ? 16 + (has_gyroscopes(mechanism) ? 6 : 0) : 5;
-  return pose + columns * (accelerates ? 2 : 1) + (body.inertia_turns && !accelerates ? 12 : 0);
+  return pose + columns * (mechanism.method == Method::euler ? 1 : 2) + (body.inertia_turns && !accelerates ? 12 : 0);
 }
 
 }  // namespace cdot::compile

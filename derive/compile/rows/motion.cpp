@@ -7,9 +7,11 @@ namespace cdot::compile {
 
 namespace {
 
+// Steps at velocities keep the angular momentum instead.
 int gyroscopic_rate(const RowBlocks& blocks, Algebra& algebra, const Component& component) {
   const Mechanism& all = blocks.mechanism();
-  if (component.column < all.linear() || !all.bodies[static_cast<std::size_t>(component.body)].inertia_turns)
+  if (component.column < all.linear() || !all.on_accelerations() ||
+      !all.bodies[static_cast<std::size_t>(component.body)].inertia_turns)
     return algebra.value(0);
   return blocks.gyroscopic_rates(algebra, component.body)[component.column - all.linear()];
 }

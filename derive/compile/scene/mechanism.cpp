@@ -32,7 +32,7 @@ class Refusals {
   int count_ = 0;
 };
 
-void refuse_joint(const SceneJoint& joint, Dimension dimension, Refusals& refusals) {
+void refuse_joint(const SceneJoint& joint, const Scene& scene, Refusals& refusals) {
   const std::string& name = joint.name;
   const auto refuse = [&](const std::string& part) {
     refusals.add(joint.where, fmt::format("{}: cdot compile knows no {}", name, part), "leave it to cdot-run");
@@ -43,8 +43,13 @@ void refuse_joint(const SceneJoint& joint, Dimension dimension, Refusals& refusa
   };
   if (in_time(joint.definition.parameters) || std::ranges::any_of(joint.effects, follows))
     refuse("numbers that follow functions of time");
-  const JointType* type = find_joint_type(dimension, joint.definition.type);
-  if (type && std::ranges::find(type->row_kinds, RowKind::inequality) != type->row_kinds.end())
+  const JointType* type = find_joint_type(scene.dimension, joint.definition.type);
+  const auto has = [&](RowKind kind) {
+    return type && std::ranges::find(type->row_kinds, kind) != type->row_kinds.end();
+  };
+  if (has(RowKind::velocity) && scene.settings.integrator == Integrator::rattle)
+    refuse(fmt::format("rows of velocities by rattle, as {} has", type->name));
+  if (has(RowKind::inequality))
     refuse(fmt::format("inequality, as {} has: it would end the fixed pattern of the equations", type->name));
 }
 
@@ -54,7 +59,7 @@ void refuse_parts(const Scene& scene) {
     if (unknown) refusals.add({}, cause, fix);
   };
   const Settings& s = scene.settings;
-  for (const SceneJoint& joint : scene.joints) refuse_joint(joint, scene.dimension, refusals);
+  for (const SceneJoint& joint : scene.joints) refuse_joint(joint, scene, refusals);
   refuse(s.solver != Solver::direct, "a compiled step solves all rows at once", "write solver = \"direct\"");
   refuse(s.drift != Drift::projection, "a compiled step projects its end", "write drift = \"projection\"");
   refuse(s.local_error > 0, "a compiled step has a fixed length", "give --step in place of local_error");
@@ -66,15 +71,17 @@ void refuse_parts(const Scene& scene) {
 constexpr struct {
   Integrator integrator;
   Method method;
-} methods[] = {
-    {Integrator::euler, Method::euler}, {Integrator::rk4, Method::rk4}, {Integrator::dop853, Method::dop853}};
+} methods[] = {{Integrator::euler, Method::euler},
+               {Integrator::rattle, Method::rattle},
+               {Integrator::rk4, Method::rk4},
+               {Integrator::dop853, Method::dop853}};
 
 Method method_of(const Scene& scene) {
   for (const auto& [integrator, method] : methods)
     if (scene.settings.integrator == integrator) return method;
   Refusals refusals(scene);
   refusals.add({}, fmt::format("cdot compile knows no integrator {}", row_of(scene.settings.integrator).name),
-               "give --integrator euler, rk4 or dop853");
+               "give --integrator euler, rattle, rk4 or dop853");
   refusals.throw_any();
   return {};
 }
@@ -158,6 +165,21 @@ double tolerance_of(const Scene& scene) {
   return converged<double> * scale;
 }
 
+// The joint that has the effect: "hinge", or "hinge.angle.servo" on its coordinate.
+Span place_of(const Scene& scene, const Effect& effect) {
+  for (const SceneJoint& joint : scene.joints)
+    if (effect.name == joint.name || effect.name.starts_with(joint.name + ".")) return joint.where;
+  return {};
+}
+
+void refuse_all_effects(const Scene& scene, const Mechanism& mechanism, Refusals& refusals) {
+  for (const auto* list : {&mechanism.effects, &mechanism.bounded})
+    for (const Effect& effect : *list)
+      refusals.add(place_of(scene, effect),
+                   fmt::format("{}: cdot compile knows no effects by {}", effect.name, mechanism.method_name),
+                   "give --integrator euler or rk4, or leave it to cdot-run");
+}
+
 template <class S>
 void add_effects(const Scene& scene, BasicWorld<S>& world, Mechanism& mechanism) {
   Refusals refusals(scene);
@@ -167,6 +189,7 @@ void add_effects(const Scene& scene, BasicWorld<S>& world, Mechanism& mechanism)
                                                    : "give --integrator euler, or leave it to cdot-run");
   };
   read_effects(scene, world, refuse, mechanism);
+  if (mechanism.method == Method::rattle) refuse_all_effects(scene, mechanism, refusals);
   refusals.throw_any();
 }
 

@@ -53,7 +53,7 @@ struct Effect {
   std::vector<double> numbers;
 };
 
-enum class Method { euler, rk4, dop853 };
+enum class Method { euler, rattle, rk4, dop853 };
 
 struct Mechanism {
   std::string file, title, method_name;
@@ -69,6 +69,8 @@ struct Mechanism {
   std::vector<Effect> bounded;  // rows with bounds
 
   bool spatial() const { return dimension == 3; }
+  // True for a Runge-Kutta method; the others step velocities by impulses.
+  bool on_accelerations() const { return method == Method::rk4 || method == Method::dop853; }
   std::size_t linear() const { return static_cast<std::size_t>(dimension); }  // columns before the angular ones
   std::size_t columns() const { return spatial() ? 6 : 3; }
   std::string column(std::size_t c) const {

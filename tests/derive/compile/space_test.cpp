@@ -24,6 +24,10 @@
 #include "gyroscope_space_dop853.hpp"
 #include "gyroscope_space_euler.hpp"
 #include "gyroscope_space_rk4.hpp"
+#include "pushed_dop853.hpp"
+#include "pushed_euler.hpp"
+#include "pushed_rattle.hpp"
+#include "pushed_rk4.hpp"
 #include "slider_crank_space_dop853.hpp"
 #include "slider_crank_space_euler.hpp"
 #include "slider_crank_space_rk4.hpp"
@@ -57,6 +61,14 @@ TEST(CompiledSpace,
 
 TEST(CompiledSpace, MovesByDop853AsTheWorld){CDOT_EACH_SCENE_IN_SPACE(CDOT_RUN_IN_SPACE, dop853)
                                                  CDOT_RUN_IN_SPACE(slider_crank, dop853)}
+
+TEST(CompiledSpace, ForcesTorquesAndDampingActAsInTheWorld) {
+  const std::string file = "tests/derive/compile/scenes/pushed.toml";
+  cdot::runs_as_the_world<cdot::scenes::pushed_euler<double>>(file, Integrator::euler);
+  cdot::runs_as_the_world<cdot::scenes::pushed_rattle<double>>(file, Integrator::rattle);
+  cdot::runs_as_the_world<cdot::scenes::pushed_rk4<double>>(file, Integrator::rk4);
+  cdot::runs_as_the_world<cdot::scenes::pushed_dop853<double>>(file, Integrator::dop853);
+}
 
 // Spins of a symmetric body, of one without symmetry, and of bodies with joints.
 TEST(CompiledSpace, LanesAreAsAlone) {

@@ -1,0 +1,61 @@
+// A scene compiled to RATTLE moves as the World does, in the plane and in space, to round-off.
+#include <gtest/gtest.h>
+
+// clang-format off
+#include "cantilever_rattle.hpp"
+#include "chain_10_rattle.hpp"
+#include "chain_10_space_rattle.hpp"
+#include "compound_pendulum_rattle.hpp"
+#include "crank_rocker_rattle.hpp"
+#include "double_pendulum_rattle.hpp"
+#include "double_pendulum_space_rattle.hpp"
+#include "four_bar_rattle.hpp"
+#include "four_bar_space_rattle.hpp"
+#include "gyroscope_space_rattle.hpp"
+#include "pulley_ratio1_rattle.hpp"
+#include "pulley_ratio2_rattle.hpp"
+#include "simple_pendulum_rattle.hpp"
+#include "slider_crank_rattle.hpp"
+#include "slider_crank_space_rattle.hpp"
+#include "three_bodies_space_rattle.hpp"
+#include "torque_free_body_space_rattle.hpp"
+// clang-format on
+#include "tests/derive/compile/beside_world.hpp"
+#include "tests/derive/compile/command.hpp"
+
+namespace {
+
+using cdot::Integrator;
+using namespace cdot::scenes;
+
+#define CDOT_BY_RATTLE(scene) \
+  cdot::runs_as_the_world<scene##_rattle<double>>("specs/scenes/" #scene ".toml", Integrator::rattle);
+#define CDOT_IN_SPACE_BY_RATTLE(scene, ...)                                                                         \
+  cdot::runs_as_the_world<scene##_space_rattle<double>>("specs/scenes/spatial/" #scene ".toml", Integrator::rattle, \
+                                                        ##__VA_ARGS__);
+
+TEST(CompiledRattle, MovesAsTheWorld){
+    CDOT_BY_RATTLE(cantilever) CDOT_BY_RATTLE(chain_10) CDOT_BY_RATTLE(compound_pendulum) CDOT_BY_RATTLE(crank_rocker)
+        CDOT_BY_RATTLE(double_pendulum) CDOT_BY_RATTLE(four_bar) CDOT_BY_RATTLE(pulley_ratio1)
+            CDOT_BY_RATTLE(pulley_ratio2) CDOT_BY_RATTLE(simple_pendulum) CDOT_BY_RATTLE(slider_crank)}
+
+TEST(CompiledRattle, MovesInSpaceAsTheWorld){
+    CDOT_IN_SPACE_BY_RATTLE(chain_10) CDOT_IN_SPACE_BY_RATTLE(double_pendulum) CDOT_IN_SPACE_BY_RATTLE(four_bar)
+        CDOT_IN_SPACE_BY_RATTLE(gyroscope) CDOT_IN_SPACE_BY_RATTLE(slider_crank) CDOT_IN_SPACE_BY_RATTLE(three_bodies)
+            CDOT_IN_SPACE_BY_RATTLE(torque_free_body)}
+
+TEST(CompiledRattle, LanesAreAsAlone) {
+  cdot::lanes_are_as_alone<slider_crank_rattle>();
+  cdot::lanes_are_as_alone<chain_10_rattle, float>();
+  cdot::lanes_are_as_alone<gyroscope_space_rattle>();
+  cdot::lanes_are_as_alone<three_bodies_space_rattle>();
+}
+
+TEST(CompiledRattle, EffectsAreRefusedWithTheirLines) {
+  const cdot::Outcome gate = cdot::compile("specs/scenes/tailgate.toml --integrator rattle");
+  EXPECT_EQ(gate.status, 2);
+  EXPECT_NE(gate.text.find("error: strut: cdot compile knows no effects by rattle"), std::string::npos) << gate.text;
+  EXPECT_NE(gate.text.find("tailgate.toml:"), std::string::npos) << gate.text;
+}
+
+}  // namespace
