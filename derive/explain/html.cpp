@@ -3,6 +3,7 @@
 #include <map>
 #include <utility>
 
+#include "derive/explain/math_font.hpp"
 #include "derive/explain/mathml.hpp"
 #include "derive/explain/write.hpp"
 
@@ -69,7 +70,7 @@ const FormulaStyle mathml = {
     .norm = "<mrow>" FENCE("|") "#1" FENCE("|") "</mrow>", .component = "<msub><mrow>#1</mrow><mi>#2</mi></msub>",
     .transpose = "<msup><mrow>#1</mrow><mi mathvariant=\"normal\">T</mi></msup>",
     .identity = "<mi mathvariant=\"normal\">E</mi>", .parentheses = "<mrow>" FENCE("(") "#1" FENCE(")") "</mrow>",
-    .matrix = "<mrow>" FENCE("[") "<mtable class=\"matrix\"><mtr>#1</mtr></mtable>" FENCE("]") "</mrow>",
+    .matrix = "<mtable class=\"matrix\"><mtr>#1</mtr></mtable>",  // its brackets are borders: only fonts for formulas stretch
     .entry = "<mtd>#1</mtd>", .next_entry = "", .next_row = "</mtr><mtr>"};
 // clang-format on
 #undef FENCE
@@ -107,9 +108,18 @@ code {
   color: var(--soft); font-size: .86rem; font-style: italic;
   padding-left: 1.4rem; min-width: 12rem;
 }
-math { font-size: 1.08em; }
+math {
+  font-size: 1.08em;
+  font-family: "Latin Modern Math", "STIX Two Math", "Cambria Math", "DejaVu Math TeX Gyre", "Cdot Math", serif;
+}
 mi.vector { font-weight: bold; }
 .matrix mtd { padding: .15em .5em; }
+.matrix {
+  --bar: linear-gradient(currentcolor 0 0) no-repeat;
+  margin: 0 .15em; border: solid; border-width: 0 .08em;
+  background: var(--bar) 0 0 / .35em .08em, var(--bar) 0 100% / .35em .08em,
+    var(--bar) 100% 0 / .35em .08em, var(--bar) 100% 100% / .35em .08em;
+}
 )";
 
 constexpr std::string_view math = "<math><mrow>#1</mrow></math>";
@@ -136,8 +146,8 @@ std::string html_head(const std::string& plain_title, std::string_view more_styl
   const std::string title = html_escaped(plain_title);
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\" />\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n<title>" +
-         title + "</title>\n<style>" + style + std::string(more_style) + "</style>\n</head>\n<body>\n<h1>" + title +
-         "</h1>\n";
+         title + "</title>\n<style>\n@font-face { font-family: \"Cdot Math\"; src: url(data:font/woff2;base64," +
+         math_font + "); }" + style + std::string(more_style) + "</style>\n</head>\n<body>\n<h1>" + title + "</h1>\n";
 }
 
 std::string in_mathml(const Formula& formula, const std::vector<std::string>& bodies) {

@@ -82,7 +82,8 @@ TEST(ExplainHtml, IsWellFormedAndNeedsNothingFromElsewhere) {
     EXPECT_EQ(page.find("src="), std::string::npos) << name;
     EXPECT_EQ(page.find("href"), std::string::npos) << name;
     EXPECT_EQ(page.find("@import"), std::string::npos) << name;
-    EXPECT_EQ(page.find("url("), std::string::npos) << name;
+    for (std::size_t at = 0; (at = page.find("url(", at)) != std::string::npos; ++at)
+      EXPECT_EQ(page.compare(at, 9, "url(data:"), 0) << name;
     EXPECT_NE(page.find("prefers-color-scheme: dark"), std::string::npos) << name;
     write(pages / (flat(name) + ".html"), page);
   }
@@ -94,6 +95,29 @@ TEST(ExplainHtml, IsWellFormedAndNeedsNothingFromElsewhere) {
                          quoted(pages));
   EXPECT_EQ(parsed.status, 0) << parsed.output;
   fs::remove_all(pages);
+}
+
+// Where no font for formulas is installed, in a browser: the index of r_a stands a fifth of a line below its letter.
+TEST(ExplainHtml, IndicesStandBelowTheLine) {
+  std::string page = explanation_html(explain(read_spec("distance")));
+  const std::regex installed("\"Latin Modern Math\".*\"Cdot Math\"");
+  ASSERT_TRUE(std::regex_search(page, installed));
+  page = std::regex_replace(page, installed, "\"Cdot Math\"");
+  page.replace(page.rfind("</body>"), 7,
+               "<script>document.fonts.load('20px \"Cdot Math\"').then(() => {\n"
+               "const [letter, index] = document.querySelector('msub').children;\n"
+               "const bottom = e => e.getBoundingClientRect().bottom;\n"
+               "document.body.dataset.below = ((bottom(index) - bottom(letter)) / 20).toFixed(3); });</script></body>");
+  const fs::path place = folder("indices");
+  write(place / "page.html", page);
+  const Ran seen =
+      run(CDOT_CHROMIUM " --headless --no-sandbox --disable-gpu --virtual-time-budget=2000 --user-data-dir=" +
+          quoted(place / "profile") + " --dump-dom " + "file://" + (place / "page.html").string());
+  std::smatch below;
+  ASSERT_TRUE(std::regex_search(seen.output, below, std::regex("data-below=\"(-?[0-9.]+)\"")))
+      << seen.output.substr(0, 500);
+  EXPECT_NEAR(std::stod(below[1]), 0.2, 0.1);
+  fs::remove_all(place);
 }
 
 TEST(ExplainLatex, BalancesAndCompilesWhereATexIsInstalled) {
