@@ -15,12 +15,20 @@ const std::vector<std::string_view> in_rows = {"position", "jacobian", "effectiv
                                                "solve",    "velocity", "dense",          "time_derivative"};
 const std::vector<std::string_view> in_impulses = {"position", "jacobian", "effective_mass", "factor",
                                                    "solve",    "velocity", "apply",          "time_derivative"};
+const std::vector<std::string_view> in_accelerations = {"position", "jacobian", "velocity",
+                                                        "dense",    "gamma",    "time_derivative"};
 
 // clang-format off
 const std::vector<Engine> table = {
     {"plain",  "no engine: impulses for a loop of your own, in any number type", "plain::Joint<T, BLOCKS>", "template <class T>\n", 0, 0, {plain}, {}},
     {"bullet", "Bullet 3: a btTypedConstraint",                                  "bullet::Constraint<BLOCKS>", "", 3, 2, {plain, {"BULLET", adapter_bullet}}, in_rows},
     {"box2d",  "Box2D 2.4: a b2Joint",                                           "box2d::Joint<BLOCKS>", "", 2, 2, {plain, {"BOX2D", adapter_box2d}}, in_impulses},
+    {"simbody", "Simbody 3: a Constraint::Custom, for joints without C >= 0",    "simbody::Constraint<KERNEL>", "", 3, 0, {{"SIMBODY", adapter_simbody}}, in_accelerations, false},
+};
+constexpr NoEngine without_adapter[] = {
+    {"ode",  "ODE makes joints of its own kinds only: the class behind them is not in its headers"},
+    {"jolt", "no adapter was ever compiled beside Jolt here, as Debian does not have it. --for plain has its order of calls"},
+    {"dart", "no adapter was ever compiled beside DART here. --for plain has what dart::constraint::ConstraintBase asks for"},
 };
 // clang-format on
 
@@ -94,14 +102,16 @@ std::string command(const Engine& engine, const Joint& joint) {
 // The class by which a program makes the joint: its kernel, and a name for the drive of each coordinate.
 std::string class_of(const Engine& engine, const Kernel& kernel) {
   const Joint& joint = kernel.derivation->joint;
-  std::string blocks = fmt::format("{}::{}", name_of_space(joint), joint.name), drives;
-  for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+  const std::string rows = fmt::format("{}::{}", name_of_space(joint), joint.name);
+  const bool has_drives = engine.base.find("KERNEL") == std::string_view::npos;
+  std::string blocks = rows, drives;
+  for (std::size_t i = 0; i < joint.coordinates.size() && has_drives; ++i) {
     const Coordinate& c = joint.coordinates[i];
     blocks += fmt::format(", {}::{}::{}", name_of_space(joint), joint.name, c.name);
     drives += fmt::format("\n  // A motor and limits on {} [{}] = {}.\n  auto& {}() {{ return this->drives[{}]; }}\n",
                           c.name, derive::text(c.unit), c.text, c.name, i);
   }
-  const std::string base = replaced(std::string(engine.base), "BLOCKS", blocks);
+  const std::string base = replaced(replaced(std::string(engine.base), "BLOCKS", blocks), "KERNEL", rows);
   const std::string name = base.substr(base.find("::") + 2, base.find('<') - base.find("::") - 2);
   return fmt::format(
       "namespace cdot::{} {{\n\n// {}\n{}class {}_joint : public {} {{\n public:\n  using {}::{};\n{}}};\n\n"
@@ -127,6 +137,8 @@ std::string objection(const Engine& engine, const Joint& joint) {
   if (engine.most_bodies > 0 && int(joint.bodies.size()) > engine.most_bodies)
     return fmt::format("it joins {} bodies, and a constraint of the engine at most {}. Likely fix: --for plain",
                        joint.bodies.size(), engine.most_bodies);
+  if (!engine.bounds && std::ranges::any_of(joint.rows, [](const Row& r) { return r.kind == RowKind::inequality; }))
+    return "it has a row C >= 0, and the engine's constraints are equations. Likely fix: --for plain";
   for (const Parameter& p : joint.parameters) {
     if (p.name.ends_with("_turns"))
       return fmt::format("its parameter {} counts whole turns, which no adapter does yet", p.name);
@@ -142,6 +154,7 @@ void refuse_unfit(const Engine& engine, const Joint& joint) {
 }  // namespace
 
 std::span<const Engine> engines() { return table; }
+std::span<const NoEngine> no_engines() { return without_adapter; }
 
 const Engine& engine_named(std::string_view name) {
   const auto found = std::ranges::find(table, name, &Engine::name);

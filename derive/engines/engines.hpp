@@ -24,9 +24,16 @@ struct Engine {
   int most_bodies = 0;                        // 0: as many as the joint joins
   std::vector<Adapter> adapters{};            // each after those that it uses
   std::vector<std::string_view> functions{};  // of the contract; none: all
+  bool bounds = true;                         // it has rows C >= 0
+};
+
+// An engine that people ask for and that has no adapter.
+struct NoEngine {
+  std::string_view name, why;
 };
 
 std::span<const Engine> engines();
+std::span<const NoEngine> no_engines();
 const Engine& engine_named(std::string_view name);  // throws std::out_of_range
 
 // Thrown for a joint that an engine cannot have; its text says why and what to do.

@@ -6,6 +6,6 @@
 
 namespace cdot::derive {
 
-extern const std::string_view contract_text, adapter_plain, adapter_bullet, adapter_box2d;
+extern const std::string_view contract_text, adapter_plain, adapter_bullet, adapter_box2d, adapter_simbody;
 
 }  // namespace cdot::derive
