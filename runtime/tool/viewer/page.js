@@ -6,13 +6,41 @@ const short = value => Math.abs(value) >= 1e-3 && Math.abs(value) < 1e5 || value
     String(+value.toPrecision(4)) :
     value.toExponential(2);
 
+// Multiples of 1, 2 or 5 times a power of ten within a range.
+function ticksWithin(low, high, most) {
+  const rough = (high - low) / most, decade = 10 ** Math.floor(Math.log10(rough));
+  const step = decade * [1, 2, 5, 10].find(k => k * decade >= rough);
+  const ticks = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) ticks.push(k * step);
+  return ticks;
+}
+
+// A grid line in the plot and a label beside it, at a share of its height or width in per cent.
+function addTick(figure, axis, at, text) {
+  const label = document.createElement('i');
+  label.textContent = text;
+  label.style[axis === 'y' ? 'top' : 'left'] = `${at.toFixed(2)}%`;
+  figure.querySelector(`.ticks.${axis}`).appendChild(label);
+  addPolyline(figure.querySelector('.plot'), 'grid', axis === 'y' ? `0,${at} 100,${at}` : `${at},0 ${at},100`);
+}
+
+function addAxes(figure, low, high, height, unit) {
+  for (const value of ticksWithin(low, high, 4)) addTick(figure, 'y', height(value), short(value));
+  for (const t of ticksWithin(0, duration, 3)) addTick(figure, 't', 100 * t / duration, short(t));
+  figure.querySelector('.ticks.t').lastChild.textContent += ' s';
+  if (unit) figure.querySelector('figcaption span').textContent += ` [${unit}]`;
+}
+
 function plot(id, values, unit, fromZero) {
   const low = fromZero ? 0 : Math.min(...values), high = Math.max(...values),
         span = high - low || 1;
   const flat = !fromZero && high - low < 1e-9 * Math.max(1, Math.abs(high));
+  // A constant lies in the middle of a range of its own size.
+  const room = flat ? Math.abs(high) / 2 || 1 : 0;
+  const height = v => flat ? 50 - 45 * (v - high) / room : 95 - 90 * (v - low) / span;
+  addAxes(by(id).closest('figure'), low - room, high + room, height, unit);
   const points = values.map(
-      (v, k) => `${(100 * run.times[k] / duration).toFixed(2)},${
-          flat ? 50 : (95 - 90 * (v - low) / span).toFixed(2)}`);
+      (v, k) => `${(100 * run.times[k] / duration).toFixed(2)},${height(v).toFixed(2)}`);
   addPolyline(by(id), '', points.join(' '));
   const cursor = document.createElementNS('http://www.w3.org/2000/svg', 'line');
   cursor.setAttribute('y2', 100);
@@ -40,7 +68,7 @@ function plot(id, values, unit, fromZero) {
 
 function sensorPlot(sensor, k) {
   const id = `sensor${k}`;
-  const figure = by('error').parentNode.cloneNode(true);
+  const figure = by('error').closest('figure').cloneNode(true);
   figure.querySelector('span').textContent = sensor.name;
   figure.querySelector('b').id = `${id}-now`;
   figure.querySelector('svg').id = id;

@@ -74,15 +74,20 @@ TEST_F(Page, PlotsSensors) {
   scene.duration = 1;
   const auto seen = seen_by(html_page(scene, film_of(scene)), R"(
       document.dispatchEvent(new KeyboardEvent('keydown', {key: 'End'}));
-      seen.plots = document.querySelectorAll('.plot polyline').length;
+      seen.plots = document.querySelectorAll('.plot polyline:not(.grid)').length;
       seen.names = [...document.querySelectorAll('figcaption span')].map(e => e.textContent).join();
       seen.range = document.getElementById('sensor0-range').textContent;
-      seen.now = document.getElementById('sensor0-now').textContent;)");
+      seen.now = document.getElementById('sensor0-now').textContent;
+      const ticks = axis => [...document.getElementById('sensor0').closest('figure').querySelectorAll(
+          `.ticks.${axis} i`)].map(e => e.textContent + ' at ' + (e.style.top || e.style.left)).join();
+      seen.up = ticks('y'); seen.along = ticks('t');)");
   ASSERT_FALSE(seen.contains("error")) << seen;
   EXPECT_EQ(seen["plots"], 4);
-  EXPECT_EQ(seen["names"], "energy,worst joint error |C|,clock,joules");
+  EXPECT_EQ(seen["names"], "energy [J],worst joint error |C|,clock [s],joules [J]");
   EXPECT_EQ(seen["range"], "0 … 2 s");
   EXPECT_EQ(seen["now"], "2 s");
+  EXPECT_EQ(seen["up"], "0 at 95%,0.5 at 72.5%,1 at 50%,1.5 at 27.5%,2 at 5%");
+  EXPECT_EQ(seen["along"], "0 at 0%,0.5 at 50%,1 s at 100%");
 }
 
 TEST_F(Page, PlaysScrubsAndAnswersKeys) {
@@ -104,7 +109,7 @@ TEST_F(Page, PlaysScrubsAndAnswersKeys) {
       seen.toggled = root2.classList.contains('dark') !== dark;
       key('t'); seen.tracesOff = document.getElementById('traces').getAttribute('aria-pressed');
       seen.trace = document.querySelector('.path').getAttribute('points').length;
-      seen.plots = document.querySelectorAll('.plot polyline').length;
+      seen.plots = document.querySelectorAll('.plot polyline:not(.grid)').length;
       seen.size = document.querySelector('[data-body="0"]').getBoundingClientRect().width;)");
   ASSERT_FALSE(seen.contains("error")) << seen;
   EXPECT_GT(seen["played"], 0.1);
