@@ -9,7 +9,7 @@ namespace cdot::compile {
 // in space, and among these some whose inertia turns with them.
 struct Contents {
   bool rows = false, effects = false, bounded = false, ends = false;
-  bool spatial = false, gyroscopes = false;
+  bool spatial = false, gyroscopes = false, angles = false;  // angles: that count whole turns
   bool closes() const { return rows || ends; }
 };
 

@@ -40,6 +40,7 @@ class EquationWriter {
       out_.kick = kick_of(blocks_, joints_, out_.constants);
     if (!mechanism_.effects.empty() || !mechanism_.bounded.empty())
       out_.potential = potential_of(blocks_, out_.constants);
+    if (mechanism_.angles > 0) out_.angles = angles_of(blocks_, out_.constants);
     write_bounded();
     drop_unread();
     check_inputs();
@@ -125,7 +126,7 @@ class EquationWriter {
 
 std::vector<const Program*> programs_of_equations(const Equations& e) {
   return {&e.evaluate, &e.errors,    &e.rates, &e.accelerate, &e.solve, &e.fall,
-          &e.kick,     &e.potential, &e.reach, &e.past,       &e.along};
+          &e.kick,     &e.potential, &e.reach, &e.past,       &e.along, &e.angles};
 }
 
 Equations equations_of(const Mechanism& mechanism, const Names& names, const derive::SpecsFolder& specs) {

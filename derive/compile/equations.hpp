@@ -24,6 +24,7 @@ struct Equations {
   Program fall;       // q, v, time -> a
   Program kick;       // q, v, time, J, h -> next: v after an Euler step with effects; lambda of the joints
   Program potential;  // q, time -> E of the effects
+  Program angles;     // q, time -> angle, turns: angles that count whole turns
   // Of rows with bounds:
   std::string is_rate;  // "true, false", by row
   bool has_ends = false;

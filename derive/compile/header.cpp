@@ -51,27 +51,30 @@ class HeaderWriter {
   bool on_accelerations() const { return mechanism_.on_accelerations(); }
   bool by_rattle() const { return mechanism_.method == Method::rattle; }
   Contents has() const {
-    return {!equations_.rows.empty(), !mechanism_.effects.empty(), !mechanism_.bounded.empty(),
-            equations_.has_ends,      mechanism_.spatial(),        has_gyroscopes(mechanism_)};
+    return {!equations_.rows.empty(), !mechanism_.effects.empty(), !mechanism_.bounded.empty(), equations_.has_ends,
+            mechanism_.spatial(),     has_gyroscopes(mechanism_),  mechanism_.angles > 0};
   }
   bool has_rows() const { return has().rows; }
   bool has_effects() const { return has().effects || has().bounded; }
 
   bool has_inputs() const { return !equations_.constants.inputs.empty(); }
 
-  // Functions take the inputs: "$d" declares them, "$s" passes those of a State, "$p" those of the caller. Functions
-  // that weigh take poses where inertias turn: "$g" declares them, "$q" passes those of a State. Poses get their
-  // inertias by
-  // "$w" at a stage, by "$W" at the end of a step.
+  // Functions take the inputs and the angles: "$d" declares them, "$s" passes those of a State, "$p" those of the
+  // caller; "$C" counts the turns of the angles. Functions that weigh take poses where inertias turn: "$g" declares
+  // them, "$q" passes those of a State. Poses get their inertias by "$w" at a stage, by "$W" at the end of a step.
   std::string with_arguments(std::string text) const {
-    const bool inputs = has_inputs(), turns = has().gyroscopes;
-    const std::pair<std::string_view, std::string> marks[] = {{"$d", inputs ? "const Inputs& p, " : ""},
-                                                              {"$s", inputs ? "s.p, " : ""},
-                                                              {"$p", inputs ? "p, " : ""},
-                                                              {"$g", pose_argument(mechanism_)},
-                                                              {"$q", turns ? "s.q, " : ""},
-                                                              {"$w", turns ? "    weigh(at.q, T(0) < T(1));\n" : ""},
-                                                              {"$W", turns ? "    weigh(s.q, T(0) < T(1));\n" : ""}};
+    const bool inputs = has_inputs(), angles = has().angles, turns = has().gyroscopes;
+    const std::pair<std::string_view, std::string> marks[] = {
+        {"$C", angles ? "    Angles next_angles;\n    count($ss.q, s.time, next_angles.angle, next_angles.turns);\n    "
+                        "s.angles = next_angles;\n"
+                      : ""},
+        {"$d", std::string(inputs ? "const Inputs& p, " : "") + (angles ? "const Angles& angles, " : "")},
+        {"$s", std::string(inputs ? "s.p, " : "") + (angles ? "s.angles, " : "")},
+        {"$p", std::string(inputs ? "p, " : "") + (angles ? "angles, " : "")},
+        {"$g", pose_argument(mechanism_)},
+        {"$q", turns ? "s.q, " : ""},
+        {"$w", turns ? "    weigh(at.q, T(0) < T(1));\n" : ""},
+        {"$W", turns ? "    weigh(s.q, T(0) < T(1));\n" : ""}};
     for (const auto& [mark, argument] : marks)
       for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos;)
         text.replace(at, mark.size(), argument);
@@ -93,8 +96,8 @@ class HeaderWriter {
     long of_bodies = 0;
     for (const Body& body : mechanism_.bodies) of_bodies += numbers_of(mechanism_, body);
     const long of_rows = long(equations_.rows.size()) + long(equations_.stored.size()) + (has().closes() ? 1 : 0);
-    return long{sizeof(double)} *
-           (1 + of_bodies + of_rows + long(mechanism_.bounded.size()) + long(equations_.constants.inputs.size()));
+    return long{sizeof(double)} * (1 + of_bodies + of_rows + long(mechanism_.bounded.size()) +
+                                   long(equations_.constants.inputs.size()) + 2 * mechanism_.angles);
   }
 
   // f(body, its name) for those that move.
@@ -151,6 +154,12 @@ class HeaderWriter {
       for (const auto& [name, value] : equations_.constants.inputs_read) line("    T " + name + ";");
       line("  };");
     }
+    if (has().angles) {
+      line("  // Angles of effects, with their whole turns, at the end of the last step.");
+      line("  struct Angles {");
+      line(fmt::format("    T angle[{0}], turns[{0}];", mechanism_.angles));
+      line("  };");
+    }
     line("  // What a run is made of: a copy is a snapshot. After a change of poses or velocities call begin().");
     line("  struct State {");
     line("    T time;  // [s]");
@@ -166,6 +175,7 @@ class HeaderWriter {
     if (has().bounded)
       line("    T hold[bounded];  // of the rows with bounds: -1 at the lower one, 1 at the upper one, 0 between");
     if (has_inputs()) line("    Inputs p;");
+    if (has().angles) line("    Angles angles;");
     if (has().closes()) line("    T residual;      // the largest |C| [m], [rad]");
     if (has_rows()) line("    Jacobian J;      // of the poses q");
     line("  };");
@@ -185,6 +195,8 @@ class HeaderWriter {
     for (const auto& [name, value] : equations_.constants.inputs_read)
       line(fmt::format("    s.p.{} = T({});", name, value));
     if (has().bounded) line("    for (T& of_row : s.hold) of_row = T(0);");
+    if (has().angles) line("    for (T& angle : s.angles.angle) angle = T(0);");
+    if (has().angles) line("    for (T& turns : s.angles.turns) turns = T(0);");
     line("    begin(s);");
     line("  }");
     text_ += begin_of(mechanism_.method, has());
@@ -215,6 +227,7 @@ class HeaderWriter {
     const std::vector<std::string> lines = derive::print_statements(program, printing);
     for (const std::string& statement : lines) line(statement);
     if (has_inputs() && head.find("$d") != std::string::npos) line("    (void)p;");
+    if (has().angles && head.find("$d") != std::string::npos) line("    (void)angles;");
     for (const char* argument : {"q", "v", "time", "J", "b", "h"}) {
       const bool takes = arguments.find(fmt::format(" {}", argument)) != std::string::npos ||
                          arguments.find(fmt::format("(&{})", argument)) != std::string::npos;
@@ -267,6 +280,10 @@ class HeaderWriter {
                          (has().bounded ? ", Bounded& B)" : ")"),
                      equations_.kick);
     if (has().ends) write_ends(at, moving);
+    if (has().angles)
+      write_function("Angles with their whole turns",
+                     fmt::format("count({}, T (&angle)[{}], T (&turns)[{}])", at, mechanism_.angles, mechanism_.angles),
+                     equations_.angles);
   }
 
   void write_ends(const std::string& at, const std::string& moving) {

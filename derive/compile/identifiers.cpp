@@ -12,7 +12,9 @@ std::set<std::string> taken_names() {
       "inverse accelerate Velocity Jacobian Evaluated default_step int float double for if do new this and or not "
       "auto const static struct case switch default return template left largest next kick potential E sum free B "
       "Bounded Bound bounded Mask entry divide settle part find_active p Inputs find_contradiction is_rate reach "
-      "past along hold mu residual error moves Vector Tensor Gyroscope Rate Pack NumberOf pull scenes std still choose "
+      "past along hold mu residual error moves Vector Tensor Gyroscope Rate Pack NumberOf angles Angles count "
+      "next_angles "
+      "to pull scenes std still choose "
       "rate_of "
       "orient weigh wind follow drift spun dot cross times root half_turn turned to_world to_body turned_by free_turn "
       "newton_step mean_spin sin_cos magnitude any single epsilon smallest is_rate settle part_and_settle");

@@ -79,13 +79,13 @@ constexpr const char* stages_end = R"(    for (int i = 0; i < bodies; ++i) {{
 
 constexpr const char* ends_on_joints = R"(    Velocity moves[bodies];
     close(s, at, T(0.5), moves);
-$W    evaluate($ss.q, s.time, s.J);
+$W$C    evaluate($ss.q, s.time, s.J);
     project(s);
     accelerate($ss.q, s.time, s.v, s.J, s.lambda, s.a);
     return s.residual;
 )";
 
-constexpr const char* ends_freely = R"($W    fall($ss.q, s.time, s.v, s.a);
+constexpr const char* ends_freely = R"($W$C    fall($ss.q, s.time, s.v, s.a);
     return T(0);
 )";
 
@@ -200,6 +200,7 @@ std::string euler(const Contents& has) {
   if (has.gyroscopes) text += follows;
   if (has.closes()) text += euler_corrects;
   if (has.gyroscopes && has.closes()) text += follows;
+  text += "$C";
   if (has.rows) text += std::string(evaluates) + "    project(s);\n";
   return text + fmt::format("    return {};\n  }}\n", has.closes() ? "s.residual" : "T(0)");
 }
@@ -242,6 +243,7 @@ std::string begin_of(Method method, const Contents& has) {
       "\n  // Makes a State whole after its poses, velocities or time were set.\n  static void begin(State& s) {\n"
       "    turn(s.q);\n";
   if (has.gyroscopes) text += accelerates ? "$W" : "    wind(s);\n";
+  text += "$C";
   if (has.rows) text += "    for (T& of_row : s.lambda) of_row = T(0);\n";
   if (has.closes()) text += "    s.residual = T(1e30);\n";
   if (has.rows) text += evaluates;

@@ -6,6 +6,7 @@
 #include <cdot/rotation.hpp>
 
 #include "derive/compile/rows/row_blocks.hpp"
+#include "derive/kernel/factor.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -47,6 +48,9 @@ void RowBlocks::note_start(Constants& constants) const {
       for (std::size_t j = i; j < 3; ++j)
         constants.at_start[fmt::format("q[{}].I.{}", name, entry_of(i, j))] = number_of(in_world, i, j);
   }
+  for (int k = 0; k < mechanism_.angles; ++k)
+    for (const char* array : {"angles.angle", "angles.turns"})
+      constants.at_start[derive::element(array, static_cast<std::size_t>(k))] = 0;
   constants.at_start["time"] = 0, constants.at_start["h"] = mechanism_.step;
 }
 

@@ -17,11 +17,25 @@ std::vector<int> elements(const Values& values, const std::string& array, std::s
 
 }  // namespace
 
+// Less than half a turn from the last step's angle.
+Unwound unwound(Algebra& algebra, int number, int C) {
+  const auto place = static_cast<std::size_t>(number);
+  const int last = algebra.input(derive::element("angles.angle", place)), zero = algebra.value(0);
+  const int turns = algebra.input(derive::element("angles.turns", place)), turn = algebra.value(2 * std::numbers::pi);
+  const int half = algebra.value(std::numbers::pi), ahead = algebra.sum({{C, turns, last}, {1, 1, -1}});
+  const int back = algebra.sum({{turn}, {-1}});
+  const int less = algebra.function(Fn::select, {algebra.sum({{ahead, half}, {1, -1}}), back, zero});
+  const int more = algebra.function(Fn::select, {algebra.sum({{ahead, half}, {-1, -1}}), turn, less});
+  const int all = algebra.sum({{turns, more}, {1, 1}});
+  return {algebra.sum({{C, all}, {1, 1}}), all};
+}
+
 LawWriter::LawWriter(const RowBlocks& rows, Algebra& algebra, const Effect& effect, const RowBlock& block,
                      const Values& in)
     : rows_(rows), algebra_(algebra), effect_(effect), block_(block), in_(in) {
   const std::size_t count = block_.rows->count();
   C_ = elements(rows.call(algebra, block_, "position", in), "C", count);
+  if (effect.angle >= 0) C_[0] = unwound(algebra, effect.angle, C_[0]).angle;
   rate_ = elements(rows.call(algebra, block_, "velocity", in), "Jv", count);
   drift_ = elements(rows.call(algebra, block_, "time_derivative", in), "C_t", count);
   for (std::size_t r = 0; r < count; ++r) rate_[r] = algebra.sum({{rate_[r], drift_[r]}, {1, 1}});

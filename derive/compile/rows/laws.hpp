@@ -7,6 +7,12 @@
 
 namespace cdot::compile {
 
+// An angle in space with its whole turns, from the kernel's within half a turn; `number`: of the angle.
+struct Unwound {
+  int angle, turns;
+};
+Unwound unwound(Algebra& algebra, int number, int C);
+
 // Of one effect, by row; `in` are the inputs of its rows with their J.
 class LawWriter {
  public:

@@ -2,6 +2,7 @@
 
 #include "derive/compile/rows/components.hpp"
 #include "derive/compile/rows/laws.hpp"
+#include "derive/kernel/factor.hpp"
 
 namespace cdot::compile {
 
@@ -43,6 +44,22 @@ Program fall_of(const RowBlocks& blocks, Constants& constants) {
   each_component(blocks, [&](const Component& component, double, double) {
     algebra.output(component.in("a"), accelerations.at(component.name));
   });
+  return algebra.finish();
+}
+
+Program angles_of(const RowBlocks& blocks, Constants& constants) {
+  Algebra algebra(constants);
+  const auto count = [&](const Effect& effect, const RowBlock& block) {
+    if (effect.angle < 0) return;
+    const auto place = static_cast<std::size_t>(effect.angle);
+    const int C = blocks.call(algebra, block, "position", blocks.inputs(algebra, block)).at("C[0]");
+    const Unwound angle = unwound(algebra, effect.angle, C);
+    algebra.output(derive::element("angle", place), angle.angle);
+    algebra.output(derive::element("turns", place), angle.turns);
+  };
+  const Mechanism& all = blocks.mechanism();
+  for (std::size_t e = 0; e < all.effects.size(); ++e) count(all.effects[e], blocks.effect(e));
+  for (std::size_t b = 0; b < all.bounded.size(); ++b) count(all.bounded[b], blocks.bounded(b));
   return algebra.finish();
 }
 

@@ -14,4 +14,7 @@ Program fall_of(const RowBlocks& blocks, Constants& constants);
 // q, time -> E: potential energy of the effects.
 Program potential_of(const RowBlocks& blocks, Constants& constants);
 
+// q, time -> angle, turns: angles of effects in space, with their whole turns.
+Program angles_of(const RowBlocks& blocks, Constants& constants);
+
 }  // namespace cdot::compile

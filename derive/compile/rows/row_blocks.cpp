@@ -25,10 +25,11 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
     for (const Effect& effect : *list) {
       std::set<std::string>& of_type = coordinates[effect.type];
       if (!effect.coordinate.empty()) of_type.insert(effect.coordinate);
-      if (!effect.law_type.empty()) coordinates[effect.law_type];
+      if (!effect.law_type.empty()) coordinates[law_of(effect)];
     }
+  const std::string folder = mechanism.spatial() ? "spatial/" : "planar/";
   for (const auto& [type, of_type] : coordinates)
-    types_[type] = programs_of(specs, mechanism.spatial() ? "spatial/" : "planar/", type, of_type);
+    types_[type] = programs_of(specs, type.find('/') == std::string::npos ? folder + type : type, of_type);
   for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
     const Joint& joint = mechanism.joints[j];
     const SpecPrograms& spec = types_.at(joint.type);
@@ -38,6 +39,13 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
     effects_.push_back(block_of(names.effects[e], mechanism.effects[e]));
   for (std::size_t b = 0; b < mechanism.bounded.size(); ++b)
     bounded_.push_back(block_of(names.bounded[b], mechanism.bounded[b]));
+}
+
+const SpecPrograms& RowBlocks::law(const Effect& effect) const { return types_.at(law_of(effect)); }
+
+// Laws of effects on a coordinate stand in the plane for both.
+std::string RowBlocks::law_of(const Effect& effect) const {
+  return (mechanism_.spatial() && !effect.coordinate.empty() ? "planar/" : "") + effect.law_type;
 }
 
 // The joint on whose coordinate the effect acts: they share its parameters.

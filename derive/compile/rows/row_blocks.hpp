@@ -47,7 +47,7 @@ class RowBlocks {
   const RowBlock& effect(std::size_t e) const { return effects_[e]; }
   const RowBlock& bounded(std::size_t b) const { return bounded_[b]; }
   // The spec whose law the effect has.
-  const SpecPrograms& law(const Effect& effect) const { return types_.at(effect.law_type); }
+  const SpecPrograms& law(const Effect& effect) const;
   const std::string& body_name(int index) const { return names_.bodies[static_cast<std::size_t>(index)]; }
 
   // Inputs of the kernel, in this scene: places and velocities of its bodies, masses, parameters.
@@ -72,6 +72,7 @@ class RowBlocks {
                   Forces& forces) const;
 
  private:
+  std::string law_of(const Effect& effect) const;
   std::string owner_of(const std::string& name, const Effect& effect) const;
   RowBlock block_of(const std::string& name, const Effect& effect) const;
   void add_body(Algebra& algebra, Values& in, const std::string& L, int index) const;

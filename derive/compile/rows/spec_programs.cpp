@@ -52,9 +52,9 @@ std::map<std::string, std::string> leaves_of_law(const derive::Joint& joint) {
 
 }  // namespace
 
-SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& folder, const std::string& spec,
+SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& spec,
                          const std::set<std::string>& coordinates) {
-  const derive::ReadResult read = specs.read(specs.find(folder + spec));
+  const derive::ReadResult read = specs.read(specs.find(spec));
   if (!read.joint) throw std::runtime_error(render(*read.file, read.diagnostics));
   const derive::Derivation derivation = derive::derive(*read.joint);
   derive::Kernel kernel = derive::plan(derivation);

@@ -39,8 +39,8 @@ struct SpecPrograms {
   std::vector<BoundPrograms> bounded;
 };
 
-// With these of its coordinates, and those of its rows with bounds; folder: "planar/".
-SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& folder, const std::string& spec,
+// With these of its coordinates, and those of its rows with bounds; spec: "planar/revolute".
+SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& spec,
                          const std::set<std::string>& coordinates);
 
 }  // namespace cdot::compile

@@ -109,9 +109,7 @@ class EffectReader {
     effect.numbers = constants_of(place);
     const std::string what = name_law(kind, effect);
     effect.name += "." + what;
-    if (batch_of(place).ops->counters > 0)
-      return refuse_(&source,
-                     fmt::format("{}, which is on an angle in space, whose turns would be counted", effect.name));
+    if (batch_of(place).ops->counters > 0) effect.angle = mechanism_.angles++;
     if (is_bounded(place)) return add_bounded(source, effect, place);
     if (has_limits(place) && mechanism_.method == Method::euler) {
       effect.law = Effect::limited;

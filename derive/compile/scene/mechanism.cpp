@@ -8,6 +8,7 @@
 
 #include "derive/compile/scene/effects.hpp"
 #include "runtime/solve/projection.hpp"
+#include "runtime/state/world_data.hpp"
 #include "runtime/tool/scene/extent.hpp"
 #include "runtime/tool/scene/scene.hpp"
 
@@ -194,8 +195,24 @@ void add_effects(const Scene& scene, BasicWorld<S>& world, Mechanism& mechanism)
 }
 
 template <class S>
+void refuse_counters(const Scene& scene, BasicWorld<S>& world) {
+  Refusals refusals(scene);
+  for (int i = 0; i < static_cast<int>(scene.joints.size()); ++i) {
+    const std::vector<Place>& places = world.data().joints[static_cast<std::size_t>(i)].places;
+    const SceneJoint& joint = scene.joints[static_cast<std::size_t>(i)];
+    if (!places.empty() && world.data().batches[static_cast<std::size_t>(places[0].batch)]->ops->counters > 0)
+      refusals.add(joint.where,
+                   fmt::format("{}: cdot compile knows no rows that count whole turns, as {} has", joint.name,
+                               joint.definition.type),
+                   "leave it to cdot-run");
+  }
+  refusals.throw_any();
+}
+
+template <class S>
 void add_parts(const Scene& scene, Mechanism& mechanism) {
   BasicWorld<S> world = build_world_in<S>(scene);
+  refuse_counters(scene, world);
   if (scene.project) world.project(1e-12);
   for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) mechanism.bodies.push_back(body_of(scene, world, i));
   mechanism.bodies.emplace_back();

@@ -49,6 +49,7 @@ struct Effect {
     lock      // numbers: the value held
   } law = of_spec;
   std::string law_type;  // of_spec, limited, bound
+  int angle = -1;        // of a coordinate in space that counts whole turns: its number among the mechanism's
   std::size_t row = 0;
   std::vector<double> numbers;
 };
@@ -67,6 +68,7 @@ struct Mechanism {
   std::vector<Joint> joints;
   std::vector<Effect> effects;  // by forces
   std::vector<Effect> bounded;  // rows with bounds
+  int angles = 0;               // that count whole turns
 
   bool spatial() const { return dimension == 3; }
   // True for a Runge-Kutta method; the others step velocities by impulses.

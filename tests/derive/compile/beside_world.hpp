@@ -79,7 +79,7 @@ void runs_as_the_world(const std::string& file, Integrator integrator, double wi
 // Of the first body about an axis.
 template <class Compiled>
 auto& spin_in(typename Compiled::State& state) {
-  if constexpr (is_spatial<Compiled>) return state.v[0].wy;
+  if constexpr (is_spatial<Compiled>) return state.v[0].wz;
   else return state.v[0].w;
 }
 

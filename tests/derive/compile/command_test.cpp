@@ -27,6 +27,12 @@ TEST(CompileCommand, RefusesPartsThatItDoesNotKnowWithTheirLines) {
                 "specs/scenes/machine.toml:58:1: error: axle: cdot compile does not know axle.angle.motor by rk4"),
             std::string::npos)
       << effects.text;
+  const Outcome gear = compile("tests/torture/found/motor_without_motion.toml --integrator euler");
+  EXPECT_EQ(gear.status, 2);
+  EXPECT_NE(gear.text.find("motor_without_motion.toml:19:1: error: j6: cdot compile knows no rows that count whole "
+                           "turns, as gear has"),
+            std::string::npos)
+      << gear.text;
   const Outcome implicit = compile("specs/scenes/catenary_100.toml");
   EXPECT_EQ(implicit.status, 2);
   EXPECT_NE(implicit.text.find("no integrator implicit"), std::string::npos) << implicit.text;

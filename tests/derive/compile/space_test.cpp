@@ -24,6 +24,7 @@
 #include "gyroscope_space_dop853.hpp"
 #include "gyroscope_space_euler.hpp"
 #include "gyroscope_space_rk4.hpp"
+#include "hinges_euler.hpp"
 #include "pushed_dop853.hpp"
 #include "pushed_euler.hpp"
 #include "pushed_rattle.hpp"
@@ -34,6 +35,9 @@
 #include "three_bodies_space_dop853.hpp"
 #include "three_bodies_space_euler.hpp"
 #include "three_bodies_space_rk4.hpp"
+#include "torsion_dop853.hpp"
+#include "torsion_euler.hpp"
+#include "torsion_rk4.hpp"
 #include "torque_free_body_space_dop853.hpp"
 #include "torque_free_body_space_euler.hpp"
 #include "torque_free_body_space_rk4.hpp"
@@ -70,6 +74,22 @@ TEST(CompiledSpace, ForcesTorquesAndDampingActAsInTheWorld) {
   cdot::runs_as_the_world<cdot::scenes::pushed_dop853<double>>(file, Integrator::dop853);
 }
 
+// Angles go on beyond half a turn: the wheel turns by more than three.
+TEST(CompiledSpace, EffectsOnCoordinatesActAsInTheWorld) {
+  const std::string wound = "tests/derive/compile/scenes/torsion.toml",
+                    hinges = "tests/derive/compile/scenes/hinges.toml";
+  cdot::runs_as_the_world<cdot::scenes::torsion_euler<double>>(wound, Integrator::euler);
+  cdot::runs_as_the_world<cdot::scenes::torsion_rk4<double>>(wound, Integrator::rk4);
+  cdot::runs_as_the_world<cdot::scenes::torsion_dop853<double>>(wound, Integrator::dop853);
+  cdot::runs_as_the_world<cdot::scenes::hinges_euler<double>>(hinges, Integrator::euler);
+  using Wound = cdot::scenes::torsion_euler<double>;
+  Wound::State state;
+  Wound::reset(state);
+  double most = 0;
+  for (int k = 0; k < 700; ++k) Wound::step(state, 0.001), most = std::max(most, std::abs(state.angles.angle[0]));
+  EXPECT_GT(most, 3 * 6.2831853);
+}
+
 // Spins of a symmetric body, of one without symmetry, and of bodies with joints.
 TEST(CompiledSpace, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<cdot::scenes::gyroscope_space_euler>();
@@ -78,6 +98,8 @@ TEST(CompiledSpace, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<cdot::scenes::three_bodies_space_rk4>();
   cdot::lanes_are_as_alone<cdot::scenes::torque_free_body_space_euler, float>();
   cdot::lanes_are_as_alone<cdot::scenes::gyroscope_space_dop853, float>();
+  cdot::lanes_are_as_alone<cdot::scenes::torsion_rk4>();
+  cdot::lanes_are_as_alone<cdot::scenes::hinges_euler>();
 }
 
 }  // namespace
