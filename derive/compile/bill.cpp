@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <functional>
+#include <optional>
 
 #include "derive/compile/measure.hpp"
+#include "runtime/text/json.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -17,11 +19,20 @@ Mechanism bare(Mechanism mechanism) {
   mechanism.joints.clear();
   mechanism.effects.clear();
   mechanism.bounded.clear();
+  mechanism.angles = 0;
   for (Body& b : mechanism.bodies) {
     std::ranges::fill(b.acceleration, 0);
     b.torque = {}, b.linear_drag = b.angular_drag = 0;
   }
   return mechanism;
+}
+
+// Numbers the angles of the effects that are left.
+void count_angles(Mechanism& mechanism) {
+  mechanism.angles = 0;
+  for (auto* list : {&mechanism.effects, &mechanism.bounded})
+    for (Effect& effect : *list)
+      if (effect.angle >= 0) effect.angle = mechanism.angles++;
 }
 
 class Parts {
@@ -56,6 +67,7 @@ class Parts {
     Part part{name, all_, bare(all_)};
     (part.without.*list).erase((part.without.*list).begin() + static_cast<std::ptrdiff_t>(number));
     (part.alone.*list).push_back((all_.*list)[number]);
+    count_angles(part.without), count_angles(part.alone);
     parts_.push_back(std::move(part));
   }
 
@@ -79,12 +91,24 @@ class Parts {
   std::vector<Part> parts_;
 };
 
-class BillWriter {
+struct BillLine {
+  std::string name;
+  long operations_alone = 0, bytes_alone = 0, operations = 0, bytes = 0;  // the last two: saved by dropping it
+  std::optional<long> code, instructions;                                 // likewise
+};
+
+struct Bill {
+  std::string title, method;
+  std::vector<BillLine> lines;  // the bodies, the parts, the whole step
+  std::vector<std::string> notes;
+};
+
+class BillMaker {
  public:
-  BillWriter(const Mechanism& mechanism, const derive::SpecsFolder& specs)
+  BillMaker(const Mechanism& mechanism, const derive::SpecsFolder& specs)
       : mechanism_(mechanism), specs_(specs), parts_(parts_of(mechanism)) {}
 
-  std::string write() {
+  Bill make() {
     const Header whole = header(mechanism_), none = header(bare(mechanism_));
     std::vector<Header> without;
     std::vector<Source> sources = {{whole.text, whole.struct_name}, {none.text, none.struct_name}};
@@ -92,22 +116,22 @@ class BillWriter {
       without.push_back(header(part.without));
       sources.push_back({without.back().text, without.back().struct_name});
     }
-    std::vector<std::string> notes;
-    const std::vector<Measured> measured = measure(sources, most_seconds, notes);
-    write_head();
-    line("bodies", none, none, measured[1].code, measured[1].instructions);
+    Bill bill{mechanism_.title.empty() ? mechanism_.file : mechanism_.title, mechanism_.method_name, {}, {}};
+    const std::vector<Measured> measured = measure(sources, most_seconds, bill.notes);
+    const auto whole_line = [](const std::string& name, const Header& of, const Measured& cost) {
+      return BillLine{name, of.operations, of.state_bytes, of.operations, of.state_bytes, cost.code, cost.instructions};
+    };
+    bill.lines.push_back(whole_line("bodies", none, measured[1]));
     for (std::size_t k = 0; k < parts_.size(); ++k) {
+      const Header alone = header(parts_[k].alone);
       const Measured& rest = measured[k + 2];
-      Header alone = header(parts_[k].alone), saved = whole;
-      alone.operations -= none.operations, alone.state_bytes -= none.state_bytes;
-      saved.operations -= without[k].operations, saved.state_bytes -= without[k].state_bytes;
-      line(parts_[k].name, alone, saved, difference(measured[0].code, rest.code),
-           difference(measured[0].instructions, rest.instructions));
+      bill.lines.push_back({parts_[k].name, alone.operations - none.operations, alone.state_bytes - none.state_bytes,
+                            whole.operations - without[k].operations, whole.state_bytes - without[k].state_bytes,
+                            difference(measured[0].code, rest.code),
+                            difference(measured[0].instructions, rest.instructions)});
     }
-    line("whole step", whole, whole, measured[0].code, measured[0].instructions);
-    text_ += "\n";
-    for (const std::string& note : notes) text_ += "note: " + note + "\n";
-    return std::move(text_);
+    bill.lines.push_back(whole_line("whole step", whole, measured[0]));
+    return bill;
   }
 
  private:
@@ -119,38 +143,56 @@ class BillWriter {
     return a && b ? std::optional(*a - *b) : std::nullopt;
   }
 
-  void write_head() {
-    for (const Part& part : parts_) width_ = std::max(width_, part.name.size());
-    text_ += fmt::format("{}: a step of {}\n", mechanism_.title.empty() ? mechanism_.file : mechanism_.title,
-                         mechanism_.method_name);
-    text_ += "Operations of the equations, with one round of Newton. State in double. Code and instructions with\n";
-    text_ += fmt::format("{}; instructions by callgrind, the mean of a step\nfrom each of the first {} states.\n\n",
-                         measured_options, measured_steps);
-    text_ += fmt::format("{:<{}}  {:>18}  {:>46}\n", "", width_, "alone", "saved by dropping it");
-    text_ += fmt::format("{:<{}}  {:>10}  {:>6}  {:>10}  {:>6}  {:>12}  {:>12}\n", "", width_, "operations", "bytes",
-                         "operations", "bytes", "code bytes", "instructions");
-  }
-
-  void line(const std::string& name, const Header& alone, const Header& saved, std::optional<long> code,
-            std::optional<long> instructions) {
-    const auto number = [](std::optional<long> n) { return n ? std::to_string(*n) : "-"; };
-    text_ += fmt::format("{:<{}}  {:>10}  {:>6}  {:>10}  {:>6}  {:>12}  {:>12}\n", name, width_, alone.operations,
-                         alone.state_bytes, saved.operations, saved.state_bytes, number(code), number(instructions));
-  }
-
   const Mechanism& mechanism_;
   const derive::SpecsFolder& specs_;
   std::vector<Part> parts_;
-  std::size_t width_ = 10;
-  std::string text_;
 };
+
+std::string text_of(const Bill& bill) {
+  std::size_t width = 10;
+  for (const BillLine& line : bill.lines) width = std::max(width, line.name.size());
+  std::string text = fmt::format("{}: a step of {}\n", bill.title, bill.method);
+  text += "Operations of the equations, with one round of Newton. State in double. Code and instructions with\n";
+  text += fmt::format("{}; instructions by callgrind, the mean of a step\nfrom each of the first {} states.\n\n",
+                      measured_options, measured_steps);
+  text += fmt::format("{:<{}}  {:>18}  {:>46}\n", "", width, "alone", "saved by dropping it");
+  text += fmt::format("{:<{}}  {:>10}  {:>6}  {:>10}  {:>6}  {:>12}  {:>12}\n", "", width, "operations", "bytes",
+                      "operations", "bytes", "code bytes", "instructions");
+  const auto number = [](std::optional<long> n) { return n ? std::to_string(*n) : "-"; };
+  for (const BillLine& line : bill.lines)
+    text +=
+        fmt::format("{:<{}}  {:>10}  {:>6}  {:>10}  {:>6}  {:>12}  {:>12}\n", line.name, width, line.operations_alone,
+                    line.bytes_alone, line.operations, line.bytes, number(line.code), number(line.instructions));
+  text += "\n";
+  for (const std::string& note : bill.notes) text += "note: " + note + "\n";
+  return text;
+}
+
+// What was not measured is null.
+std::string json_of(const Bill& bill) {
+  using text::Json;
+  const auto number = [](std::optional<long> n) { return n ? Json(*n) : Json(nullptr); };
+  Json json{{"title", bill.title}, {"method", bill.method}, {"options", measured_options}};
+  json["lines"] = Json::array();
+  for (const BillLine& line : bill.lines)
+    json["lines"].push_back({{"name", line.name},
+                             {"alone", {{"operations", line.operations_alone}, {"bytes", line.bytes_alone}}},
+                             {"saved",
+                              {{"operations", line.operations},
+                               {"bytes", line.bytes},
+                               {"code_bytes", number(line.code)},
+                               {"instructions", number(line.instructions)}}}});
+  json["notes"] = Json(bill.notes);
+  return json.dump(2) + "\n";
+}
 
 }  // namespace
 
 std::vector<Part> parts_of(const Mechanism& mechanism) { return Parts(mechanism).list(); }
 
-std::string bill_of(const Mechanism& mechanism, const derive::SpecsFolder& specs) {
-  return BillWriter(mechanism, specs).write();
+std::string bill_of(const Mechanism& mechanism, const derive::SpecsFolder& specs, bool as_json) {
+  const Bill bill = BillMaker(mechanism, specs).make();
+  return as_json ? json_of(bill) : text_of(bill);
 }
 
 }  // namespace cdot::compile

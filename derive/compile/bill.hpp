@@ -17,6 +17,7 @@ struct Part {
 };
 std::vector<Part> parts_of(const Mechanism& mechanism);
 
-std::string bill_of(const Mechanism& mechanism, const derive::SpecsFolder& specs);
+// A table, or JSON.
+std::string bill_of(const Mechanism& mechanism, const derive::SpecsFolder& specs, bool as_json);
 
 }  // namespace cdot::compile

@@ -89,7 +89,7 @@ class HeaderWriter {
     return of(calls.evaluate, equations_.evaluate) + of(calls.errors, equations_.errors) +
            of(calls.rates, equations_.rates) + of(calls.accelerate, equations_.accelerate) +
            of(calls.solve, equations_.solve) + of(calls.fall, equations_.fall) + of(calls.kick, equations_.kick) +
-           of(calls.past, equations_.past);
+           of(calls.past, equations_.past) + of(1, equations_.angles);
   }
 
   long state_bytes() const {

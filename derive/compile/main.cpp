@@ -3,6 +3,7 @@
 #include <exception>
 #include <filesystem>
 #include <fmt/format.h>
+#include <stdexcept>
 
 #include "derive/compile/bill.hpp"
 #include "derive/compile/header.hpp"
@@ -20,7 +21,7 @@ using command_line::Run;
 struct Options {
   std::string scene, output = "-", specs = "specs", struct_name;
   Wishes wishes;
-  bool bill = false;
+  bool bill = false, json = false;
 };
 
 // The command that writes the same header.
@@ -35,9 +36,11 @@ std::string command_of(const Options& options) {
 }
 
 int run(const Options& options) {
+  if (options.json && !options.bill)
+    throw std::runtime_error("--json prints the bill: a header is no JSON. Fix: give --bill, or leave out --json");
   const Mechanism mechanism = read_mechanism(options.scene, options.wishes);
   const derive::SpecsFolder specs(options.specs);
-  const std::string text = options.bill ? bill_of(mechanism, specs)
+  const std::string text = options.bill ? bill_of(mechanism, specs, options.json)
                                         : header_of(mechanism, {options.struct_name, command_of(options)}, specs).text;
   write_file(options.output, text);
   return 0;
@@ -58,6 +61,7 @@ void add_options(Line& line, Options& options) {
   line.add("--name", &options.struct_name, "Name of the struct; without it that of the file").shown_as("NAME");
   line.add("--bill", &options.bill,
            "Instead of the header: what each joint and effect costs in a step, and what dropping it saves");
+  line.add("--json", &options.json, "With --bill: print JSON");
   line.add("--specs", &options.specs, "Folder of specs").shown_as("DIR").shows_default();
 }
 

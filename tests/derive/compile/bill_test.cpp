@@ -1,5 +1,6 @@
 // `cdot compile --bill`: an effect costs what its bill says, and one that a scene does not call for costs nothing.
 #include <array>
+#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -97,6 +98,34 @@ TEST(Bill, SaysWhatItCannotMeasure) {
   EXPECT_GT(brake[0], 0);
   EXPECT_EQ(brake[4], -1);
   EXPECT_EQ(brake[5], -1);
+}
+
+TEST(Bill, IsPrintedAsJson) {
+  const std::string tailgate = "--bill specs/scenes/tailgate.toml";
+  const Line brake = line_of(cdot::compile(tailgate, "CXX=no_compiler").text, "effect brake");
+  const cdot::Outcome json = cdot::compile(tailgate + " --json", "CXX=no_compiler");
+  EXPECT_EQ(json.status, 0);
+  const std::string expected = fmt::format(
+      R"("name": "effect brake", "alone": {{"operations": {}, "bytes": {}}}, "saved": {{"operations": {}, "bytes": {}, )"
+      R"("code_bytes": null, "instructions": null}})",
+      brake[0], brake[1], brake[2], brake[3]);
+  const auto without_spaces = [](std::string text) {
+    std::erase_if(text, [](unsigned char c) { return std::isspace(c) != 0; });
+    return text;
+  };
+  EXPECT_NE(without_spaces(json.text).find(without_spaces(expected)), std::string::npos) << json.text;
+  const cdot::Outcome alone = cdot::compile("specs/scenes/tailgate.toml --json");
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_NE(alone.text.find("Fix: give --bill"), std::string::npos) << alone.text;
+}
+
+// A part's angles go with it: the bill of a scene in space compiles every variant.
+TEST(Bill, OfAnglesInSpaceNumbersThoseThatAreLeft) {
+  const std::string torsion = "--bill tests/derive/compile/scenes/torsion.toml --integrator euler";
+  const cdot::Outcome bill = cdot::compile(torsion, "CXX=no_compiler");
+  EXPECT_EQ(bill.status, 0) << bill.text;
+  EXPECT_EQ(line_of(bill.text, "effect axle.angle.spring")[3], 2 * long{sizeof(double)});
+  EXPECT_EQ(line_of(bill.text, "effect axle.angle.load")[3], 2 * long{sizeof(double)});
 }
 
 }  // namespace
