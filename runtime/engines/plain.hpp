@@ -109,10 +109,11 @@ class Rows {
     Block::apply(J_, m, change, v);
   }
 
-  // A step of Newton's method towards C = 0: the bodies move by M^-1 J^T lambda, K lambda = -C. Returns the largest
-  // |C|.
+  // A step of Newton's method towards C = 0, or a share of it: the bodies are to move by M^-1 J^T lambda, K lambda =
+  // -C. Returns the largest |C|.
   template <class Pose, class Mass, class Velocity, class Parameters>
-  T project(const Pose (&q)[bodies], const Mass (&m)[bodies], const Parameters& p, T time, Velocity (&shift)[bodies]) {
+  T project(const Pose (&q)[bodies], const Mass (&m)[bodies], const Parameters& p, T time, T share,
+            Velocity (&shift)[bodies]) {
     T C[rows], change[rows], worst = T(0);
     const T none[rows] = {};
     Block::jacobian(q, p, time, C, J_);
@@ -121,7 +122,7 @@ class Rows {
     for (int i = 0; i < rows; ++i) {
       const bool holds = Block::row_kinds[i] == RowKind::inequality && C[i] > T(0);
       worst = larger(worst, holds ? T(0) : abs(C[i]));
-      C[i] = -C[i];
+      C[i] *= -share;
     }
     solve_within_bounds(C, none, change);
     Block::apply(J_, m, change, shift);
@@ -312,11 +313,17 @@ class Joint {
   // After the bodies moved: takes them to C = 0, unless the joint is soft. Returns the largest |C| found.
   template <class Pose, class Mass>
   T project(Pose (&q)[bodies], const Mass (&m)[bodies], T time) {
-    if (stiffness.hertz > T(0)) return T(0);
     auto shift = still(q[0]);
-    const T worst = rows_.project(q, m, parameters, time, shift.of);
+    const T worst = correct(q, m, time, T(1), shift.of);
     for (int i = 0; i < bodies; ++i) move(q[i], shift.of[i], T(1));
     return worst;
+  }
+  // The same as displacements and small rotations, for an engine that moves its bodies itself; `share` of the whole
+  // way.
+  template <class Pose, class Mass, class Velocity>
+  T correct(const Pose (&q)[bodies], const Mass (&m)[bodies], T time, T share, Velocity (&shift)[bodies]) {
+    if (stiffness.hertz > T(0)) return T(0);
+    return rows_.project(q, m, parameters, time, share, shift);
   }
 
   const T (&impulses() const)[rows] { return rows_.impulse; }  // of the last step: h times force or torque
