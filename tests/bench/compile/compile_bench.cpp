@@ -6,11 +6,19 @@
 #include <cdot/world.hpp>
 
 #include "chain_10_euler.hpp"
+#include "chain_10_rattle.hpp"
 #include "chain_10_rk4.hpp"
+#include "chain_10_space_euler.hpp"
+#include "chain_10_space_rattle.hpp"
+#include "chain_10_space_rk4.hpp"
+#include "four_bar_space_euler.hpp"
+#include "four_bar_space_rattle.hpp"
+#include "four_bar_space_rk4.hpp"
 #include "machine_euler.hpp"
 #include "robot_arm_euler.hpp"
 #include "runtime/tool/scene/scene.hpp"
 #include "slider_crank_euler.hpp"
+#include "slider_crank_rattle.hpp"
 #include "slider_crank_rk4.hpp"
 #include "tailgate_euler.hpp"
 #include "tailgate_rk4.hpp"
@@ -25,12 +33,13 @@ void count_lanes(benchmark::State& state, int lanes) {
       benchmark::Counter(lanes, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
+template <class Space>
 void run_world(benchmark::State& state, const std::string& name, cdot::Integrator integrator) {
   cdot::Scene scene = cdot::read_scene(std::string(CDOT_SOURCE_DIR) + "/specs/scenes/" + name + ".toml");
   scene.settings.integrator = integrator;
   scene.accuracy = 0;
   cdot::settle_drift(scene);
-  auto world = cdot::build_world<double>(scene);
+  auto world = cdot::build_world_in<Space>(scene);
   const cdot::Snapshot start = world.snapshot();
   int steps = 0;
   for (auto _ : state) {
@@ -52,20 +61,37 @@ void run_compiled(benchmark::State& state) {
   count_lanes(state, lanes);
 }
 
-#define CDOT_COMPARE(scene, method)                                                                                 \
-  BENCHMARK_CAPTURE(run_world, scene##_##method, #scene, cdot::Integrator::method);                                 \
+void run_in_plane(benchmark::State& state, const std::string& name, cdot::Integrator integrator) {
+  run_world<cdot::Planar<double>>(state, name, integrator);
+}
+void run_in_space(benchmark::State& state, const std::string& name, cdot::Integrator integrator) {
+  run_world<cdot::Spatial<double>>(state, "spatial/" + name, integrator);
+}
+
+#define CDOT_COMPARE(scene, method) CDOT_COMPARE_WITH(run_in_plane, #scene, scene, method)
+#define CDOT_COMPARE_IN_SPACE(scene, method) CDOT_COMPARE_WITH(run_in_space, #scene, scene##_space, method)
+#define CDOT_COMPARE_WITH(world, file, scene, method)                                                               \
+  BENCHMARK_CAPTURE(world, scene##_##method, file, cdot::Integrator::method);                                       \
   BENCHMARK(run_compiled<cdot::scenes::scene##_##method<double>, 1>)->Name(#scene "_" #method "/1");                \
   BENCHMARK(run_compiled<cdot::scenes::scene##_##method<cdot::Pack<double, 4>>, 4>)->Name(#scene "_" #method "/4"); \
   BENCHMARK(run_compiled<cdot::scenes::scene##_##method<cdot::Pack<double, 8>>, 8>)->Name(#scene "_" #method "/8");
 
 CDOT_COMPARE(chain_10, euler)
 CDOT_COMPARE(chain_10, rk4)
+CDOT_COMPARE(chain_10, rattle)
 CDOT_COMPARE(slider_crank, euler)
+CDOT_COMPARE(slider_crank, rattle)
 CDOT_COMPARE(slider_crank, rk4)
 CDOT_COMPARE(tailgate, euler)  // a joint and two effects by forces
 CDOT_COMPARE(tailgate, rk4)
 CDOT_COMPARE(robot_arm, euler)  // three joints, two servos, a brake
 CDOT_COMPARE(machine, euler)    // 18 rows of joints, a motor
+CDOT_COMPARE_IN_SPACE(chain_10, euler)
+CDOT_COMPARE_IN_SPACE(chain_10, rattle)
+CDOT_COMPARE_IN_SPACE(chain_10, rk4)
+CDOT_COMPARE_IN_SPACE(four_bar, euler)  // 20 rows of rank 17
+CDOT_COMPARE_IN_SPACE(four_bar, rattle)
+CDOT_COMPARE_IN_SPACE(four_bar, rk4)
 
 }  // namespace
 
