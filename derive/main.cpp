@@ -15,7 +15,8 @@ constexpr cdot::command_line::Command commands[] = {
                 "or extra term, a sign, a factor, a wrong body", diff_command},
     {"check",   "Report errors and risks of a spec, before any code exists", check_command},
     {"emit",    "Write a joint as a header that makes it one of another engine: its kernel and an adapter", emit_command},
-    {"compile", "Write a scene as its own step: a C++ header of straight lines", compile_command},
+    {"compile", "Write a scene as its own step: a C++ header of straight lines", command_beside},
+    {"play",    "Write a page where equation, derivation and moving mechanism are live", command_beside},
 };
 // clang-format on
 
@@ -28,13 +29,15 @@ constexpr cdot::command_line::Program program = {
     "  cdot diff    line                       published derivations against the generated one\n"
     "  cdot derive                             all specs to generated/, proved\n"
     "  cdot emit    hinge --for bullet         a header that makes it a joint of that engine\n"
-    "  cdot compile specs/scenes/four_bar.toml a scene as its own step, in C++\n\n"
+    "  cdot compile specs/scenes/four_bar.toml a scene as its own step, in C++\n"
+    "  cdot play    specs/scenes/machine.toml  the same as a page that moves\n\n"
     "The language is described in specs/README.md.",
     "Exit status: 0 all well; 1 the answer is no (differs, not current); 2 bad usage or input."};
 
 int main(int argc, char** argv) {
   try {
-    if (argc > 1 && std::string_view(argv[1]) == "compile") return run_compile(argv);
+    for (const char* beside : {"compile", "play"})
+      if (argc > 1 && std::string_view(argv[1]) == beside) return run_beside(beside, argv);
     return run(program, commands, argc, argv);
   } catch (const std::exception& e) {
     fmt::print(stderr, "cdot: {}\n", e.what());

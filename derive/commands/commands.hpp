@@ -18,10 +18,10 @@ Run explain_command(Line& line);
 Run diff_command(Line& line);
 Run check_command(Line& line);
 Run emit_command(Line& line);
-Run compile_command(Line& line);  // its line in the help
+Run command_beside(Line& line);  // of `cdot compile` and `cdot play`: their lines in the help
 
-// `cdot compile`: becomes the program `cdot-compile`, which lies beside `cdot`. Returns the exit status if it cannot.
-int run_compile(char** argv);
+// Becomes the program `cdot-compile` or `cdot-play`, which lies beside `cdot`. Returns the exit status if it cannot.
+int run_beside(const std::string& command, char** argv);
 
 // Writes through a temporary file, so that nobody reads half of one; a device, a pipe or a link is written in place.
 // "-" is standard output.

@@ -1,5 +1,5 @@
-// `cdot compile` is a program of its own, as the subcommands of git are: it links the runtime, which is built from what
-// `cdot` writes.
+// `cdot compile` and `cdot play` are programs of their own, as the subcommands of git are: they link the runtime, which
+// is built from what `cdot` writes, or carry a page.
 #include <cerrno>
 #include <cstring>
 #include <fmt/format.h>
@@ -9,16 +9,16 @@
 #include "runtime/command_line/installation.hpp"
 
 namespace cdot::derive {
-int run_compile(char** argv) {
-  const std::string program = (command_line::own_folder() / "cdot-compile").string();
+int run_beside(const std::string& command, char** argv) {
+  const std::string name = "cdot-" + command, program = (command_line::own_folder() / name).string();
   execv(program.c_str(), argv);
-  fmt::print(stderr, "cdot compile: cannot run {}: {}. Fix: build or install the target cdot-compile beside cdot\n",
-             program, std::strerror(errno));
+  fmt::print(stderr, "cdot {}: cannot run {}: {}. Fix: build or install the target {} beside cdot\n", command, program,
+             std::strerror(errno), name);
   return command_line::wrong_usage;
 }
 
-// run_compile() takes all arguments before they are read.
-Run compile_command(Line&) {
+// run_beside() takes all arguments before they are read.
+Run command_beside(Line&) {
   return [] { return command_line::wrong_usage; };
 }
 

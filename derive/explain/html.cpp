@@ -53,8 +53,10 @@ std::string name(const Formula& leaf, const std::vector<std::string>& bodies) {
                             html_escaped(greek(s.letter)));
   if (s.dots > 0) base = filled("<mover accent=\"true\">#1<mo>#2</mo></mover>", base, s.dots == 1 ? "˙" : "¨");
   const std::string index = "<mtext>" + html_escaped(s.index) + "</mtext>";
-  if (s.inverse) return filled("<msubsup>#1#2<mrow><mo>−</mo><mn>1</mn></mrow></msubsup>", base, index);
-  return s.index.empty() ? base : filled("<msub>#1#2</msub>", base, index);
+  if (s.inverse) base = filled("<msubsup>#1#2<mrow><mo>−</mo><mn>1</mn></mrow></msubsup>", base, index);
+  else if (!s.index.empty()) base = filled("<msub>#1#2</msub>", base, index);
+  // For scripts: the name as the spec has it.
+  return base.insert(base.find_first_of(" >"), " data-name=\"" + html_escaped(leaf.name) + "\"");
 }
 
 #define FENCE(sign) "<mo stretchy=\"true\" fence=\"true\">" sign "</mo>"

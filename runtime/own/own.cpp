@@ -8,8 +8,7 @@
 #include <map>
 
 #include <cdot/detail/joint_table.hpp>
-#include <cdot/planar.hpp>
-#include <cdot/spatial.hpp>
+#include <cdot/spaces.hpp>
 
 #include "runtime/own/check_own.hpp"
 #include "runtime/own/own_rows.hpp"
@@ -57,10 +56,9 @@ JointEntry<S> entry_of(std::shared_ptr<const OwnKernel> kernel) {
   return entry;
 }
 
-template <template <class> class Space>
-void add_entries(const std::shared_ptr<const OwnKernel>& kernel) {
-  joint_entries<Space<double>>().push_back(entry_of<Space<double>>(kernel));
-  joint_entries<Space<float>>().push_back(entry_of<Space<float>>(kernel));
+template <class S>
+void add_entry(const std::shared_ptr<const OwnKernel>& kernel, Dimension dimension) {
+  if (S::dimension == dimension) joint_entries<S>().push_back(entry_of<S>(kernel));
 }
 
 // Why these tapes cannot stand for a compiled kernel; empty if they can.
@@ -110,8 +108,9 @@ OwnType add_own_type(const std::string& file) {
   static std::vector<std::unique_ptr<Registered>> all;
   all.push_back(std::make_unique<Registered>(Registered{free_name(dimension, kernel->name), kernel}));
   add_joint_type(dimension, described(*all.back()));
-  if (dimension == Dimension::planar) add_entries<Planar>(kernel);
-  else add_entries<Spatial>(kernel);
+#define CDOT_ADD_ENTRY(S) add_entry<S>(kernel, dimension);
+  CDOT_FOR_EACH_SPACE(CDOT_ADD_ENTRY)
+#undef CDOT_ADD_ENTRY
   last = {content, {all.back()->name, problems}};
   return last.type;
 }

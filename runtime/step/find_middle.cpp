@@ -225,7 +225,7 @@ bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     find_misses_of_bounded(world, island, h, true);
     island.residual = find_errors(world, island, time);
     find_errors_of_rates(island, h);
-    if (!std::isfinite(island.residual)) return false;
+    if (!std::isfinite(double(island.residual))) return false;
     find_misses_of_bounded(world, island, h, false);
     const T change = improve(world, island, h, renew), miss = std::max(change / settled<T>, island.residual / goal);
     if (!(change < furthest<T>)) return false;

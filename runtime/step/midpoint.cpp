@@ -313,7 +313,7 @@ void step_midpoint(WorldData<S>& world, Island<S>& island, typename S::Scalar h)
   using T = typename S::Scalar;
   begin_kick_drift(world, island, h);
   const T apart = std::max(foreign<T> * std::max<T>(island.size, island.scale), round_off_of(world, island));
-  if (std::isfinite(island.residual) && island.residual > apart) return step_rattle(world, island, h);
+  if (std::isfinite(double(island.residual)) && island.residual > apart) return step_rattle(world, island, h);
   const double start = world.time, before = world.last_step;
   // Whole numbers: a sum of parts may miss h by round-off, and one part too many would follow.
   int done = 0, parts = 1;

@@ -1,0 +1,65 @@
+// `cdot-play`: the command `play` of `cdot`, in a program of its own: a scene -> a page where it moves.
+#include <exception>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+
+#include "derive/play/page.hpp"
+#include "runtime/command_line/command_line.hpp"
+#include "runtime/command_line/installation.hpp"
+
+namespace cdot::play {
+namespace {
+
+namespace fs = std::filesystem;
+using command_line::Line;
+using command_line::Run;
+
+struct Options {
+  std::string start, output = "playground.html", specs = "specs", engine;
+};
+
+// Where the build, or an installation, keeps the engine.
+fs::path engine_of(const Options& options) {
+  if (!options.engine.empty()) return options.engine;
+  if (const fs::path installed = command_line::installed("playground"); !installed.empty()) return installed;
+  return command_line::own_folder().parent_path() / "playground";
+}
+
+int run(const Options& options) {
+  const std::string page = playground_page(options.start, options.specs, engine_of(options));
+  std::ofstream(options.output, std::ios::binary) << page;
+  if (!fs::exists(options.output) || fs::file_size(options.output) != page.size())
+    throw std::runtime_error(fmt::format("{} cannot be written", options.output));
+  fmt::print("file://{}\n", fs::absolute(options.output).lexically_normal().string());
+  return 0;
+}
+
+void add_options(Line& line, Options& options) {
+  line.add("START", &options.start, "A scene (a TOML file) or a spec (a .joint file) to begin with")
+      .shown_as("SCENE|SPEC");
+  line.add("-o,--output", &options.output, "The page: one file that needs no server").shown_as("FILE").shows_default();
+  line.add("--engine", &options.engine, "Folder of engine.js and engine.wasm, which the target `playground` builds")
+      .shown_as("DIR");
+  line.add("--specs", &options.specs, "Folder of specs").shown_as("DIR").shows_default();
+}
+
+Run play_command(Line& line) { return command_line::with_options<Options>(line, add_options, run); }
+
+constexpr command_line::Command commands[] = {
+    {"play", "Write a page where equation, derivation and moving mechanism are live", play_command}};
+constexpr command_line::Program program = {
+    "cdot", "Equation, derivation and moving mechanism on one page, which computes in the browser",
+    "Exit status: 0 all well; 2 bad usage or input, or the engine is not built."};
+
+}  // namespace
+}  // namespace cdot::play
+
+int main(int argc, char** argv) {
+  try {
+    return run(cdot::play::program, cdot::play::commands, argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "cdot play: {}\n", error.what());
+  }
+  return cdot::command_line::wrong_usage;
+}

@@ -1,0 +1,133 @@
+#include "derive/play/page.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "derive/play/assets.hpp"
+
+namespace cdot::play {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+std::string content_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error(fmt::format("{} cannot be read", file.string()));
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<fs::path> files_in(const fs::path& folder, std::initializer_list<const char*> endings) {
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, none))
+    if (std::find(endings.begin(), endings.end(), entry.path().extension()) != endings.end())
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// By the paths that the engine reads them under.
+json all_specs(const fs::path& specs) {
+  json files = json::object();
+  for (const char* space : {"planar", "spatial", "coordinate"})
+    for (const fs::path& file : files_in(specs / space, {".joint", ".effect"}))
+      files[fmt::format("specs/{}/{}", space, file.filename().string())] = content_of(file);
+  if (files.empty())
+    throw std::runtime_error(
+        fmt::format("no specs in {}. Fix: run from the folder that holds specs/, or say --specs DIR", specs.string()));
+  return files;
+}
+
+// title = "A small machine"
+std::string title_of(const std::string& scene, const std::string& otherwise) {
+  const std::size_t key = scene.find("title"), open = scene.find('"', key), close = scene.find('"', open + 1);
+  return key == scene.npos || close == scene.npos ? otherwise : scene.substr(open + 1, close - open - 1);
+}
+
+json example(const fs::path& scene) {
+  const std::string text = content_of(scene);
+  return {{"title", title_of(text, scene.stem().string())}, {"scene", text}, {"specs", json::object()}};
+}
+
+// A scene with the specs beside it.
+json start_at(const fs::path& file) {
+  json first = example(file);
+  const std::string scene = first["scene"];
+  const bool in_space = scene.find("dimension = 3") != scene.npos || scene.find("dimension=3") != scene.npos;
+  for (const fs::path& spec : files_in(file.parent_path().empty() ? "." : file.parent_path(), {".joint", ".effect"}))
+    first["specs"][fmt::format("specs/{}/{}", in_space ? "spatial" : "planar", spec.filename().string())] =
+        content_of(spec);
+  return first;
+}
+
+constexpr std::size_t longest_scene = 40000;  // bytes of an example
+
+json gallery(const std::string& start, const fs::path& specs) {
+  json all = json::array();
+  if (!start.empty()) all.push_back(start_at(start));
+  for (const char* folder : {"scenes", "scenes/spatial"})
+    for (const fs::path& scene : files_in(specs / folder, {".toml"}))
+      if (fs::file_size(scene) < longest_scene) all.push_back(example(scene));
+  return all;
+}
+
+std::string in_base64(const std::string& bytes) {
+  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](std::size_t k) {
+      return i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u;
+    };
+    const unsigned bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+    for (unsigned k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : digits[bits >> (18 - 6 * k) & 63];
+  }
+  return text;
+}
+
+// "</script>" would end the element.
+std::string in_a_script(std::string text) {
+  for (std::size_t at = 0; (at = text.find("</", at)) != text.npos;) text.replace(at, 2, "<\\/");
+  return text;
+}
+
+std::string filled(std::string_view page, const std::vector<std::pair<std::string, std::string>>& values) {
+  std::string result;
+  while (!page.empty()) {
+    const std::size_t open = std::min(page.find("{{"), page.size());
+    result += page.substr(0, open);
+    page.remove_prefix(open);
+    if (page.empty()) break;
+    const std::size_t close = page.find("}}");
+    for (const auto& [key, value] : values)
+      if (key == page.substr(2, close - 2)) result += value;
+    page.remove_prefix(close + 2);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string playground_page(const std::string& start, const fs::path& specs, const fs::path& engine) {
+  for (const char* part : {"engine.js", "engine.wasm"})
+    if (!fs::exists(engine / part))
+      throw std::runtime_error(
+          fmt::format("there is no {}. Fix: install emscripten and build the target playground: "
+                      "cmake --build build/dev --target playground",
+                      (engine / part).string()));
+  std::string script;
+  for (int k = 0; k < script_count; ++k) script += scripts[k];
+  const json data = {{"files", all_specs(specs)}, {"gallery", gallery(start, specs)}};
+  return filled(page_html, {{"style", std::string(page_css)},
+                            {"glue", in_a_script(content_of(engine / "engine.js"))},
+                            {"worker", std::string(worker_js)},
+                            {"wasm", in_base64(content_of(engine / "engine.wasm"))},
+                            {"data", in_a_script(data.dump())},
+                            {"script", script}});
+}
+
+}  // namespace cdot::play

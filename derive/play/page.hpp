@@ -1,0 +1,13 @@
+// The playground as one HTML file: the page's parts, the engine, all specs, and scenes to begin with.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace cdot::play {
+
+// `start` is the path of a scene or a spec, or empty. Throws std::runtime_error with the cause and the fix.
+std::string playground_page(const std::string& start, const std::filesystem::path& specs,
+                            const std::filesystem::path& engine);
+
+}  // namespace cdot::play

@@ -1,0 +1,60 @@
+// Engines in Workers. A request that takes too long, or that crashes, ends its Worker: the next one begins anew.
+const by = id => document.getElementById(id);
+const data = JSON.parse(by('data').textContent);
+
+const engineModule = (async () => {
+  const text = atob(by('wasm').textContent.trim());
+  const bytes = new Uint8Array(text.length);
+  for (let k = 0; k < bytes.length; ++k) bytes[k] = text.charCodeAt(k);
+  return WebAssembly.compile(bytes);
+})();
+const engineSource = URL.createObjectURL(
+    new Blob([by('glue').textContent, '\n', by('worker').textContent], {type: 'text/javascript'}));
+
+class Engine {
+  #worker = null;
+  #waiting = new Map();
+  #number = 0;
+  #ready = null;
+
+  // Resolves to the answer; its `problems` is text for people.
+  async ask(request, seconds = 10) {
+    this.#ready ??= this.#begin();
+    await this.#ready;
+    return this.#send({text: JSON.stringify(request)}, seconds);
+  }
+
+  // Forgets all that the Worker knew.
+  restart() {
+    this.#worker?.terminate();
+    for (const {done} of this.#waiting.values()) done({problems: 'replaced by a newer request', replaced: true});
+    this.#waiting.clear();
+    this.#worker = this.#ready = null;
+  }
+
+  async #begin() {
+    const worker = this.#worker = new Worker(engineSource);
+    worker.onmessage = ({data: {id, answer, crash}}) => {
+      const waiting = this.#waiting.get(id);
+      if (!waiting) return;
+      this.#waiting.delete(id);
+      clearTimeout(waiting.timer);
+      if (crash) this.restart();
+      waiting.done(crash ? {problems: `The computation broke down: ${crash}. It began anew.`} : JSON.parse(answer));
+    };
+    return this.#send({module: await engineModule, files: data.files}, 30);
+  }
+
+  #send(message, seconds) {
+    return new Promise(done => {
+      const id = ++this.#number;
+      const timer = setTimeout(() => {
+        this.#waiting.delete(id);
+        this.restart();
+        done({problems: `This took more than ${seconds} s and was stopped. Likely fix: a smaller equation or mechanism.`});
+      }, 1000 * seconds);
+      this.#waiting.set(id, {done, timer});
+      this.#worker.postMessage({id, ...message});
+    });
+  }
+}

@@ -1,0 +1,160 @@
+// The playground's engine, asked as the page asks it. The numbers expected are worked out by hand.
+#include "derive/play/engine.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <unistd.h>
+
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+// A folder like the page's: the specs of the catalogue that these scenes need.
+class Play : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("cdot_play_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+    before_ = fs::current_path();
+    fs::current_path(folder_);
+    json files;
+    for (const char* name : {"specs/planar/line.joint", "specs/planar/revolute.joint"}) {
+      std::ifstream in(fs::path(CDOT_SOURCE_DIR) / name);
+      files[name] = std::string(std::istreambuf_iterator<char>(in), {});
+    }
+    ask({{"do", "write"}, {"files", files}});
+  }
+  void TearDown() override {
+    fs::current_path(before_);
+    fs::remove_all(folder_);
+  }
+
+  json ask(const json& request) { return json::parse(engine_.ask(request.dump())); }
+  json load(const std::string& scene, json wishes = json::object()) {
+    ask({{"do", "write"}, {"files", {{"specs/planar/scene.toml", scene}}}});
+    wishes["do"] = "load", wishes["path"] = "specs/planar/scene.toml";
+    return ask(wishes);
+  }
+  json run(double seconds) {
+    json state;
+    for (int k = 0; k < std::lround(seconds * 60); ++k) state = ask({{"do", "step"}, {"time", 1.0 / 60}});
+    return state;
+  }
+
+ private:
+  fs::path folder_, before_;
+  cdot::play::Engine engine_;
+};
+
+const std::string free_body = R"(
+gravity = [0, -10]
+[[body]]
+name  = "stone"
+mass  = 2
+shape = { disc = 0.5 }
+)";
+
+// x = -g t^2 / 2, by a method of second order: exact.
+TEST_F(Play, AFreeBodyFalls) {
+  const json scene = load(free_body, {{"method", "rattle"}, {"rate", 240}});
+  ASSERT_FALSE(scene.contains("problems")) << scene;
+  EXPECT_EQ(scene["bodies"][0]["shape"]["kind"], "disc");
+  const json state = run(2);
+  EXPECT_NEAR(state["time"].get<double>(), 2, 1e-9);
+  EXPECT_NEAR(state["bodies"][1].get<double>(), -20, 1e-9);
+}
+
+// Without gravity the change leaves the velocity: 1 s at 10 m/s after the first second's fall of 5 m.
+TEST_F(Play, GravityChangesOnTheWay) {
+  load(free_body, {{"method", "rattle"}});
+  run(1);
+  ask({{"do", "change"}, {"method", "rattle"}, {"gravity", {0, 0, 0}}});
+  const json state = run(1);
+  EXPECT_NEAR(state["time"].get<double>(), 2, 1e-9);
+  EXPECT_NEAR(state["bodies"][1].get<double>(), -15, 1e-9);
+}
+
+// The pointer's spring brings the grabbed centre to the pointer; gravity stretches it by m g / k, k = m (6 rad/s)^2.
+TEST_F(Play, ThePointerPulls) {
+  load(free_body);
+  ask({{"do", "drag"}, {"body", 0}, {"local", {0, 0, 0}}, {"target", {0, 0, 0}}});
+  ask({{"do", "drag"}, {"body", 0}, {"local", {0, 0, 0}}, {"target", {3, 4, 0}}});
+  const json held = run(20);
+  EXPECT_NEAR(held["bodies"][0].get<double>(), 3, 1e-3);
+  EXPECT_NEAR(held["bodies"][1].get<double>(), 4 - 10.0 / 36, 1e-3);
+  ask({{"do", "drop"}});
+  EXPECT_LT(run(1)["bodies"][1].get<double>(), held["bodies"][1].get<double>() - 4);
+}
+
+const std::string own_joint = R"(joint ring planar
+  point pa on a
+  point pb on b
+  scalar r [m] = norm(pa - pb)
+  norm(pa - pb) = r
+)";
+const std::string bead = R"(
+gravity = [0, -10]
+[[body]]
+name     = "bead"
+mass     = 1
+shape    = { disc = 0.1 }
+position = [2, 0]
+[[joint]]
+type   = "ring"
+bodies = ["bead", "world"]
+pa     = [0, 0]
+pb     = [0, 0]
+)";
+
+// A joint that was typed a moment ago: the bead stays on its circle, and falls through it with v^2 = 2 g r.
+TEST_F(Play, ATypedJointMoves) {
+  ask({{"do", "write"}, {"files", {{"specs/planar/ring.joint", own_joint}}}});
+  const json scene = load(bead, {{"rate", 1000}, {"method", "rattle"}});
+  ASSERT_FALSE(scene.contains("problems")) << scene;
+  EXPECT_EQ(scene["joints"][0]["type"], "ring");
+  const double start = scene["state"]["energy"];
+  const json state = run(1.5);
+  EXPECT_NEAR(std::hypot(state["bodies"][0].get<double>(), state["bodies"][1].get<double>()), 2, 1e-9);
+  EXPECT_LT(state["bodies"][1].get<double>(), 0.01);
+  EXPECT_NEAR(state["energy"].get<double>(), start, 1e-3);
+  EXPECT_LT(state["error"].get<double>(), 1e-9);
+  const json marks = ask({{"do", "marks"}, {"joint", 0}});
+  ASSERT_FALSE(marks.contains("problems")) << marks;
+  EXPECT_EQ(marks["points"][0]["name"], "pa");
+  EXPECT_NEAR(marks["points"][0]["at"][0].get<double>(), state["bodies"][0].get<double>(), 1e-12);
+}
+
+TEST_F(Play, MistakesHavePlaces) {
+  ask({{"do", "write"},
+       {"files", {{"specs/planar/bad.joint", "joint bad planar\n  point pa on a\n  dot(pa, q) = 0\n"}}}});
+  const json checked = ask({{"do", "check"}, {"path", "specs/planar/bad.joint"}});
+  ASSERT_EQ(checked["messages"].size(), 1u) << checked;
+  EXPECT_EQ(checked["messages"][0]["line"], 3);
+  EXPECT_EQ(checked["messages"][0]["column"], 11);
+  EXPECT_EQ(checked["messages"][0]["end"], 12);
+  const std::string problems = load("[[body]]\nname = \"a\"\nmass = -1\n")["problems"];
+  EXPECT_NE(problems.find(":3:8: error"), problems.npos) << problems;
+}
+
+TEST_F(Play, NamesOfTheDerivationAreMarked) {
+  const json lecture = ask({{"do", "explain"}, {"path", "specs/planar/line.joint"}});
+  ASSERT_FALSE(lecture.contains("problems")) << lecture;
+  const std::string html = lecture["html"];
+  for (const char* name : {"data-name=\"ra\"", "data-name=\"u\"", "data-name=\"t\""})
+    EXPECT_NE(html.find(name), html.npos) << name;
+  EXPECT_EQ(html.find("<html"), html.npos);
+}
+
+TEST_F(Play, NothingIsWrittenElsewhere) {
+  for (const char* path : {"../elsewhere", "/tmp/cdot_elsewhere", "specs/../../elsewhere"})
+    EXPECT_TRUE(ask({{"do", "write"}, {"files", {{path, "x"}}}}).contains("problems")) << path;
+  EXPECT_FALSE(fs::exists("/tmp/cdot_elsewhere"));
+  EXPECT_TRUE(ask({{"do", "step"}, {"time", 1}}).contains("problems"));
+  EXPECT_TRUE(ask({{"do", "nothing"}}).contains("problems"));
+}
+
+}  // namespace
