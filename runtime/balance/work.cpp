@@ -133,7 +133,7 @@ void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& 
 }
 
 // The parts of a spring in the impulses of its rows.
-enum class Springs : char { whole, dampers, without_dampers };
+enum class Springs : char { none, whole, dampers, without_dampers };
 
 // All rows that may do work, given J v of mean velocities by batch.ops->velocity(..., mean). `acted` finds J v at which
 // whole springs acted, into Batch::impulse.
@@ -144,6 +144,7 @@ void work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S
     Batch<S>& batch = *segment.batch;
     const int begin = segment.begin, end = segment.end, rows = batch.ops->rows;
     if (!batch.law && !batch.explicit_time()) continue;
+    if (springs == Springs::none && batch.law && (batch.law->spring || batch.law->force)) continue;
     batch.ops->velocity(batch, begin, end, mean, batch.rate.data());
     const auto of_row = [&](int i) { return lambda(batch, i); };
     if (!batch.law) {
@@ -225,7 +226,8 @@ constexpr Kick kick_of(Impulses impulses) {
 }
 
 constexpr Springs springs_of(Impulses impulses) {
-  if (impulses == Impulses::euler || impulses == Impulses::soft || impulses == Impulses::drift) return Springs::whole;
+  if (impulses == Impulses::drift) return Springs::none;
+  if (impulses == Impulses::euler || impulses == Impulses::soft) return Springs::whole;
   const bool in_kick =
       impulses == Impulses::rattle_start || impulses == Impulses::rattle_end || impulses == Impulses::middle;
   return in_kick ? Springs::without_dampers : Springs::dampers;

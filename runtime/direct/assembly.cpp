@@ -79,9 +79,10 @@ void System<S>::build(const std::vector<Segment<S>>& segments, const Bodies<S>& 
   for (auto& vector : shared_) vector.assign(n, 0.0);
   lower.assign(n, -std::numeric_limits<Real>::infinity());
   upper.assign(n, std::numeric_limits<Real>::infinity());
-  for (auto* flags : {&fixed, &broken, &out_}) flags->assign(n, 0);
+  for (auto* flags : {&fixed, &broken, &out_, &passing_}) flags->assign(n, 0);
   active_set_.assign(n, free);
   order_rows(bodies);
+  each_row([&](int row, const Batch<S>& batch, int) { passing_[row] = batch.law != nullptr; });
   list_products(bodies);
   slacken();
   built_ = true;

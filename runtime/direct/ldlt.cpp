@@ -9,6 +9,8 @@
 namespace cdot {
 namespace {
 
+// The part of a passing row in a redundant one that is not round-off.
+constexpr double slight_part = 1e-10;
 // The number of doubtful rows that one factor() checks. Each row that turns out independent costs another elimination.
 // In a large grid thousands are doubtful. If an elimination takes more than `affordable` multiplications, these rows
 // stay dropped and refinement reduces their error (direct/regularise.cpp).
@@ -70,6 +72,13 @@ void BasicLdlt<Real>::forget() {
 template <class Real>
 void BasicLdlt<Real>::doubt_lasting() {
   for (unsigned char& times : dependent_) times = std::min<unsigned char>(times, dense::lasting_count - 1);
+}
+
+template <class Real>
+bool BasicLdlt<Real>::doubt(int unknown) {
+  if (dependent_[unknown] < dense::lasting_count) return false;
+  dependent_[unknown] = dense::lasting_count - 1;
+  return true;
 }
 
 template <class Real>
@@ -179,17 +188,39 @@ void BasicLdlt<Real>::begin_noise() {
     noise_[k] = dense::pivot_noise<Real> * values_[diagonal_[k]] - overstated_[k];
 }
 
-// K_ii + sum y_a^2 K_aa of the last elimination: (-y, 1) is L^-T e_i.
+// The shares (-y, 1) = L^-T e_i of the last elimination, into given_.
+template <class Real>
+void BasicLdlt<Real>::find_shares(int unknown) {
+  std::fill(given_.begin(), given_.end(), Real(0));
+  given_[unknown] = Real(1);
+  const dense::Numbers<Real> all = numbers(nullptr);
+  for (int k = column_of_[unknown]; k >= 0; --k) columns_[k].backward(columns_[k], all, given_.data());
+}
+
+// K_ii + sum y_a^2 K_aa
 template <class Real>
 Real BasicLdlt<Real>::round_off_scale(int unknown) {
-  std::vector<Real>& y = given_;
-  std::fill(y.begin(), y.end(), Real(0));
-  y[unknown] = Real(1);
-  const dense::Numbers<Real> all = numbers(nullptr);
-  for (int k = column_of_[unknown]; k >= 0; --k) columns_[k].backward(columns_[k], all, y.data());
+  find_shares(unknown);
   Real sum = 0;
-  for (int a = 0; a <= unknown; ++a) sum += y[a] * y[a] * diagonal(a);
+  for (int a = 0; a <= unknown; ++a) sum += given_[a] * given_[a] * diagonal(a);
   return sum;
+}
+
+// Takes back the count of redundant rows that follow from passing ones: without these they may be independent.
+template <class Real>
+void BasicLdlt<Real>::keep_doubts(int counts, const char* passing) {
+  const auto follows = [&](int i) {
+    find_shares(i);
+    for (int a = 0; a < i; ++a)
+      if (passing[a] && given_[a] * given_[a] * diagonal(a) > slight_part * diagonal(i)) return true;
+    return false;
+  };
+  int looks = 0;
+  for (int k = 0; k < size() && looks < most_looks; ++k) {
+    if (!dependent(k) || dependent_[k] >= dense::lasting_count + counts) continue;
+    ++looks;
+    if (follows(k)) dependent_[k] = static_cast<unsigned char>(std::max(dependent_[k] - counts, 0));
+  }
 }
 
 // Finds the first row that was dropped because of its noise although its pivot exceeds the true round-off. Corrects the
@@ -208,7 +239,7 @@ bool BasicLdlt<Real>::clears_a_doubt(const Real* added) {
 }
 
 template <class Real>
-int BasicLdlt<Real>::factor(const Real* added, const char* out) {
+int BasicLdlt<Real>::factor(const Real* added, const char* out, const char* passing) {
   std::fill(overstated_.begin(), overstated_.end(), Real(0));
   begin_noise();
   const dense::Numbers<Real> all = numbers(added);
@@ -220,6 +251,7 @@ int BasicLdlt<Real>::factor(const Real* added, const char* out) {
     begin_noise();
     dependent_rows = eliminate_columns(all, out);
   }
+  if (passing && dependent_rows > 0) keep_doubts(all.counts, passing);
   factored_ = true;
   return dependent_rows;
 }

@@ -104,14 +104,17 @@ class BasicLdlt {
   Real diagonal(int unknown) const { return values_[diagonal_[unknown]]; }
 
   // Factors values() plus `added` on the diagonal, without the unknowns marked in `out` (their rows become those of the
-  // identity); null: none. Returns the number of redundant rows.
-  int factor(const Real* added, const char* out);
+  // identity); null: none. `passing` marks rows that may leave, as those of a rope: no row that follows from them is
+  // redundant by design. Returns the number of redundant rows.
+  int factor(const Real* added, const char* out, const char* passing = nullptr);
   // The same if `added` makes K positive definite: drops no row and counts no row as redundant.
   void factor_definite(const Real* added, const char* out);
   // Treats the next factor() as the first.
   void forget();
   // After the removal of rows: rows that are redundant by design may have depended on the removed rows only.
   void doubt_lasting();
+  // The same for one row. False if it did not count as redundant by design.
+  bool doubt(int unknown);
   // Treats the row as redundant by design from the next factor() on.
   void presume_redundant(int unknown) { dependent_[unknown] = dense::lasting_count; }
   // The row with the largest part of b^T K^-1 b = sum (L^-1 b)_i^2 / D_i in the last factor(); -1: none.
@@ -147,7 +150,9 @@ class BasicLdlt {
   dense::Numbers<Real> numbers(const Real* added);
   int eliminate_columns(const dense::Numbers<Real>& all, const char* out);
   void begin_noise();
+  void find_shares(int unknown);
   Real round_off_scale(int unknown);
+  void keep_doubts(int counts, const char* passing);
   bool clears_a_doubt(const Real* added);
   void lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order);
   void list_updates(Column& column);

@@ -19,7 +19,17 @@ bool System<S>::drop_dominant_row() {
   return true;
 }
 
-#define CDOT_INSTANTIATE(S) template bool System<S>::drop_dominant_row();
+template <class S>
+bool System<S>::doubt_missed_rows() {
+  bool any = false;
+  for (int r = 0; r < rows_; ++r)
+    if (unmet(r) != 0 && ldlt_.dependent(r)) any |= ldlt_.doubt(r);
+  return any;
+}
+
+#define CDOT_INSTANTIATE(S)                     \
+  template bool System<S>::drop_dominant_row(); \
+  template bool System<S>::doubt_missed_rows();
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -23,7 +23,7 @@ int System<S>::factor() {
   for (int r = 0; r < rows_; ++r) any |= out_[r] = fixed[r] | broken[r];
   any_out_ = any != 0;
   softened_ = Softened::no;
-  dependent_ = ldlt_.factor(softness.data(), any_out_ ? out_.data() : nullptr);
+  dependent_ = ldlt_.factor(softness.data(), any_out_ ? out_.data() : nullptr, lawful_ ? passing_.data() : nullptr);
   if (taut_ && dependent_ > 0)
     each_tension_row([&](const Block&, int, int row) { dependent_ -= ldlt_.dependent(row); });
   return dependent_;

@@ -37,6 +37,9 @@ class System {
   }
   // Call after rows broke: rows that are redundant by design may have depended on the broken rows only.
   void doubt_redundant_rows() { ldlt_.doubt_lasting(); }
+  // Call where rows contradict each other that did not: those that are redundant by design and missed in the last
+  // solve() may have been redundant in one pose only, as at a dead centre. False if there are none.
+  bool doubt_missed_rows();
 
   // True if there are rows with softness or bounds.
   bool lawful() const { return lawful_; }
@@ -199,8 +202,8 @@ class System {
   std::array<std::vector<Real>, 4> shared_;  // by row, scratch of least_squares.cpp and regularise.cpp
   std::vector<Real> unmet_;                  // by row
   std::vector<int> tension_of_;              // index into `blocks`
-  std::vector<char> out_;
-  StateArray<char> active_set_;  // State: Hold by row, of the last solve_bounded()
+  std::vector<char> out_, passing_;          // passing_: rows under a law, which may leave
+  StateArray<char> active_set_;              // State: Hold by row, of the last solve_bounded()
 };
 
 }  // namespace cdot

@@ -204,13 +204,13 @@ void drop_rows_that_move_far(WorldData<S>& world, Island<S>& island, System<S>& 
 
 // `fresh`: J and K are not yet those of the step. A round that leaves more than `enough` of the error renews them. If
 // new ones do not halve the error, the rounds end: the joints contradict each other, C is at round-off, or the step was
-// too long.
+// too long. Joints that fitted at the start first get back rows that were redundant there.
 template <class S>
 void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
   using T = typename S::Scalar;
   System<S>& system = island.at_work();
   T before = std::numeric_limits<T>::infinity();
-  bool renewed = false;
+  bool renewed = false, fitted = island.residual <= converged<T> * island.scale;
   // Near a loss of rank the error is magnified, so nothing but round-off may stay.
   const T tolerance = island.flow.projects_stages ? std::numeric_limits<T>::epsilon() : converged<T>;
   // Known forces do not act in a projection.
@@ -226,7 +226,10 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
     // Adds rows that passed their bound since the selection. Selected rows stay.
     const bool more = round > 0 && other_rows && system.choose_more(has_error<S>);
     const bool slow = !more && worst > T(island.acceleration_level ? enough_at_acceleration_level : enough) * before;
-    if (slow && renewed && worst > T(0.5) * before) return;
+    if (slow && renewed && worst > T(0.5) * before) {
+      if (!fitted || !system.doubt_missed_rows()) return;
+      fitted = false;
+    }
     if (slow || (fresh && round == 0)) {
       evaluate_anew(world, island, time);
       system.assemble(world.bodies);

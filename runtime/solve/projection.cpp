@@ -143,13 +143,25 @@ void add_corrections(WorldData<S>& world, Island<S>& island, typename S::Scalar 
 }
 
 template <class S>
+bool may_contradict(const Island<S>& island, typename S::Scalar at_start) {
+  const auto prescribes = [](const Segment<S>& segment) {
+    const Batch<S>& batch = *segment.batch;
+    return batch.law || batch.explicit_time() ||
+           std::find(batch.kinds.begin(), batch.kinds.end(), RowKind::velocity) != batch.kinds.end();
+  };
+  return !(at_start <= foreign<typename S::Scalar> * island.scale) ||
+         std::any_of(island.segments.begin(), island.segments.end(), prescribes);
+}
+
+template <class S>
 bool left_the_joints(const WorldData<S>& world, const Island<S>& island, typename S::Scalar at_start) {
   using T = typename S::Scalar;
   const bool meant_to_close = world.settings.drift == Drift::projection && island.solver->exact;
   if (!meant_to_close || island.segments.empty() || island.residual <= T(2) * at_start) return false;
   const T length = std::max(island.size, island.scale);
   // A Newton that diverges leaves a large share as well.
-  const T shared = island.misfit <= most_shared * double(length) ? T(island.misfit) : T(0);
+  const bool shares = island.misfit <= most_shared * double(length) && may_contradict(island, at_start);
+  const T shared = shares ? T(island.misfit) : T(0);
   return !(island.residual <= T(2) * std::max({foreign<T> * length, round_off_of(world, island), shared}));
 }
 
@@ -235,6 +247,7 @@ void project_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
   template void add_corrections(WorldData<S>&, Island<S>&, S::Scalar);              \
   template void restore_drift(WorldData<S>&, const Island<S>&, const Segment<S>&);  \
   template void evaluate_anew(WorldData<S>&, Island<S>&, S::Scalar);                \
+  template bool may_contradict(const Island<S>&, S::Scalar);                        \
   template bool left_the_joints(const WorldData<S>&, const Island<S>&, S::Scalar);  \
   template void fail_if_open(const WorldData<S>&, Island<S>&, S::Scalar);           \
   template void fail_if_moved_far(const WorldData<S>&, Island<S>&, double, double); \

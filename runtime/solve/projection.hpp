@@ -48,6 +48,11 @@ void evaluate_anew(WorldData<S>& world, Island<S>& island, typename S::Scalar ti
 template <class S>
 void restore_drift(WorldData<S>& world, const Island<S>& island, const Segment<S>& segment);
 
+// True if joints whose error was `at_start` at the start of the step may contradict each other at its end: they did
+// then, or time, a law or rolling prescribes a motion. Others that fitted still fit somewhere near.
+template <class S>
+bool may_contradict(const Island<S>& island, typename S::Scalar at_start);
+
 // True if the direct solver failed to project the poses onto C = 0 although the start of the step satisfied C = 0 up to
 // `at_start`, and the remaining error is not the one that contradicting joints share. The step was too long for Newton,
 // or its end is out of the joints' reach. Sweeps always leave an error and never count as failed.

@@ -210,6 +210,7 @@ typename S::Scalar shared_error(const Island<S>& island, typename S::Scalar at_s
 
 }  // namespace
 
+// Joints that fitted at the start get back rows that were redundant there before they share an error.
 template <class S>
 bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
@@ -217,7 +218,7 @@ bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   const T goal = std::max(closed<T> * island.scale, T(0.01) * round_off_of(world, island));
   const T at_start = island.residual;
   T before = std::numeric_limits<T>::infinity();
-  bool renew = true;
+  bool renew = true, fitted = at_start <= converged<T> * island.scale;
   for (int round = 0; round < most_newton_rounds; ++round) {
     look_at_middle(world, island, h);
     if (renew) stiffen_masses(world, island, h / 4);
@@ -229,8 +230,12 @@ bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     find_misses_of_bounded(world, island, h, false);
     const T change = improve(world, island, h, renew), miss = std::max(change / settled<T>, island.residual / goal);
     if (!(change < furthest<T>)) return false;
-    const bool shared = change <= settled<T> && island.residual <= shared_error(island, at_start);
-    if (miss <= T(1) || shared || (miss <= nearly<T> && miss > T(0.5) * before)) {
+    const bool stays = change <= settled<T> && island.residual <= shared_error(island, at_start);
+    if (stays && miss > T(1) && fitted && island.at_work().doubt_missed_rows()) {
+      fitted = false, renew = true;
+      continue;
+    }
+    if (miss <= T(1) || (stays && may_contradict(island, at_start)) || (miss <= nearly<T> && miss > T(0.5) * before)) {
       drift_with_rates(world, island, h);
       return true;
     }

@@ -148,10 +148,10 @@ void book_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   swap_poses();
 }
 
-// Books the dampers as if they acted last: from the velocities without their impulse. That is the mirror image of the
-// start, where they act first.
+// Books the second half, the dampers as if they acted last: the mirror image of the start, where they act first. So the
+// other impulses act from and to velocities without theirs.
 template <class S>
-void book_dampers_at_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+void book_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   if (!island.works) return;
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.displacement[i] = all.velocity[i];
@@ -160,6 +160,12 @@ void book_dampers_at_end(WorldData<S>& world, Island<S>& island, typename S::Sca
     for (int i = begin * batch->ops->rows; i < end * batch->ops->rows; ++i) batch->rate[i] = -batch->lambda[i];
     batch->ops->apply(*batch, begin, end, all, batch->rate.data(), all.displacement.data());
   }
+  const auto swap_velocities = [&] {
+    for (int i : island.bodies) std::swap(all.velocity[i], all.displacement[i]);
+  };
+  swap_velocities();
+  book_kick(world, island, Impulses::rattle_end, h);
+  swap_velocities();
   begin_kick(world, island, all.displacement.data());
   book_kick(world, island, Impulses::dampers, h);
 }
@@ -204,8 +210,7 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   begin_kick(world, island);
   kick(world, island, h / 2);
   solve_end(world, island, h);
-  book_kick(world, island, Impulses::rattle_end, h / 2);
-  book_dampers_at_end(world, island, h / 2);
+  book_end(world, island, h / 2);
   island.evaluated = true;
 }
 

@@ -221,9 +221,10 @@ void fall_back(WorldData<S>& world, Island<S>& island, typename S::Scalar time, 
   drop_modes(island);
   island.acceleration_level = island.evaluated = island.factored = false;
   // Rows that were off or held may miss their ends by the resolution of events, which may be far in a short step.
-  island.residual = std::numeric_limits<T>::infinity();
+  if (island.flow.guarded > 0) island.residual = std::numeric_limits<T>::infinity();
   island.flow.forget();
   island.flow.slivers = 0;
+  island.flow.projects_stages = false;
   if (island.rescue.built()) island.rescue.follow(island.system);
   island.stiffened = true;
   if (!astray && island.solver->exact && world.settings.drift == Drift::projection)

@@ -132,9 +132,12 @@ Verdict judge_in(const Scene& scene) {
 Mechanism nearly_misfitting(std::uint64_t seed, Wish wish) {
   wish.solver = Solver::direct, wish.drift = Drift::projection;
   Mechanism made = generate(seed, wish);
-  bring_to_rest(made.scene);
-  Random random(~seed);
-  spoil(random, made.scene);
+  try {
+    bring_to_rest(made.scene);
+    Random random(~seed);
+    spoil(random, made.scene);
+  } catch (const Error&) {  // judge_misfit() refuses the mechanism for the same reason
+  }
   return made;
 }
 

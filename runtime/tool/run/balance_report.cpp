@@ -70,6 +70,8 @@ text::Json json_of(const BalanceWatch::Worst& worst) {
 
 }  // namespace
 
+double told_share(const Scene& scene) { return small_share * scene.energy_tolerance; }
+
 double worst_share(const BalanceWatch& seen) {
   return std::max({seen.energy.share(), seen.linear.share(), seen.angular.share()});
 }
@@ -77,13 +79,13 @@ double worst_share(const BalanceWatch& seen) {
 std::string balance_failure(const Scene& scene, const RunResult& result) {
   Wrong wrong = wrong_with(scene, result, scene.energy_tolerance);
   const BalanceWatch::Worst& risen = result.balance.risen;
-  wrong.take(risen.share(), small_share * scene.energy_tolerance, energy_words(scene, result, risen));
+  wrong.take(risen.share(), told_share(scene), energy_words(scene, result, risen));
   return wrong.what;
 }
 
 std::string balance_warning(const Scene& scene, const RunResult& result) {
   if (!balance_failure(scene, result).empty()) return {};
-  return wrong_with(scene, result, small_share * scene.energy_tolerance).what;
+  return wrong_with(scene, result, told_share(scene)).what;
 }
 
 std::string balance_text(const RunResult& result) {

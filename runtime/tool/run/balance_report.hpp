@@ -8,6 +8,8 @@
 
 namespace cdot {
 
+// A run tells errors of its energy above this share of the scale.
+double told_share(const Scene& scene);
 // The largest share of a run's energies or momenta that the method lost or made up.
 double worst_share(const BalanceWatch& balance);
 // Why the balance fails the run, or only warns; empty if it does neither. Without a fix.

@@ -1,8 +1,8 @@
 // The error of a run's trajectory, estimated while it runs, for a few per cent of its cost.
 //
-// At some steps a second World starts from the same state and takes the step in three parts. A method of order p errs
-// in the step by e = d / (1 - 3^-p), d being the difference (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary
-// Differential Equations I", 1993, II.4). The errors of the steps add up with
+// Before some steps the World takes the step in three parts and goes back; for sweeps a second World takes it, with
+// more of them. A method of order p errs in the step by e = d / (1 - 3^-p), d being the difference (E. Hairer, S. P.
+// Norsett, G. Wanner, "Solving Ordinary Differential Equations I", 1993, II.4). The errors of the steps add up with
 // their signs, as those of a symplectic method cancel along an orbit: an error s of velocities displaces a body by
 // s T, where T is the time in which the motion changes, the root of sum v^2 / sum a^2. Growth by chaos is not in it.
 #pragma once
@@ -31,8 +31,8 @@ class ErrorEstimate {
  public:
   // Of a run of `steps` steps.
   ErrorEstimate(const Scene& scene, long long steps);
-  // Call before step `k`, counted from 1, and after it with the frames of its ends.
-  void before_step(const BasicWorld<S>& run, long long k);
+  // Call before step `k` of length h, counted from 1, and after it with the frames of its ends.
+  void before_step(BasicWorld<S>& run, long long k, double h);
   void after_step(const Frame& before, const Frame& after, long long k);
   const TrajectoryError& error() const { return error_; }
 
@@ -41,14 +41,16 @@ class ErrorEstimate {
   struct Sums {
     Vector position{}, angle{}, velocity{}, spin{};  // of a body's errors
   };
-  void add(const Frame& before, const Frame& after, const Frame& finer, double steps);
+  bool take_finer_step(BasicWorld<S>& run, double h);
+  void add(const Frame& before, const Frame& after, double steps);
   void judge(const Frame& after, std::size_t body, double linear, double angular);
 
-  Scene finer_;   // the scene by the finer method
+  const Scene& scene_;
   double share_;  // 1 / (1 - 3^-p)
   long long spacing_, next_, last_ = 0;
   Snapshot start_;
-  std::optional<BasicWorld<S>> world_;
+  std::optional<BasicWorld<S>> sweeper_;  // the second World
+  std::vector<BodyState> finer_;          // at the end of the finer step; empty: that failed
   std::vector<Sums> sums_;
   std::vector<double> size_;  // of the mechanism of each body [m]; of a single point the distance that it travels
   std::vector<bool> is_point_;

@@ -70,17 +70,32 @@ std::span<const StateColumn> state_columns(Dimension dimension) {
 }
 
 template <class S>
+std::vector<BodyState> states_of(const BasicWorld<S>& world, int bodies) {
+  std::vector<BodyState> states;
+  states.reserve(static_cast<std::size_t>(bodies));
+  for (int k = 0; k < bodies; ++k) states.push_back(state_of(world.place(k), world.velocity(k)));
+  return states;
+}
+
+template <class S>
 Frame frame_of(const BasicWorld<S>& world, double time, int bodies) {
+  return frame_of(world, time, bodies, world.energy());
+}
+
+template <class S>
+Frame frame_of(const BasicWorld<S>& world, double time, int bodies, double energy) {
   Frame frame;
   frame.time = time;
-  frame.bodies.reserve(static_cast<std::size_t>(bodies));
-  for (int k = 0; k < bodies; ++k) frame.bodies.push_back(state_of(world.place(k), world.velocity(k)));
-  frame.energy = world.energy();
+  frame.bodies = states_of(world, bodies);
+  frame.energy = energy;
   frame.worst = world.worst_position_error();
   return frame;
 }
 
-#define CDOT_INSTANTIATE(S) template Frame frame_of(const BasicWorld<S>&, double, int);
+#define CDOT_INSTANTIATE(S)                                             \
+  template std::vector<BodyState> states_of(const BasicWorld<S>&, int); \
+  template Frame frame_of(const BasicWorld<S>&, double, int);           \
+  template Frame frame_of(const BasicWorld<S>&, double, int, double);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 CDOT_FOR_EACH_EXTENDED_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -36,7 +36,12 @@ struct Frame {
 };
 
 template <class S>
+std::vector<BodyState> states_of(const BasicWorld<S>& world, int bodies);
+template <class S>
 Frame frame_of(const BasicWorld<S>& world, double time, int bodies);
+// The same where the energy is known.
+template <class S>
+Frame frame_of(const BasicWorld<S>& world, double time, int bodies, double energy);
 bool finite(const Frame& frame);
 // Reads the sensors of the scene into `frame`, the state of the World at the end of a step from `start`; at the start
 // of a run they are equal.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "runtime/tool/run/balance_report.hpp"
 #include "runtime/tool/run/error_estimate.hpp"
 #include "runtime/tool/run/process.hpp"
 #include "runtime/tool/run/requested_frames.hpp"
@@ -119,6 +120,12 @@ void look(const Scene& scene, BasicWorld<S>& world, RunResult& result) {
   ++result.diagnoses;
 }
 
+// World::energy(), from its balance where that has all of it.
+template <class S>
+double energy_from(const BasicWorld<S>& world, const Balance& balance) {
+  return S::dimension == Dimension::planar ? balance.kinetic + balance.potential : world.energy();
+}
+
 template <class S>
 RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string& warnings) {
   RunResult result;
@@ -134,20 +141,21 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   const Interrupt interrupt;
 
   const int bodies = static_cast<int>(scene.bodies.size());
-  Frame before = frame_of(world, result.start, bodies);
+  Balance balance = world.balance();
+  Frame before = frame_of(world, result.start, bodies, energy_from(world, balance));
   read_sensors(scene, world, before, before);
   Frame after = before;
   result.energy_start = before.energy;
   auto next_diagnosis = options.diagnose_times.begin();
   RankWatch rank;
-  WorstStepWatch<S> worst_step;
+  WorstStepWatch<S> worst_step(told_share(scene), steps.count());
   ErrorEstimate<S> error(scene, steps.count());
   for (long long k = 0;; ++k) {
     judge(scene, after, result);
     if (k > 0) rank.look(after.time, world.weakest_row());
     if (!result.finite) break;
-    result.balance.look(world.balance());
-    if (k > 0) worst_step.look(world, result.balance.last);
+    result.balance.look(balance);
+    if (k > 0) worst_step.look(world, result.balance);
     if (result.first_rescue < 0 && world.step_counts().rescued > 0) result.first_rescue = after.time;
     if (every_step) options.row(after);
     requested.after_step(before, after);
@@ -163,7 +171,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     if (Interrupt::asked() && options.save_at && result.state.empty()) result.state = world.snapshot();
     if (k == steps.count() || result.stopped || Interrupt::asked()) break;
     requested.before_step(world, after, steps.time(k + 1));
-    error.before_step(world, k + 1);
+    error.before_step(world, k + 1, steps.length(k + 1));
     const double start = cpu_now();
     const StepResult step = world.step(steps.length(k + 1));
     result.cpu += cpu_now() - start;
@@ -175,7 +183,8 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     }
     result.steps = k + 1;
     std::swap(before, after);
-    after = frame_of(world, steps.time(k + 1), bodies);
+    balance = world.balance();
+    after = frame_of(world, steps.time(k + 1), bodies, energy_from(world, balance));
     read_sensors(scene, world, before, after);
     if (progress.due())
       progress.show(fmt::format("{}{:3.0f} %  {:.4g} s of {:.4g} s", options.doing, 100 * after.time / scene.duration,

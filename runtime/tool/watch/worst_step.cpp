@@ -1,5 +1,6 @@
 #include "runtime/tool/watch/worst_step.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <cdot/spaces.hpp>
@@ -15,10 +16,11 @@ double size_of(const spatial::Wrench& wrench) { return std::hypot(wrench.force_x
 }  // namespace
 
 template <class S>
-void WorstStepWatch<S>::look(const BasicWorld<S>& world, const Balance& now) {
+void WorstStepWatch<S>::look(const BasicWorld<S>& world, const BalanceWatch& balance) {
+  const Balance& now = balance.last;
   const double change = now.method() - method_;
   method_ = now.method();
-  if (!(std::abs(change) > larger * std::abs(worst_.change))) return;
+  if (!(std::abs(change) > std::max(larger * std::abs(worst_.change), least_ * balance.energy.scale))) return;
   worst_ = {change, now.time, -1, 0};
   for (int joint = 0; joint < world.joint_count(); ++joint) {
     if (world.broken(joint)) continue;

@@ -16,13 +16,16 @@ struct WorstStep {
 template <class S>
 class WorstStepWatch {
  public:
-  // After every step. Queries the joints where the change exceeds the largest so far by a tenth, so that they are
-  // queried at some hundred steps of a run at most.
-  void look(const BasicWorld<S>& world, const Balance& now);
+  // Of a run of `steps` steps that reports errors of the energy above `told` of its scale: one of these steps then errs
+  // by told / steps at least.
+  WorstStepWatch(double told, long long steps) : least_(told / static_cast<double>(steps)) {}
+  // After every step. Queries the joints where the change exceeds that and the largest so far by a tenth, so that they
+  // are queried at some dozen steps of a run at most.
+  void look(const BasicWorld<S>& world, const BalanceWatch& balance);
   const WorstStep& found() const { return worst_; }
 
  private:
-  double method_ = 0;
+  double least_, method_ = 0;
   WorstStep worst_;
 };
 

@@ -44,6 +44,27 @@ TEST(WorkBySource, AMotorFeedsFrictionAndDrag) {
   }
 }
 
+// A crank, driven at w, takes a wheel along by a damper: wheel I u' = c (w - u). The drive puts in I w u, the damper
+// takes I w^2 (1 - exp(-2 c t / I)) / 2. The drive's share in the kick of a damper is large, as the crank is light.
+TEST(WorkBySource, ADriveFeedsADamper) {
+  constexpr double w = 3, c = 0.8, I = 2, duration = 1;
+  for (const Method& method : methods()) {
+    World<double> world(method.settings());
+    const int crank = world.add_body({.w = w, .mass = 1, .inertia = 0.02});
+    const int wheel = world.add_body({.mass = 1, .inertia = I});
+    world.add_joint({"driven_crank", {world.ground(), crank}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"rate", {w}}}, {}});
+    add_spring(world, revolute(world, crank, wheel, 0, 0, 0, 0), "angle",
+               {.softness = {.by_frequency = false, .damping = c}});
+    for (int k = 0; k < 1000; ++k) ASSERT_TRUE(world.step(duration / 1000)) << method.name();
+    const double tolerance = allowed_of(method), u = w * (1 - std::exp(-c * duration / I));
+    EXPECT_NEAR(work_of(world, "spring"), -I * w * w * (1 - std::exp(-2 * c * duration / I)) / 2, tolerance)
+        << method.name();
+    EXPECT_NEAR(work_of(world, "driven_crank"), I * w * u, tolerance) << method.name();
+    EXPECT_LE(std::abs(world.balance().method()), tolerance) << method.name();
+    expect_sum(world, method.name());
+  }
+}
+
 // Each source of a mechanism with many of them, and the sum.
 TEST(WorkBySource, TheSumIsThatOfTheBalance) {
   for (const Method& method : methods()) {

@@ -208,6 +208,27 @@ TEST(Ldlt, RowsRedundantByDesignStayDropped) {
   EXPECT_EQ(dependent(passing, 1e-3, all), 0);
 }
 
+// The last row follows from the one before it and, by a small part, from one that may leave. Without that one it is
+// independent at once, with a pivot of 1e-6.
+TEST(Ldlt, RowsThatFollowFromPassingOnesAreNoneByDesign) {
+  std::mt19937 random(9);
+  Problem problem = random_problem(chain(4, 3), 6, random);
+  const int last = problem.ldlt.size() - 1;
+  problem.J.row(last) = problem.J.row(last - 1) + 1e-3 * problem.J.row(last - 2);
+  assemble(problem);
+  std::vector<char> passing = free(problem), without = passing;
+  without[last - 2] = 1;
+  const auto dependent = [&](const std::vector<char>& out) {
+    return problem.ldlt.factor(none(problem).data(), out.data(), passing.data());
+  };
+  EXPECT_EQ(dependent(free(problem)), 1);
+  EXPECT_EQ(dependent(without), 1) << "no row passes";
+  passing[last - 2] = 1;
+  problem.ldlt.forget();
+  for (int i = 0; i < 200; ++i) EXPECT_EQ(dependent(free(problem)), 1);
+  EXPECT_EQ(dependent(without), 0);
+}
+
 // Chains, combs and trees have an order without fill-in.
 TEST(Ldlt, ChainsAndTreesFillNothingIn) {
   std::mt19937 random(5);
