@@ -52,6 +52,7 @@ void BasicLdlt<Real>::analyse(const std::vector<int>& rows, const std::vector<st
   lay_out(rows, minimum_degree_order(rows, neighbours, dense::largest));
   updates_.clear();
   for (Column& column : columns_) list_updates(column);
+  list_couplings(rows, neighbours);
   const size_t n = diagonal_.size();
   l_.assign(values_.size(), Real(0));
   inverse_.assign(n, 0.0);
@@ -139,6 +140,18 @@ void BasicLdlt<Real>::list_updates(Column& column) {
     }
   }
   column.updates_end = static_cast<int>(updates_.size());
+}
+
+template <class Real>
+void BasicLdlt<Real>::list_couplings(const std::vector<int>& rows, const std::vector<std::vector<int>>& neighbours) {
+  couplings_.clear();
+  for (size_t block = 0; block < rows.size(); ++block) {
+    const int row = first_[block];
+    couplings_.push_back({row, rows[block], row, rows[block], place(row, row)});
+    for (const int other : neighbours[block])
+      if (const int column = first_[other]; column < row)
+        couplings_.push_back({row, rows[block], column, rows[other], place(row, column)});
+  }
 }
 
 template <class Real>
@@ -297,24 +310,18 @@ int BasicLdlt<Real>::dominant(const Real* b) {
 template <class Real>
 void BasicLdlt<Real>::multiply(const Real* x, Real* y) const {
   std::fill_n(y, diagonal_.size(), 0.0);
-  for (const Column& column : columns_) {
-    const Real* square = values_.data() + column.square;
-    const Real* panel = values_.data() + column.panel;
-    const Real* own = x + column.first;
-    Real* to = y + column.first;
-    for (int i = 0; i < column.width; ++i) {
-      for (int j = 0; j < i; ++j) {
-        to[i] += square[i * column.width + j] * own[j];
-        to[j] += square[i * column.width + j] * own[i];
+  for (const auto& [row, rows, column, columns, at] : couplings_) {
+    const bool triangle = row == column;
+    const Real* K = values_.data() + at.at;
+    for (int r = 0; r < rows; ++r, K += at.stride) {
+      const Real from = x[row + r];
+      const int below = triangle ? r : columns;
+      Real sum = triangle ? K[r] * from : Real(0);
+      for (int c = 0; c < below; ++c) {
+        sum += K[c] * x[column + c];
+        y[column + c] += K[c] * from;
       }
-      to[i] += square[i * (column.width + 1)] * own[i];
-    }
-    const int* row = panel_row_.data() + column.rows;
-    for (int h = 0; h < column.height; ++h) {
-      for (int i = 0; i < column.width; ++i) {
-        y[row[h]] += panel[h * column.width + i] * own[i];
-        to[i] += panel[h * column.width + i] * x[row[h]];
-      }
+      y[row + r] += sum;
     }
   }
 }

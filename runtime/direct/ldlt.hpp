@@ -128,7 +128,7 @@ class BasicLdlt {
   Real pivot(int unknown) const { return 1 / inverse_[unknown]; }
   // x = K^-1 b for the last factor(); may be in place.
   void solve(const Real* b, Real* x);
-  // y = K x, from values(), without the factor.
+  // y = K x, from the coupled blocks of values(), without the factor.
   void multiply(const Real* x, Real* y) const;
 
   // Its State.
@@ -147,6 +147,11 @@ class BasicLdlt {
   struct Update : dense::Part {
     dense::Update<Real> run;
   };
+  // A block of K on the diagonal or below it. values() also has room for the fill of L, several times as much.
+  struct Coupling {
+    int row, rows, column, columns;
+    Place at;
+  };
   dense::Numbers<Real> numbers(const Real* added);
   int eliminate_columns(const dense::Numbers<Real>& all, const char* out);
   void begin_noise();
@@ -156,6 +161,7 @@ class BasicLdlt {
   bool clears_a_doubt(const Real* added);
   void lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order);
   void list_updates(Column& column);
+  void list_couplings(const std::vector<int>& rows, const std::vector<std::vector<int>>& neighbours);
 
   std::vector<int> first_;      // by block
   std::vector<int> diagonal_;   // by unknown, into values_
@@ -163,6 +169,7 @@ class BasicLdlt {
   std::vector<Column> columns_;
   std::vector<int> panel_row_;  // unknown of each row of a panel
   std::vector<Update> updates_;
+  std::vector<Coupling> couplings_;
   std::vector<Real> values_, l_;
   std::vector<Real> inverse_, noise_, doubtful_, overstated_;  // by unknown; overstated_: of noise_, within factor()
   std::vector<char> out_;
