@@ -121,6 +121,33 @@ def close(a, b):
     return abs(a - b) <= TOLERANCE * (1 + abs(a) + abs(b))
 
 
+class State:
+    """A random state, and its neighbours by which all entries are differentiated."""
+
+    def __init__(self, program, symbols):
+        self.program, self.symbols = program, symbols
+        self.values = program.values(symbols)
+        directions = program.directions(symbols)
+        motion = {}
+        for direction, column in zip(directions, program.data["columns"]):
+            for name, rate in direction.items():
+                motion[name] = motion.get(name, 0) + rate * symbols[column]
+        in_time = {"time": mpf(1)} if "time" in symbols else {}
+        self.along_columns = [self.neighbours(direction) for direction in directions]
+        self.in_time = self.neighbours(in_time)
+        self.along_motion = self.neighbours({**motion, **in_time})
+
+    def neighbours(self, direction):
+        return [self.program.values({**self.symbols, **{name: self.symbols[name] + step * rate
+                                                        for name, rate in direction.items()}})
+                for step in (STEP, -STEP)]
+
+
+def difference(function, neighbours):
+    there, back = neighbours
+    return (function(there) - function(back)) / (2 * STEP)
+
+
 class Checks:
     def __init__(self, program, block, kinds, where):
         self.program, self.kinds, self.where = program, kinds, where
@@ -136,42 +163,23 @@ class Checks:
         if not close(a, b):
             self.failures.append(f"{self.where}: {name}: {mp.nstr(a, 12)} is not {mp.nstr(b, 12)}")
 
-    def moved(self, state, direction, step):
-        there = {name: state[name] + step * d for name, d in direction.items()}
-        return self.program.values({**state, **there})
-
-    def difference(self, function, state, direction):
-        there, back = self.moved(state, direction, STEP), self.moved(state, direction, -STEP)
-        return (function(there) - function(back)) / (2 * STEP)
-
     def at(self, state):
-        columns = self.program.data["columns"]
-        values = self.program.values(state)
-        directions = self.program.directions(state)
-        motion = {}
-        for direction, column in zip(directions, columns):
-            for name, rate in direction.items():
-                motion[name] = motion.get(name, 0) + rate * state[column]
-        if "time" in state:
-            motion["time"] = mpf(1)
+        columns, symbols, values = self.program.data["columns"], state.symbols, state.values
         J = [[f(values) for f in row] for row in self.J]
         for i, kind in enumerate(self.kinds):
             if kind != "velocity":
-                for j, direction in enumerate(directions):
-                    rate = self.difference(self.C[i], state, direction)
-                    self.expect(f"J[{i}][{j}]", J[i][j], rate)
-                in_time = {"time": mpf(1)} if "time" in state else {}
-                C_t = self.difference(self.C[i], state, in_time)
-                self.expect(f"C_t[{i}]", self.C_t[i](values), C_t)
+                for j, neighbours in enumerate(state.along_columns):
+                    self.expect(f"J[{i}][{j}]", J[i][j], difference(self.C[i], neighbours))
+                self.expect(f"C_t[{i}]", self.C_t[i](values), difference(self.C[i], state.in_time))
                 self.expect(f"Cdot[{i}] along the motion", self.Cdot[i](values),
-                            self.difference(self.C[i], state, motion))
-            Jv = sum(J[i][j] * state[c] for j, c in enumerate(columns))
+                            difference(self.C[i], state.along_motion))
+            Jv = sum(J[i][j] * symbols[c] for j, c in enumerate(columns))
             self.expect(f"Cdot[{i}]", self.Cdot[i](values), Jv + self.C_t[i](values))
-            rate = self.difference(self.Cdot[i], state, motion)
-            self.expect(f"gamma[{i}]", self.gamma[i](values), -rate)
+            self.expect(f"gamma[{i}]", self.gamma[i](values),
+                        -difference(self.Cdot[i], state.along_motion))
             assert len(self.K) == len(self.K[i]) == len(self.kinds), "K is not square"
             for k in range(len(self.kinds)):
-                K = sum(J[i][j] * self.program.inverse_mass(state, j, l) * J[k][l]
+                K = sum(J[i][j] * self.program.inverse_mass(symbols, j, l) * J[k][l]
                         for j in range(len(columns)) for l in range(len(columns)))
                 self.expect(f"K[{i}][{k}]", self.K[i][k](values), K)
         return J
@@ -194,7 +202,7 @@ def check(path):
     for c in data["coordinates"]:
         blocks.append(Checks(program, c, ["equality"], data["joint"] + "." + c["name"]))
     rng = random.Random(7)
-    states = [program.random_state(rng) for _ in range(3)]
+    states = [State(program, program.random_state(rng)) for _ in range(3)]
     for block in blocks:
         block.zeros([block.at(state) for state in states])
     return sum(b.done for b in blocks), [f for b in blocks for f in b.failures]
