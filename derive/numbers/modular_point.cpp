@@ -12,7 +12,7 @@ Rotation rotation_of(Modular t) {
   return {(Modular(1) - t * t) * inv, (t + t) * inv};
 }
 
-// (p+1)/4 halves the exponent: the root of a square that is a square itself.
+// (p+1)/4 halves the exponent: the root of a square that is a square itself. Of other numbers, the root of -x.
 Modular root_of_square(Modular x) { return pow(x, (Modular::prime + 1) / 4); }
 
 // (sqrt(6) + sqrt(2))/4, (sqrt(6) - sqrt(2))/4
@@ -95,8 +95,9 @@ Modular ModularPoint::sign(Modular x) const {
 }
 
 Modular ModularPoint::root(Modular x) const {
-  if (!x.is_square()) throw UndefinedHere{};
-  return root_of_square(x);
+  const Modular root = root_of_square(x);
+  if (x.is_zero() || !(root * root == x)) throw UndefinedHere{};
+  return root;
 }
 
 Modular ModularPoint::any_for(int kind, Modular x, Modular y) const {

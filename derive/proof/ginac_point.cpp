@@ -19,6 +19,14 @@ Modular modular(const numeric& n) {
   return rest(n.numer()) * inverse(denominator);
 }
 
+std::optional<Modular> modular_if_any(const numeric& n) {
+  try {
+    return modular(n);
+  } catch (const UndefinedHere&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 // By stereographic projection: (1 - t.t, 2 t)/(1 + t.t).
@@ -99,7 +107,8 @@ std::size_t Steps::add(Kind kind, std::span<const std::size_t> operands, const e
   for (const std::size_t operand : operands) level = std::max(level, steps_[operand].level);
   const bool root =
       kind == Kind::power && !ex_to<numeric>(e.op(1)).is_integer() && (2 * ex_to<numeric>(e.op(1))).is_integer();
-  steps_.push_back({kind, e, function_in(e), begin, operands_.size(), root, level + (root ? 1 : 0)});
+  steps_.push_back({kind, e, function_in(e), begin, operands_.size(), root, level + (root ? 1 : 0),
+                    kind == Kind::leaf && is_a<numeric>(e) ? modular_if_any(ex_to<numeric>(e)) : std::nullopt});
   return steps_.size() - 1;
 }
 
@@ -181,7 +190,7 @@ PointValues::Undefined PointValues::evaluate(const Steps& all, std::span<const s
 Modular PointValues::of_step(const Steps& all, const Steps::Step& step, const KnownValues& known) {
   const auto operand = [&](std::size_t i) { return known.values[all.operands_[i]].value; };
   using Kind = Steps::Kind;
-  if (step.kind == Kind::leaf) return of(step.e);
+  if (step.kind == Kind::leaf) return step.number ? *step.number : of(step.e);
   if (step.kind == Kind::power) return power(operand(step.begin), ex_to<numeric>(step.e.op(1)));
   if (step.kind == Kind::function) {
     std::vector<Modular> args;

@@ -53,6 +53,7 @@ class Steps {
     std::size_t begin, end;  // its operands
     bool root;               // a power k/2
     std::size_t level;
+    std::optional<Modular> number;  // the value of a leaf that is one
   };
 
   numeric in_decimals(const Step& step, const std::vector<numeric>& values, const GiNaC::exmap& symbols) const;

@@ -43,6 +43,7 @@
 #include <cdot/planar/pulley.hpp>
 #include <cdot/planar/push.hpp>
 #include <cdot/planar/rack_and_pinion.hpp>
+#include <cdot/planar/ratchet.hpp>
 #include <cdot/planar/revolute.hpp>
 #include <cdot/planar/rolling.hpp>
 #include <cdot/planar/rope.hpp>
@@ -119,6 +120,7 @@ using Effects = std::tuple<
     position_drive,
     press_fit,
     push,
+    ratchet,
     rotational_drag,
     rough_line,
     servo,

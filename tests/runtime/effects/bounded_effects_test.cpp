@@ -194,6 +194,41 @@ TEST(BoundedEffects, AFreewheelDrivesOneWay) {
   }
 }
 
+// Falls back from between two teeth and stops on the flank where the pawl has taken what the load put in:
+// load (start - s) = most/(1 - e) ((sin(n f) - sin(n s))/n - e (f - s)) of the flank from f to 0, e = cos(n f).
+double error_of_ratchet(Integrator integrator, double h) {
+  constexpr double n = 6, most = 20, f = 0.5 / n, start = 0.3, load = 2, I = 0.4;
+  const double e = std::cos(n * f);
+  double low = 0, high = f;
+  for (int k = 0; k < 60; ++k) {
+    const double s = (low + high) / 2, taken = most / (1 - e) * ((std::sin(n * f) - std::sin(n * s)) / n - e * (f - s));
+    (taken > load * (start - s) ? low : high) = s;
+  }
+  World<double> world(with(integrator));
+  const int rotor = wheel(world, I, start);
+  world.add_joint({"ratchet", {rotor, world.ground()}, {{"count", {n}}, {"most", {most}}, {"rest", {0}}}, {}});
+  world.set_force(rotor, {0, 0, -load});
+  go(world, 1, h);
+  EXPECT_NEAR(world.velocity(rotor).w, 0, 1e-9);  // held, against the load
+  return std::abs(world.pose(rotor).angle - low);
+}
+
+// The flank begins with a kink of the bound, which no method locates.
+TEST(BoundedEffects, ARatchetStopsAtItsTooth) { expect_close("ratchet", 0.002, {0.01, 1e-5}, error_of_ratchet); }
+
+// Ahead, no tooth takes anything: angle = torque t^2/(2 I), over several teeth.
+TEST(BoundedEffects, ARatchetTurnsAheadFreely) {
+  constexpr double torque = 2, I = 0.4;
+  for (const IntegratorRow& row : integrator_rows) {
+    World<double> world(with(row.integrator));
+    const int rotor = wheel(world, I);
+    world.add_joint({"ratchet", {rotor, world.ground()}, {{"count", {6}}, {"most", {20}}}, {}});
+    world.set_force(rotor, {0, 0, torque});
+    go(world, 2, 0.01);
+    EXPECT_NEAR(world.velocity(rotor).w, torque / I * 2, 1e-9) << row.name;
+  }
+}
+
 // Two wheels with play meet at play/2 and go on together, without a bounce.
 TEST(BoundedEffects, BacklashJoinsTwoWheelsAtItsEnds) {
   constexpr double I[2] = {0.5, 0.8}, play = 0.3;

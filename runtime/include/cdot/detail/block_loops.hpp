@@ -4,34 +4,30 @@
 #include <algorithm>
 #include <type_traits>
 
-#include <cdot/detail/block.hpp>
+#include <cdot/detail/block_slots.hpp>
 #include <cdot/detail/drives.hpp>
 #include <cdot/detail/kernel_forms.hpp>
 #include <cdot/detail/turns.hpp>
 
 namespace cdot {
 
-// A generated block is a struct of static functions. A block that a program makes while it runs has an object behind
-// it, and arrays of Parameters and Jacobian with fewer numbers than these structs.
-template <class Block>
-inline constexpr bool is_made_by_program = !std::is_empty_v<Block>;
-template <class Block, class S>
-Block block_of(const Batch<S>& batch) {
-  if constexpr (is_made_by_program<Block>) return Block(batch.ops->context);
-  else return {};
+// Once for all joints: a rotation by a finite angle is long.
+template <class S>
+[[gnu::noinline]] void displace_body(Bodies<S>& all, int body, const typename S::Velocity& moved) {
+  const size_t i = static_cast<size_t>(body);
+  all.pose[i] = S::moved(all.pose[i], moved);
+  all.displacement[i] = S::sum(all.displacement[i], moved, typename S::Scalar(1));
 }
 
 // Joint defines the parameters. Block is the joint, a coordinate, or one of these with an immovable body.
 template <class S, class Joint, class Block, Kernels kernels = Kernels::balanced>
-struct BlockLoops {
-  using T = typename S::Scalar;
-  using Real = ExactNumber<T>;
+struct BlockLoops : BlockSlots<S, Joint, Block> {
+  using Slots = BlockSlots<S, Joint, Block>;
+  using Slots::bodies, Slots::bodies_of, Slots::entries, Slots::gather, Slots::parameters;
+  using typename Slots::Jacobian, typename Slots::Parameters, typename Slots::Real, typename Slots::T;
   using Pose = typename S::Pose;
   using Velocity = typename S::Velocity;
   using InverseMass = typename S::InverseMass;
-  using Parameters = typename Joint::template Parameters<T>;
-  using Jacobian = typename Block::template Jacobian<T>;
-  static constexpr int bodies = Block::bodies;
   static constexpr int rows = Block::rows;
   static constexpr int width = S::freedom * bodies;
   static constexpr int triangle = rows * (rows + 1) / 2;
@@ -42,43 +38,9 @@ struct BlockLoops {
   // Immovable variants inherit the joint's functions that do not touch J, and so share their loops.
   using Inherited = std::conditional_t<std::is_base_of_v<Joint, Block>, BlockLoops<S, Joint, Joint>, BlockLoops>;
 
-  // An empty struct (all entries of J are known) has size 1 but no numbers.
-  template <class Struct>
-  static constexpr int numbers() {
-    return std::is_empty_v<Struct> ? 0 : static_cast<int>(sizeof(Struct) / sizeof(T));
-  }
-
-  // Generated structs consist of numbers of type T only; this reads them from arrays of T.
-  template <class Struct, class Number>
-  static auto& as(Number* numbers_of, int slot, [[maybe_unused]] int stride) {
-    using Target = std::conditional_t<std::is_const_v<Number>, const Struct, Struct>;
-    if constexpr (std::is_empty_v<Struct>) {
-      static Struct nothing;  // no array contains it
-      return static_cast<Target&>(nothing);
-    } else if constexpr (is_made_by_program<Block>) {
-      return *reinterpret_cast<Target*>(numbers_of + slot * stride);
-    } else {
-      return *reinterpret_cast<Target*>(numbers_of + slot * numbers<Struct>());
-    }
-  }
-  static const Parameters& parameters(const Batch<S>& batch, int slot) {
-    return as<Parameters>(batch.parameters.data(), slot, batch.ops->parameter_size);
-  }
-  template <class Slots>
-  static auto& entries(Slots& batch, int slot) {
-    return as<Jacobian>(batch.jacobian.data(), slot, batch.ops->jacobian_size);
-  }
-
-  static const int* bodies_of(const Batch<S>& batch, int slot) { return batch.body.data() + slot * bodies; }
-
-  template <class Item>
-  static void gather(const StateArray<Item>& from, const int* body, Item (&to)[bodies]) {
-    for (int k = 0; k < bodies; ++k) to[k] = from[static_cast<size_t>(body[k])];
-  }
-
   static void count_parameters(Batch<S>& batch, int slot, const Pose (&q)[bodies], T time) {
     if constexpr (Turns::of_parameters() > 0)
-      Turns::count_parameters(q, batch.parameters.data() + slot * numbers<Parameters>(), time,
+      Turns::count_parameters(q, batch.parameters.data() + slot * Slots::template numbers<Parameters>(), time,
                               batch.counters.data() + slot * Turns::count);
   }
   static void count_angle(Batch<S>& batch, int slot, T (&C)[rows]) {
@@ -87,7 +49,7 @@ struct BlockLoops {
   static void start_counting(Batch<S>& batch, int slot, const Bodies<S>& all, T time) {
     Pose q[bodies];
     gather(all.pose, bodies_of(batch, slot), q);
-    Turns::start(q, batch.parameters.data() + slot * numbers<Parameters>(), time,
+    Turns::start(q, batch.parameters.data() + slot * Slots::template numbers<Parameters>(), time,
                  batch.counters.data() + slot * Turns::count);
   }
 
@@ -308,7 +270,7 @@ struct BlockLoops {
     }
   }
 
-  static void displace(Batch<S>& batch, int slot, Bodies<S>& all, const T* impulses) {
+  [[gnu::noinline]] static void displace(Batch<S>& batch, int slot, Bodies<S>& all, const T* impulses) {
     const int* body = bodies_of(batch, slot);
     Velocity moved[bodies] = {};
     InverseMass m[bodies];
@@ -317,25 +279,8 @@ struct BlockLoops {
     for (int r = 0; r < rows; ++r) lambda[r] = impulses[r];
     block_of<Block>(batch).apply(entries(batch, slot), m, lambda, moved);
     for (int r = 0; r < rows; ++r) batch.correction[slot * rows + r] += lambda[r];
-    for (int k = 0; k < bodies; ++k) {
-      if (S::immovable(m[k])) continue;  // infinite impulses would move it by NaN, for good
-      const size_t i = static_cast<size_t>(body[k]);
-      all.pose[i] = S::moved(all.pose[i], moved[k]);
-      all.displacement[i] = S::sum(all.displacement[i], moved[k], T(1));
-    }
-  }
-
-  // The numbers of J in K's number type.
-  static auto exact_entries(const Batch<S>& batch, int slot) {
-    using Exact = typename Block::template Jacobian<Real>;
-    if constexpr (is_made_by_program<Block>) {
-      Exact numbers;
-      const int count = batch.ops->jacobian_size;
-      std::copy_n(batch.jacobian.data() + slot * count, count, numbers.number);
-      return numbers;
-    } else {
-      return exact<Exact, T>(entries(batch, slot));
-    }
+    for (int k = 0; k < bodies; ++k)
+      if (!S::immovable(m[k])) displace_body(all, body[k], moved[k]);  // infinite impulses would move it by NaN
   }
 
   static void dense(const Batch<S>& batch, int slot, const Bodies<S>& all, Real* J, Real* weighted, Real* K,
@@ -344,7 +289,7 @@ struct BlockLoops {
     typename Exact::InverseMass m[bodies];
     for (int k = 0; k < bodies; ++k)
       m[k] = exact<typename Exact::InverseMass, T>(all.effective_mass[static_cast<size_t>(bodies_of(batch, slot)[k])]);
-    const auto numbers = exact_entries(batch, slot);
+    const auto numbers = Slots::exact_entries(batch, slot);
     Real own[triangle];
     const Block block = block_of<Block>(batch);
     block.dense(numbers, *reinterpret_cast<Real(*)[rows][width]>(J));
@@ -387,8 +332,8 @@ struct BlockLoops {
   static constexpr BlockOps<S> ops() {
     return {bodies,
             rows,
-            numbers<Parameters>(),
-            numbers<Jacobian>(),
+            Slots::template numbers<Parameters>(),
+            Slots::template numbers<Jacobian>(),
             Turns::count,
             Block::explicit_time,
             Inherited::starter(),
