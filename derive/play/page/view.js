@@ -21,6 +21,7 @@ class View {
 
   show(scene) {
     this.scene = scene;
+    this.traces = [];  // those of the scene before name other bodies
     this.setPlaces(scene.state.bodies);
     this.local = scene.bodies.map(() => []);  // points of joints on each body
     for (const joint of scene.joints)
