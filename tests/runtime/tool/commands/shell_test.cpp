@@ -114,12 +114,12 @@ TEST(Shell, AScenesNameIsEnough) {
 
 TEST(Shell, RecordsAndPlots) {
   const TemporaryFolder folder;
-  const std::string run = "simulate four_bar --until 0.1 --plot ";
-  EXPECT_EQ(cdot_run(run + (folder / "plots.svg").string()).status, 0);
+  const std::string run = "simulate " + (scenes_dir() / "four_bar.toml").string() + " --until 0.1";
+  EXPECT_EQ(cdot_run(run + " --plot " + (folder / "plots.svg").string()).status, 0);
   EXPECT_NE(read_file((folder / "plots.svg").string()).find(">rate(C1.angle)</text>"), std::string::npos);
-  const CommandResult csv = cdot_run("simulate four_bar --until 0.1 --record coordinates,reactions -o -");
+  const CommandResult csv = cdot_run(run + " --record coordinates,reactions -o -");
   EXPECT_NE(csv.out.find(",rate(C1.angle),force(A0).x,"), std::string::npos) << csv.out.substr(0, 900);
-  EXPECT_EQ(cdot_run("simulate four_bar --record speed").status, 2);
+  EXPECT_EQ(cdot_run(run + " --record speed").status, 2);
 }
 
 }  // namespace
