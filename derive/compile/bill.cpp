@@ -168,7 +168,7 @@ std::string text_of(const Bill& bill) {
   return text;
 }
 
-// What was not measured is null.
+// Numbers that were not measured are null.
 std::string json_of(const Bill& bill) {
   using text::Json;
   const auto number = [](std::optional<long> n) { return n ? Json(*n) : Json(nullptr); };

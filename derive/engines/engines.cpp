@@ -62,7 +62,8 @@ std::string without_lines(std::string_view text, std::span<const std::string_vie
   return rest;
 }
 
-// What kernels need of the contract: the numbers of <limits> by a table of its own, since <cmath> is the only include.
+// The part of the contract that kernels need: the numbers of <limits> by a table of its own, since <cmath> is the only
+// include.
 std::string contract() {
   std::string numbers(part(contract_text, "inline float abs(float x)", "// The bounds of a bounded row"));
   numbers = replaced(std::move(numbers), "std::numeric_limits", "Limits");
@@ -167,8 +168,8 @@ EmittedJoint emit_for(const Engine& engine, const Kernel& kernel) {
   refuse_unfit(engine, joint);
   EmittedJoint made;
   made.common_name = fmt::format("cdot_{}.hpp", engine.name);
-  made.common = fmt::format("// What all joints of Cdot need for {}.\n{}#pragma once\n\n{}", engine.title, licence,
-                            common_of(engine));
+  made.common = fmt::format("// The part that all joints of Cdot share, for {}.\n{}#pragma once\n\n{}", engine.title,
+                            licence, common_of(engine));
   made.joint =
       fmt::format("// The joint {} for {}. Emitted by {}.\n{}#pragma once\n\n#include \"{}\"\n\n{}", joint.name,
                   engine.title, command(engine, joint), licence, made.common_name, joint_of(engine, kernel));

@@ -2,11 +2,13 @@
 #include <exception>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
 
 #include "derive/play/page.hpp"
 #include "runtime/command_line/command_line.hpp"
 #include "runtime/command_line/installation.hpp"
+#include "runtime/text/colour.hpp"
+#include "runtime/tool/run/output.hpp"
+#include "runtime/tool/scene/scene.hpp"
 
 namespace cdot::play {
 namespace {
@@ -27,17 +29,14 @@ fs::path engine_of(const Options& options) {
 }
 
 int run(const Options& options) {
-  const std::string page = playground_page(options.start, options.specs, engine_of(options));
-  std::ofstream(options.output, std::ios::binary) << page;
-  if (!fs::exists(options.output) || fs::file_size(options.output) != page.size())
-    throw std::runtime_error(fmt::format("{} cannot be written", options.output));
+  const std::string start = options.start.empty() ? "" : file_of_scene(options.start);
+  write_file(options.output, playground_page(start, options.specs, engine_of(options)));
   fmt::print("file://{}\n", fs::absolute(options.output).lexically_normal().string());
   return 0;
 }
 
 void add_options(Line& line, Options& options) {
-  line.add("START", &options.start, "A scene (a TOML file) or a spec (a .joint file) to begin with")
-      .shown_as("SCENE|SPEC");
+  line.add("SCENE", &options.start, "The scene to begin with: a TOML file, or the name of one in specs/scenes");
   line.add("-o,--output", &options.output, "The page: one file that needs no server").shown_as("FILE").shows_default();
   line.add("--engine", &options.engine, "Folder of engine.js and engine.wasm, which the target `playground` builds")
       .shown_as("DIR");
@@ -58,6 +57,8 @@ constexpr command_line::Program program = {
 int main(int argc, char** argv) {
   try {
     return run(cdot::play::program, cdot::play::commands, argc, argv);
+  } catch (const cdot::SceneError& error) {
+    cdot::text::print_messages(stderr, error.what());
   } catch (const std::exception& error) {
     fmt::print(stderr, "cdot play: {}\n", error.what());
   }

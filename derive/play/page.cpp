@@ -67,12 +67,13 @@ json start_at(const fs::path& file) {
 
 constexpr std::size_t longest_scene = 40000;  // bytes of an example
 
+// The page opens with the scene asked for, or with one that has much to see.
 json gallery(const std::string& start, const fs::path& specs) {
-  json all = json::array();
-  if (!start.empty()) all.push_back(start_at(start));
+  const fs::path first = start.empty() ? specs / "scenes" / "machine.toml" : fs::path(start);
+  json all = json::array({start_at(first)});
   for (const char* folder : {"scenes", "scenes/spatial"})
     for (const fs::path& scene : files_in(specs / folder, {".toml"}))
-      if (fs::file_size(scene) < longest_scene) all.push_back(example(scene));
+      if (fs::file_size(scene) < longest_scene && !fs::equivalent(scene, first)) all.push_back(example(scene));
   return all;
 }
 

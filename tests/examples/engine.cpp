@@ -23,7 +23,7 @@ Body body(double x, double y, double angle, double mass, double inertia) {
       {x, y, std::cos(angle), std::sin(angle), angle}, {}, {mass > 0 ? 1 / mass : 0, inertia > 0 ? 1 / inertia : 0}};
 }
 
-// What the loop asks of a joint, whatever its kernel.
+// The loop's view of a joint of any kernel.
 struct Joint {
   virtual ~Joint() = default;
   virtual void prepare(double time, double h) = 0;

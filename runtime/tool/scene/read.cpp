@@ -187,8 +187,16 @@ std::vector<fs::path> scene_folders() {
   return folders;
 }
 
-// The file of a scene that is called by its path or by its name: "four_bar", "spatial/four_bar".
-std::string file_of(const std::string& scene) {
+std::string content_of(std::istream& stream, const std::string& name) {
+  std::stringstream text;
+  text << stream.rdbuf();  // fails for an empty file, which is no mistake here
+  if (!stream) throw SceneError(fmt::format("{}: error: cannot be read\n", name), 1);
+  return text.str();
+}
+
+}  // namespace
+
+std::string file_of_scene(const std::string& scene) {
   if (fs::exists(scene)) return scene;
   std::vector<std::string> names;
   for (const fs::path& folder : scene_folders()) {
@@ -202,18 +210,9 @@ std::string file_of(const std::string& scene) {
   throw SceneError(fmt::format("{}: error: there is no such scene\n{}", scene, fix), 1);
 }
 
-std::string content_of(std::istream& stream, const std::string& name) {
-  std::stringstream text;
-  text << stream.rdbuf();  // fails for an empty file, which is no mistake here
-  if (!stream) throw SceneError(fmt::format("{}: error: cannot be read\n", name), 1);
-  return text.str();
-}
-
-}  // namespace
-
 Scene read_scene(const std::string& scene) {
   if (scene == "-") return read_scene(content_of(std::cin, "<stdin>"), "<stdin>");
-  const std::string path = file_of(scene);
+  const std::string path = file_of_scene(scene);
   std::ifstream file(path, std::ios::binary);
   return read_scene(content_of(file, path), path);
 }

@@ -151,7 +151,10 @@ struct SceneError : std::runtime_error {
 // Call after a change of the methods.
 void settle_drift(Scene& scene);
 
-// By its path, its name in specs/scenes, there or where it is installed; "-" is standard input.
+// The file of a scene by its path or its name: "four_bar", "spatial/four_bar". Names are those of specs/scenes, also
+// where it is installed. Throws SceneError if there is none.
+std::string file_of_scene(const std::string& scene);
+// By its path or its name; "-" is standard input.
 Scene read_scene(const std::string& scene);
 Scene read_scene(std::string_view text, const std::string& name);
 
