@@ -2,24 +2,17 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "derive/play/assets.hpp"
+#include "runtime/tool/run/output.hpp"
 
 namespace cdot::play {
 namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-std::string content_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error(fmt::format("{} cannot be read", file.string()));
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 std::vector<fs::path> files_in(const fs::path& folder, std::initializer_list<const char*> endings) {
   std::vector<fs::path> files;
@@ -36,7 +29,7 @@ json all_specs(const fs::path& specs) {
   json files = json::object();
   for (const char* space : {"planar", "spatial", "coordinate"})
     for (const fs::path& file : files_in(specs / space, {".joint", ".effect"}))
-      files[fmt::format("specs/{}/{}", space, file.filename().string())] = content_of(file);
+      files[fmt::format("specs/{}/{}", space, file.filename().string())] = read_file(file.string());
   if (files.empty())
     throw std::runtime_error(
         fmt::format("no specs in {}. Fix: run from the folder that holds specs/, or say --specs DIR", specs.string()));
@@ -50,7 +43,7 @@ std::string title_of(const std::string& scene, const std::string& otherwise) {
 }
 
 json example(const fs::path& scene) {
-  const std::string text = content_of(scene);
+  const std::string text = read_file(scene.string());
   return {{"title", title_of(text, scene.stem().string())}, {"scene", text}, {"specs", json::object()}};
 }
 
@@ -61,7 +54,7 @@ json start_at(const fs::path& file) {
   const bool in_space = scene.find("dimension = 3") != scene.npos || scene.find("dimension=3") != scene.npos;
   for (const fs::path& spec : files_in(file.parent_path().empty() ? "." : file.parent_path(), {".joint", ".effect"}))
     first["specs"][fmt::format("specs/{}/{}", in_space ? "spatial" : "planar", spec.filename().string())] =
-        content_of(spec);
+        read_file(spec.string());
   return first;
 }
 
@@ -124,9 +117,9 @@ std::string playground_page(const std::string& start, const fs::path& specs, con
   for (int k = 0; k < script_count; ++k) script += scripts[k];
   const json data = {{"files", all_specs(specs)}, {"gallery", gallery(start, specs)}};
   return filled(page_html, {{"style", std::string(page_css)},
-                            {"glue", in_a_script(content_of(engine / "engine.js"))},
+                            {"glue", in_a_script(read_file((engine / "engine.js").string()))},
                             {"worker", std::string(worker_js)},
-                            {"wasm", in_base64(content_of(engine / "engine.wasm"))},
+                            {"wasm", in_base64(read_file((engine / "engine.wasm").string()))},
                             {"data", in_a_script(data.dump())},
                             {"script", script}});
 }
