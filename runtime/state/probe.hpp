@@ -17,31 +17,19 @@ template <class S>
 class Probe {
  public:
   using T = typename S::Scalar;
-  explicit Probe(const WorldData<S>& world) : world_(world) {}
+  explicit Probe(const WorldData<S>& world) : world_(&world) {}
+  // For another World, or the same at a later time: arrays keep their memory.
+  void move_to(const WorldData<S>& world) { world_ = &world; }
 
   // Evaluates the rows of a joint, or the row of one of its coordinates, by the block for general bodies.
   void look_at(const JointRecord& joint, int coordinate = -1) {
-    const JointEntry<S>& entry = joint_entries<S>()[joint.type];
-    const BlockVariants<S>& variants = coordinate < 0 ? entry.rows : entry.coordinates[coordinate];
-    ops_ = variants.general;
-    batch_.ops = ops_;
-    batch_.parameters.assign(joint.parameters.begin(), joint.parameters.end());
-    batch_.jacobian.assign(static_cast<size_t>(ops_->jacobian_size), T(0));
-    for (auto* array : {&batch_.C, &batch_.bias, &batch_.rate}) array->assign(static_cast<size_t>(ops_->rows), T(0));
-    batch_.body.resize(joint.bodies.size());
-    bodies_.velocity.resize(joint.bodies.size());
-    bodies_.displacement.resize(joint.bodies.size());
-    bodies_.pose.resize(joint.bodies.size());
-    bodies_.effective_mass.resize(joint.bodies.size());
-    for (size_t k = 0; k < joint.bodies.size(); ++k) {
-      const auto i = static_cast<size_t>(joint.bodies[k]);
-      batch_.body[k] = static_cast<int>(k);
-      bodies_.pose[k] = world_.bodies.pose[i];
-      bodies_.velocity[k] = world_.bodies.velocity[i];
-      bodies_.effective_mass[k] = world_.bodies.inverse_mass[i];
-    }
-    if (ops_->start_counting) count_on(joint, variants);
-    ops_->evaluate(batch_, 0, 1, bodies_, T(world_.time));
+    fill_slot(joint, coordinate);
+    ops_->evaluate(batch_, 0, 1, bodies_, T(world_->time));
+  }
+  // The same of C alone.
+  void look_at_C(const JointRecord& joint) {
+    fill_slot(joint, -1);
+    ops_->position(batch_, 0, 1, bodies_, T(world_->time));
   }
 
   int rows() const { return ops_->rows; }
@@ -104,12 +92,12 @@ class Probe {
     if (number != T(0)) return false;
     const std::vector<T> J = batch_.jacobian;
     number = T(by_precision<T>(1e-4, 1e-9));
-    ops_->evaluate(batch_, 0, 1, bodies_, T(world_.time));
+    ops_->evaluate(batch_, 0, 1, bodies_, T(world_->time));
     bool jumps = false;
     for (size_t k = 0; k < J.size(); ++k)
       jumps |= !(std::abs(batch_.jacobian[k] - J[k]) <= T(0.1) * (T(1) + std::abs(J[k])));
     number = T(0);
-    ops_->evaluate(batch_, 0, 1, bodies_, T(world_.time));
+    ops_->evaluate(batch_, 0, 1, bodies_, T(world_->time));
     return jumps;
   }
 
@@ -129,7 +117,7 @@ class Probe {
         bodies_.pose[k] = S::moved(here[k], S::read_velocity(by));
       }
       for (int round = 0; round < rounds; ++round) {
-        ops_->evaluate(batch_, 0, 1, bodies_, T(world_.time));
+        ops_->evaluate(batch_, 0, 1, bodies_, T(world_->time));
         const T C = batch_.C[row];
         if (std::abs(C) <= enough || (one_sided && C > T(0))) return true;
         const T K = pull_row(row);
@@ -157,6 +145,29 @@ class Probe {
   }
 
  private:
+  void fill_slot(const JointRecord& joint, int coordinate) {
+    const JointEntry<S>& entry = joint_entries<S>()[joint.type];
+    const BlockVariants<S>& variants = coordinate < 0 ? entry.rows : entry.coordinates[coordinate];
+    ops_ = variants.general;
+    batch_.ops = ops_;
+    batch_.parameters.assign(joint.parameters.begin(), joint.parameters.end());
+    batch_.jacobian.assign(static_cast<size_t>(ops_->jacobian_size), T(0));
+    for (auto* array : {&batch_.C, &batch_.bias, &batch_.rate}) array->assign(static_cast<size_t>(ops_->rows), T(0));
+    batch_.body.resize(joint.bodies.size());
+    bodies_.velocity.resize(joint.bodies.size());
+    bodies_.displacement.resize(joint.bodies.size());
+    bodies_.pose.resize(joint.bodies.size());
+    bodies_.effective_mass.resize(joint.bodies.size());
+    for (size_t k = 0; k < joint.bodies.size(); ++k) {
+      const auto i = static_cast<size_t>(joint.bodies[k]);
+      batch_.body[k] = static_cast<int>(k);
+      bodies_.pose[k] = world_->bodies.pose[i];
+      bodies_.velocity[k] = world_->bodies.velocity[i];
+      bodies_.effective_mass[k] = world_->bodies.inverse_mass[i];
+    }
+    if (ops_->start_counting) count_on(joint, variants);
+  }
+
   // displacement = M^-1 J^T of the row. Returns K of the row, the change of C that this predicts.
   T pull_row(int row) {
     std::vector<T> lambda(static_cast<size_t>(ops_->rows), T(0));
@@ -171,11 +182,11 @@ class Probe {
   // Takes the whole turns that the World has counted, if any; otherwise starts at none.
   void count_on(const JointRecord& joint, const BlockVariants<S>& variants) {
     batch_.counters.assign(static_cast<size_t>(ops_->counters), T(0));
-    ops_->start_counting(batch_, 0, bodies_, T(world_.time));
+    ops_->start_counting(batch_, 0, bodies_, T(world_->time));
     for (const Place& place : joint.places) {
-      const Batch<S>& kept = *world_.batches[place.batch];
+      const Batch<S>& kept = *world_->batches[place.batch];
       if (!variants.has(kept.ops)) continue;
-      const auto from = kept.counters.begin() + slot_of(world_, place) * kept.ops->counters;
+      const auto from = kept.counters.begin() + slot_of(*world_, place) * kept.ops->counters;
       std::copy_n(from, kept.ops->counters, batch_.counters.begin());
     }
   }
@@ -214,12 +225,12 @@ class Probe {
     const auto poses = bodies_.pose;
     for (size_t k = 0; k < poses.size(); ++k)
       bodies_.pose[k] = S::moved(poses[k], S::sum({}, bodies_.displacement[k], scale));
-    ops_->position(batch_, 0, 1, bodies_, T(world_.time));
+    ops_->position(batch_, 0, 1, bodies_, T(world_->time));
     bodies_.pose = poses;
     return batch_.C;
   }
 
-  const WorldData<S>& world_;
+  const WorldData<S>* world_;
   const BlockOps<S>* ops_ = nullptr;
   Batch<S> batch_;    // one slot
   Bodies<S> bodies_;  // those of the joint only, in its order

@@ -16,15 +16,28 @@ namespace {
 // A NaN exceeds every number: an error measure that ignored NaN would pass a World that exploded.
 bool beats(double value, double worst) { return !std::isnan(worst) && !(value <= worst); }
 
-// The largest value(probe, row, kind) over all joints that are neither soft nor broken.
-template <class S, class F>
-WorstError worst_of(const WorldData<S>& world, F value) {
+// A thread's scratch for queries: they are asked after every step, and allocating takes longer than their answers.
+template <class S>
+Probe<S>& probe_of(const WorldData<S>& world) {
+  thread_local Probe<S> probe(world);
+  probe.move_to(world);
+  return probe;
+}
+template <class S>
+Batch<S>& scratch_slot() {
+  thread_local Batch<S> one_slot;
+  return one_slot;
+}
+
+// The largest value(probe, row, kind) over all joints that are neither soft nor broken, after look(probe, joint).
+template <class S, class L, class F>
+WorstError worst_of(const WorldData<S>& world, L look, F value) {
   WorstError worst;
-  Probe<S> probe(world);
+  Probe<S>& probe = probe_of(world);
   for (size_t j = 0; j < world.joints.size(); ++j) {
     const JointRecord& joint = world.joints[j];
     if (joint.broken || is_soft(world, joint)) continue;
-    probe.look_at(joint);
+    look(probe, joint);
     const auto& kinds = joint_types(S::dimension)[joint.type].row_kinds;
     for (int r = 0; r < probe.rows(); ++r) {
       const double size = std::abs(value(probe, r, kinds[r]));
@@ -120,7 +133,7 @@ bool BasicWorld<S>::broken(int joint) const {
 
 template <class S>
 std::vector<double> BasicWorld<S>::position_error(int joint) const {
-  Probe<S> probe(*data_);
+  Probe<S>& probe = probe_of(*data_);
   probe.look_at(data_->joints.at(joint));
   std::vector<double> C;
   for (int r = 0; r < probe.rows(); ++r) C.push_back(probe.C(r));
@@ -129,7 +142,7 @@ std::vector<double> BasicWorld<S>::position_error(int joint) const {
 
 template <class S>
 std::vector<double> BasicWorld<S>::velocity_error(int joint) const {
-  Probe<S> probe(*data_);
+  Probe<S>& probe = probe_of(*data_);
   probe.look_at(data_->joints.at(joint));
   return in_doubles(probe.Cdot());
 }
@@ -144,7 +157,7 @@ typename S::Wrench BasicWorld<S>::reaction(int joint, int body) const {
   const JointRecord& record = data_->joints.at(joint);
   Wrench sum;
   if (data_->last_step <= 0) return sum;
-  Probe<S> probe(*data_);
+  Probe<S>& probe = probe_of(*data_);
   probe.look_at(record);
   const auto lambda = total_impulse(*data_, record);
   for (size_t k = 0; k < record.bodies.size(); ++k) {
@@ -157,7 +170,7 @@ typename S::Wrench BasicWorld<S>::reaction(int joint, int body) const {
 template <class S>
 double BasicWorld<S>::coordinate(int joint, std::string_view name) const {
   const JointRecord& record = data_->joints.at(joint);
-  Probe<S> probe(*data_);
+  Probe<S>& probe = probe_of(*data_);
   probe.look_at(record, coordinate_index<S>(record.type, name));
   return probe.C(0);
 }
@@ -165,27 +178,30 @@ double BasicWorld<S>::coordinate(int joint, std::string_view name) const {
 template <class S>
 double BasicWorld<S>::coordinate_rate(int joint, std::string_view name) const {
   const JointRecord& record = data_->joints.at(joint);
-  Probe<S> probe(*data_);
+  Probe<S>& probe = probe_of(*data_);
   probe.look_at(record, coordinate_index<S>(record.type, name));
   return probe.Cdot()[0];
 }
 
 template <class S>
 WorstError BasicWorld<S>::worst_position_error() const {
-  return worst_of(*data_, position_violation<S>);
+  return worst_of(
+      *data_, [](Probe<S>& probe, const JointRecord& joint) { probe.look_at_C(joint); }, position_violation<S>);
 }
 
 template <class S>
 WorstError BasicWorld<S>::worst_velocity_error() const {
-  return worst_of(*data_, [](Probe<S>& probe, int row, RowKind kind) {
-    return kind == RowKind::inequality ? 0.0 : double(probe.Cdot()[row]);
-  });
+  return worst_of(
+      *data_, [](Probe<S>& probe, const JointRecord& joint) { probe.look_at(joint); },
+      [](Probe<S>& probe, int row, RowKind kind) {
+        return kind == RowKind::inequality ? 0.0 : double(probe.Cdot()[row]);
+      });
 }
 
 template <class S>
 std::vector<Inconsistency> BasicWorld<S>::inconsistencies(double tolerance) const {
   std::vector<Inconsistency> found;
-  Probe<S> probe(*data_);
+  Probe<S>& probe = probe_of(*data_);
   for (int j = 0; j < joint_count(); ++j) {
     const JointRecord& joint = data_->joints[j];
     if (joint.broken || is_soft(*data_, joint)) continue;
@@ -205,8 +221,7 @@ std::vector<Inconsistency> BasicWorld<S>::inconsistencies(double tolerance) cons
 
 template <class S>
 double BasicWorld<S>::energy() const {
-  Batch<S> one_slot;
-  const Energy now = energy_of(*data_, one_slot);
+  const Energy now = energy_of(*data_, scratch_slot<S>());
   return now.kinetic + now.potential + now.of_torques;
 }
 
@@ -214,8 +229,7 @@ template <class S>
 Balance BasicWorld<S>::balance() const {
   const WorldData<S>& world = *data_;
   const Accounts& accounts = world.accounts;
-  Batch<S> one_slot;
-  const Energy now = energy_of(world, one_slot);
+  const Energy now = energy_of(world, scratch_slot<S>());
   const double energy = now.kinetic + now.potential;
   Balance balance;
   balance.time = world.time;
@@ -243,8 +257,7 @@ std::vector<WorkOfSource> BasicWorld<S>::work_by_source() const {
   for (size_t k = 0; k < accounts.by_source.size(); ++k) {
     double work = accounts.by_source[k];
     if (k == static_cast<size_t>(Source::outside) && accounts.changed) {
-      Batch<S> one_slot;
-      const Energy now = energy_of(world, one_slot);
+      const Energy now = energy_of(world, scratch_slot<S>());
       work += now.kinetic + now.potential - accounts.before_change;
     }
     for (const Island<S>& island : world.islands)

@@ -94,8 +94,8 @@ Scene scene_of(const SceneOptions& options) {
   // A method replaces an accuracy.
   scene.accuracy = 0;
   for (const auto& change : options.methods) change(scene);
-  if (scene.step == 0)
-    scene.step = scene.settings.local_error > 0 ? scene.duration / intervals_of_own_steps : default_step;
+  scene.step_by_options = scene.step == 0;
+  if (scene.step_by_options) scene.step = usual_step(scene);
   settle_drift(scene);
   return with_integrator(std::move(scene));
 }

@@ -6,16 +6,20 @@
 #include <cdot/rotation.hpp>
 #include <cdot/spaces.hpp>
 
+#include "runtime/tool/run/error_report.hpp"
 #include "runtime/tool/scene/extent.hpp"
 
 namespace cdot {
 namespace {
 
-// A sample costs three steps and going back. A short run has more than 5 % of its steps: fewer samples miss the error
-// of a crank that turns fast.
-constexpr long long steps_per_sample = 100, fewest_samples = 12;
-// Of a finer step. A method that halves a step which it cannot solve would take the same parts of a half.
+// Steps taken as one, and parts of one. A method that halves a step which it cannot solve would take the same parts of
+// a half.
 constexpr int parts = 3;
+// A sample costs some steps and going back twice. A run of some hundred steps has this many samples, of three steps or
+// of one: fewer miss the error of a crank that turns fast. A longer run has one within some steps.
+constexpr long long usual_samples = 8, usual_samples_of_one = 12, most_spacing = 100;
+// Of the share that warns: an estimate by longer steps that promises more by the end of the run is made anew.
+constexpr double doubted = 0.25;
 constexpr double half_turn = 3.141592653589793;  // a larger error of an angle has no meaning
 
 using Vector = std::array<double, 3>;
@@ -51,79 +55,104 @@ Scene with_more_sweeps(Scene scene) {
 
 template <class S>
 ErrorEstimate<S>::ErrorEstimate(const Scene& scene, long long steps)
-    : scene_(scene),
-      share_(1 / (1 - std::pow(1.0 / parts, row_of(scene.settings.integrator).order))),
-      spacing_(std::clamp(steps / fewest_samples, 1LL, steps_per_sample)),
-      next_(scene.settings.local_error > 0 ? steps + 1 : (spacing_ + 1) / 2),
-      sums_(scene.bodies.size()),
-      size_(extents_of(scene).of_body) {
+    : scene_(scene), steps_(steps), warned_(warned_trajectory_share(scene)), size_(extents_of(scene).of_body) {
   for (const double size : size_) is_point_.push_back(size == 0);
+  total_.sums.resize(size_.size());
+  // The midpoint rule divides long steps unseen.
+  const bool whole = steps >= parts && scene.settings.integrator != Integrator::implicit;
+  choose(sweeps(scene.settings.solver) ? By::more_sweeps : whole ? By::longer_steps : By::shorter_steps);
+  // A method that chooses its steps has an estimate of its own.
+  next_ = scene.settings.local_error > 0 ? steps + 1 : std::min((spacing_ + 1) / 2, steps - window_ + 1);
 }
 
 template <class S>
-bool ErrorEstimate<S>::take_finer_step(BasicWorld<S>& run, double h) {
-  for (int k = 0; k < parts; ++k)
-    if (!run.step(h / parts)) return false;
+void ErrorEstimate<S>::choose(By by) {
+  by_ = by;
+  window_ = by == By::longer_steps ? parts : 1;
+  const long long samples = by == By::longer_steps ? usual_samples : usual_samples_of_one;
+  spacing_ = std::clamp(steps_ / samples, 1LL, most_spacing);
+}
+
+template <class S>
+void ErrorEstimate<S>::before_step(const BasicWorld<S>& run, long long k, double h) {
+  if (k != next_) return;
+  run.snapshot_into(start_);
+  length_ = h;
+}
+
+template <class S>
+bool ErrorEstimate<S>::take_instead(BasicWorld<S>& world, int steps) {
+  world.restore(start_);
+  const long long divided = world.step_counts().retried;
+  for (int k = 0; k < steps; ++k)
+    if (!world.step(window_ * length_ / steps)) return false;
+  instead_ = states_of(world, static_cast<int>(total_.sums.size()));
+  return by_ != By::longer_steps || world.step_counts().retried == divided;
+}
+
+template <class S>
+bool ErrorEstimate<S>::compare(BasicWorld<S>& run, int steps, const Frame& before, const Frame& after, long long k) {
+  const bool by_sweeps = by_ == By::more_sweeps;
+  if (by_sweeps && !sweeper_) sweeper_ = build_world_in<S>(with_more_sweeps(scene_));
+  if (!take_instead(by_sweeps ? *sweeper_ : run, steps)) return false;
+  const double shorter = by_sweeps ? parts : static_cast<double>(steps) / window_;
+  const double share = 1 / (1 - std::pow(shorter, -row_of(scene_.settings.integrator).order));
+  add(before, after, share * static_cast<double>(k - last_) / window_);
   return true;
 }
 
 template <class S>
-void ErrorEstimate<S>::before_step(BasicWorld<S>& run, long long k, double h) {
-  if (k != next_) return;
-  run.snapshot_into(start_);
-  finer_.clear();
-  if (sweeps(scene_.settings.solver)) {
-    if (!sweeper_) sweeper_ = build_world_in<S>(with_more_sweeps(scene_));
-    sweeper_->restore(start_);
-    if (sweeper_->step(h)) finer_ = states_of(*sweeper_, static_cast<int>(sums_.size()));
-    return;
+void ErrorEstimate<S>::after_step(BasicWorld<S>& run, const Frame& before, const Frame& after, long long k) {
+  if (k != next_ + window_ - 1) return;
+  const bool in_run = by_ != By::more_sweeps;
+  if (in_run) run.snapshot_into(end_);
+  const Total kept = total_;
+  bool compared = compare(run, by_ == By::shorter_steps ? parts : 1, before, after, k);
+  const double promised = total_.error.share * static_cast<double>(steps_) / static_cast<double>(k);
+  if (by_ == By::longer_steps && (!compared || promised > doubted * warned_)) {
+    total_ = kept;
+    by_ = By::shorter_steps;
+    compared = compare(run, parts * window_, before, after, k);
+    choose(by_);
   }
-  if (take_finer_step(run, h)) finer_ = states_of(run, static_cast<int>(sums_.size()));
-  run.restore(start_);
-}
-
-template <class S>
-void ErrorEstimate<S>::after_step(const Frame& before, const Frame& after, long long k) {
-  if (k != next_) return;
-  if (!finer_.empty()) {
-    add(before, after, static_cast<double>(k - last_));
-    last_ = k;
-  }
+  if (in_run) run.restore(end_);
+  if (compared) last_ = k;
   // Between half and one and a half of the spacing, spread evenly by the golden ratio: no multiple of a period.
-  const double turns = 0.6180339887498949 * (error_.samples + 1);
+  const double turns = 0.6180339887498949 * (total_.error.samples + 1);
   next_ = k + std::max(1LL, static_cast<long long>(static_cast<double>(spacing_) * (0.5 + turns - std::floor(turns))));
 }
 
 template <class S>
-void ErrorEstimate<S>::add(const Frame& before, const Frame& after, double steps) {
+void ErrorEstimate<S>::add(const Frame& before, const Frame& after, double scale) {
   if (first_.bodies.empty()) first_ = before;
-  const double h = after.time - before.time, scale = share_ * steps;
-  for (std::size_t k = 0; k < sums_.size(); ++k) {
-    const BodyState &from = before.bodies[k], &to = after.bodies[k], &better = finer_[k];
-    add_to(sums_[k].position, minus(position(to), position(better)), scale);
-    add_to(sums_[k].angle, turn(better, to), scale);
-    add_to(sums_[k].velocity, minus(velocity(to), velocity(better)), scale);
-    add_to(sums_[k].spin, minus(spin(to), spin(better)), scale);
-    speeds_[0] += square(velocity(to)), speeds_[1] += square(spin(to));
-    changes_[0] += square(minus(velocity(to), velocity(from))) / (h * h);
-    changes_[1] += square(minus(spin(to), spin(from))) / (h * h);
+  const double h = after.time - before.time;
+  for (std::size_t k = 0; k < total_.sums.size(); ++k) {
+    const BodyState &from = before.bodies[k], &to = after.bodies[k], &other = instead_[k];
+    add_to(total_.sums[k].position, minus(position(to), position(other)), scale);
+    add_to(total_.sums[k].angle, turn(other, to), scale);
+    add_to(total_.sums[k].velocity, minus(velocity(to), velocity(other)), scale);
+    add_to(total_.sums[k].spin, minus(spin(to), spin(other)), scale);
+    total_.speeds[0] += square(velocity(to)), total_.speeds[1] += square(spin(to));
+    total_.changes[0] += square(minus(velocity(to), velocity(from))) / (h * h);
+    total_.changes[1] += square(minus(spin(to), spin(from))) / (h * h);
   }
-  ++error_.samples;
-  const double linear = time_scale(speeds_[0], changes_[0], after.time),
-               angular = time_scale(speeds_[1], changes_[1], after.time);
-  for (std::size_t k = 0; k < sums_.size(); ++k) judge(after, k, linear, angular);
+  ++total_.error.samples;
+  const double linear = time_scale(total_.speeds[0], total_.changes[0], after.time),
+               angular = time_scale(total_.speeds[1], total_.changes[1], after.time);
+  for (std::size_t k = 0; k < total_.sums.size(); ++k) judge(after, k, linear, angular);
 }
 
 template <class S>
 void ErrorEstimate<S>::judge(const Frame& after, std::size_t body, double linear, double angular) {
   double& size = size_[body];
   if (is_point_[body]) size = std::max(size, norm(minus(position(after.bodies[body]), position(first_.bodies[body]))));
-  const Sums& sums = sums_[body];
+  const Sums& sums = total_.sums[body];
   const double position = norm(sums.position) + linear * norm(sums.velocity);
   const double angle = std::min(half_turn, norm(sums.angle) + angular * norm(sums.spin));
   const double share = std::max(size > 0 ? position / size : 0, angle);
-  if (share > error_.share) error_.share = share, error_.time = after.time, error_.body = static_cast<int>(body);
-  error_.position = std::max(error_.position, position), error_.angle = std::max(error_.angle, angle);
+  TrajectoryError& error = total_.error;
+  if (share > error.share) error.share = share, error.time = after.time, error.body = static_cast<int>(body);
+  error.position = std::max(error.position, position), error.angle = std::max(error.angle, angle);
 }
 
 #define CDOT_INSTANTIATE(S) template class ErrorEstimate<S>;

@@ -1,10 +1,14 @@
 // The error of a run's trajectory, estimated while it runs, for a few per cent of its cost.
 //
-// Before some steps the World takes the step in three parts and goes back; for sweeps a second World takes it, with
-// more of them. A method of order p errs in the step by e = d / (1 - 3^-p), d being the difference (E. Hairer, S. P.
-// Norsett, G. Wanner, "Solving Ordinary Differential Equations I", 1993, II.4). The errors of the steps add up with
-// their signs, as those of a symplectic method cancel along an orbit: an error s of velocities displaces a body by
-// s T, where T is the time in which the motion changes, the root of sum v^2 / sum a^2. Growth by chaos is not in it.
+// After some triples of steps the World goes back, takes them as one, and goes on. A method of order p errs in the
+// three by e = d / (1 - 3^p), d being the difference (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary
+// Differential Equations I", 1993, II.4). A step of three times the length can be beyond what that formula holds for.
+// Where such steps fail, are divided, or promise a warning, steps are taken in three parts from there on: dearer, and
+// true at longer steps. For sweeps a second World takes the step, with more of them.
+//
+// The errors of the steps add up with their signs, as those of a symplectic method cancel along an orbit: an error s of
+// velocities displaces a body by s T, where T is the time in which the motion changes, the root of sum v^2 / sum a^2.
+// Growth by chaos is not in it.
 #pragma once
 
 #include <array>
@@ -31,32 +35,46 @@ class ErrorEstimate {
  public:
   // Of a run of `steps` steps.
   ErrorEstimate(const Scene& scene, long long steps);
-  // Call before step `k` of length h, counted from 1, and after it with the frames of its ends.
-  void before_step(BasicWorld<S>& run, long long k, double h);
-  void after_step(const Frame& before, const Frame& after, long long k);
-  const TrajectoryError& error() const { return error_; }
+  // Call before step `k` of length h, counted from 1, and after it with the frames of its ends. The run goes on as if
+  // neither had been called.
+  void before_step(const BasicWorld<S>& run, long long k, double h);
+  void after_step(BasicWorld<S>& run, const Frame& before, const Frame& after, long long k);
+  const TrajectoryError& error() const { return total_.error; }
 
  private:
   using Vector = std::array<double, 3>;
   struct Sums {
     Vector position{}, angle{}, velocity{}, spin{};  // of a body's errors
   };
-  bool take_finer_step(BasicWorld<S>& run, double h);
-  void add(const Frame& before, const Frame& after, double steps);
+  struct Total {
+    std::vector<Sums> sums;  // by body
+    Vector speeds{}, changes{};
+    TrajectoryError error;
+  };
+  enum class By { longer_steps, shorter_steps, more_sweeps };
+
+  void choose(By by);
+  // Adds the error of the window that ends with step `k`, by so many steps taken instead. False if one of them fails,
+  // or is divided.
+  bool compare(BasicWorld<S>& run, int steps, const Frame& before, const Frame& after, long long k);
+  bool take_instead(BasicWorld<S>& world, int steps);
+  void add(const Frame& before, const Frame& after, double scale);
   void judge(const Frame& after, std::size_t body, double linear, double angular);
 
   const Scene& scene_;
-  double share_;  // 1 / (1 - 3^-p)
-  long long spacing_, next_, last_ = 0;
-  Snapshot start_;
+  const long long steps_;
+  const double warned_;  // a share
+  By by_;
+  int window_;                            // steps of the run in a sample
+  long long spacing_, next_, last_ = 0;   // first step of the next sample, last step of the previous one
+  Snapshot start_, end_;                  // of a window
+  double length_ = 0;                     // of a step in it [s]
   std::optional<BasicWorld<S>> sweeper_;  // the second World
-  std::vector<BodyState> finer_;          // at the end of the finer step; empty: that failed
-  std::vector<Sums> sums_;
+  std::vector<BodyState> instead_;        // at the end of the steps taken instead
+  Total total_;
   std::vector<double> size_;  // of the mechanism of each body [m]; of a single point the distance that it travels
   std::vector<bool> is_point_;
   Frame first_;  // before the first sample
-  Vector speeds_{}, changes_{};
-  TrajectoryError error_;
 };
 
 }  // namespace cdot

@@ -23,18 +23,22 @@ std::string above(double share, const Scene& scene, const RunResult& result) {
 
 }  // namespace
 
+double warned_trajectory_share(const Scene& scene) {
+  return scene.trajectory_tolerance > 0 ? warned_share * scene.trajectory_tolerance : usual_share;
+}
+
 std::string trajectory_failure(const Scene& scene, const RunResult& result) {
   return scene.trajectory_tolerance > 0 ? above(scene.trajectory_tolerance, scene, result) : std::string();
 }
 
 std::string trajectory_warning(const Scene& scene, const RunResult& result) {
   if (!trajectory_failure(scene, result).empty()) return {};
-  return above(scene.trajectory_tolerance > 0 ? warned_share * scene.trajectory_tolerance : usual_share, scene, result);
+  return above(warned_trajectory_share(scene), scene, result);
 }
 
 std::string error_text(const Scene& scene, const TrajectoryError& error) {
   return fmt::format(
-      "  trajectory      off by about {:.1g} m and {:.1g} rad ({}, t = {:.6g} s), by shorter steps at {} places\n",
+      "  trajectory      off by about {:.1g} m and {:.1g} rad ({}, t = {:.6g} s), by other steps at {} places\n",
       error.position, error.angle, body_name(scene, error.body), error.time, error.samples);
 }
 

@@ -8,6 +8,8 @@
 
 namespace cdot {
 
+// A run warns of an estimate above this share of a mechanism's size, or of 1 rad.
+double warned_trajectory_share(const Scene& scene);
 // Why the estimate fails the run, or only warns; empty if it does neither. Without a fix. A run that was searched for
 // has an error that was measured instead.
 std::string trajectory_failure(const Scene& scene, const RunResult& result);

@@ -159,7 +159,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     if (result.first_rescue < 0 && world.step_counts().rescued > 0) result.first_rescue = after.time;
     if (every_step) options.row(after);
     requested.after_step(before, after);
-    if (k > 0) error.after_step(before, after, k);
+    if (k > 0) error.after_step(world, before, after, k);
     if (options.save_at && result.state.empty() && after.time >= *options.save_at * (1 - 1e-12))
       result.state = world.snapshot();
     const auto due =

@@ -123,6 +123,7 @@ struct Scene {
   bool single = false;                     // computed in float
   double duration = 10;                    // [s]
   double step = default_step;              // [s]; 0: no method is named, an accuracy chooses it
+  bool step_by_options = false;            // it follows from the method that options name, and from the duration
   double accuracy = 0;                     // [m], [rad] that the run chooses a method for; 0: see chooses_method()
   double tolerance = 0.01;                 // [m], [rad] joint error above which a run has failed
   double energy_tolerance = 0.1;           // share of the energies that the method may lose
@@ -139,6 +140,10 @@ struct Scene {
 // Of the bodies and joints that it has so far.
 Measurable measurable_of(const Scene& scene);
 
+// Of a scene that names a method without a step [s].
+inline double usual_step(const Scene& scene) {
+  return scene.settings.local_error > 0 ? scene.duration / intervals_of_own_steps : default_step;
+}
 // True if the run finds its method: for Scene::accuracy, or for default_accuracy if that is 0.
 inline bool chooses_method(const Scene& scene) { return scene.accuracy > 0 || scene.step == 0; }
 

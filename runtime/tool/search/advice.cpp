@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <functional>
+#include <limits>
 
 #include <cdot/methods.hpp>
 
@@ -12,12 +13,14 @@
 #include "runtime/tool/run/error_report.hpp"
 #include "runtime/tool/run/process.hpp"
 #include "runtime/tool/search/simulate.hpp"
+#include "runtime/tool/search/yardstick.hpp"
 
 namespace cdot {
 namespace {
 
 constexpr double most_cpu = 2;  // [s] of all trials
 constexpr double most_cpu_of_a_trial = 0.5;
+constexpr int compared_times = 40;       // of a trial's trajectory with a finer one
 constexpr double cpu_of_a_trial = 0.25;  // [s] by the run's own method; a longer run is tried up to an earlier time
 
 // Options of `cdot-run simulate`, and the same change of a scene.
@@ -107,15 +110,34 @@ struct Trial {
   long long steps = 0, evaluations = 0;
 };
 
-// `off`: the trajectory was, so a cure needs an estimate.
-Trial try_out(const Scene& scene, const RunOptions& options, double most, bool off) {
+// The share by which a run is off whose method chooses its steps, since it estimates none: its distance from a run with
+// a hundredth of the local error, at equal times.
+double distance_from_finer(Scene scene, const RunOptions& options, const RunResult& run) {
+  scene.settings.local_error /= 100;
+  std::string warnings;
+  const RunResult finer = simulate(scene, options, warnings);
+  if (finer.film.size() != run.film.size()) return std::numeric_limits<double>::infinity();
+  scene.accuracy = 0;  // by sizes of mechanisms
+  Yardstick yardstick(scene);
+  yardstick.see(finer.film);
+  double most = 0;
+  for (std::size_t k = 0; k < run.film.size(); ++k) most = std::max(most, yardstick.apart(run.film[k], finer.film[k]));
+  return most;
+}
+
+// `off`: the trajectory was, so a cure has to be near the true one.
+Trial try_out(const Scene& scene, RunOptions options, double most, bool off) {
+  const bool own_steps = off && scene.settings.local_error > 0 && !chooses_method(scene);
+  if (own_steps) options.film_times = equal_times(scene.duration, compared_times, 1);
   const std::vector<double> numbers = in_child(most, [&]() -> std::vector<double> {
     std::string warnings;
     try {
       const RunResult result = simulate(scene, options, warnings);
-      const bool known = !off || result.choice || result.error.samples > 0;
-      const bool cures = known && !result.interrupted && !needs_advice(scene, result);
-      return {cures ? 1.0 : 0.0, worst_share(result.balance),       result.error.share,
+      const double share = own_steps ? distance_from_finer(scene, options, result) : result.error.share;
+      const bool near =
+          !off || (own_steps ? share <= warned_trajectory_share(scene) : result.choice || result.error.samples > 0);
+      const bool cures = near && !result.interrupted && !needs_advice(scene, result);
+      return {cures ? 1.0 : 0.0, worst_share(result.balance),       share,
               result.cpu,        static_cast<double>(result.steps), static_cast<double>(result.counts.evaluations)};
     } catch (const std::exception&) {
       return {};  // for example a state of another method
@@ -157,6 +179,8 @@ TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunRes
     candidate.change(changed);
     if (mistake_in_methods(changed.settings)) continue;
     if (advice.until > 0) changed.duration = advice.until;
+    const bool changes_step = scene.settings.local_error == 0 && changed.settings.local_error > 0;
+    if (changes_step && scene.step_by_options) changed.step = usual_step(changed);
     const double most = std::min(left, most_cpu_of_a_trial);
     if (!(most > 0) || Interrupt::asked()) break;
     const Trial trial = try_out(changed, trial_options, most, off);
