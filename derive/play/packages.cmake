@@ -31,6 +31,8 @@ macro(cdot_provide_package method package)
     cdot_headers_of(nlohmann_json::nlohmann_json nlohmann)
   elseif("${package}" STREQUAL tomlplusplus)
     cdot_headers_of(tomlplusplus::tomlplusplus toml++)
+  elseif("${package}" STREQUAL tinyxml2)  # of cdot-run, which the page does not have
+    cdot_headers_of(tinyxml2::tinyxml2 tinyxml2.h)
   endif()
   set(${package}_FOUND TRUE)
 endmacro()

@@ -13,6 +13,7 @@ constexpr cdot::command_line::Command commands[] = {
     {"diagnose", "Run a scene; report rank, redundant and conflicting rows, condition and stiffness of its equations, "
                  "and warn where the method does not suit them", cdot::diagnose_command},
     {"accuracy", "Solve a scene in many ways; show the CPU time of every accuracy", cdot::accuracy_command},
+    {"import", "Turn a robot description (URDF) into a scene", cdot::import_command},
     {"list", "List the joints with their parameters, or the keys of a scene", cdot::list_command},
     {"jacobian", "", cdot::moved_to_diagnose},
 };
@@ -30,6 +31,7 @@ Examples
   cdot-run diagnose specs/scenes/four_bar.toml                            # rank, condition, stiffness, warnings
   cdot-run diagnose specs/scenes/four_bar.toml --matrix                   # the system in blocks and numbers
   cdot-run accuracy specs/scenes/double_pendulum.toml                     # CPU time against error
+  cdot-run import arm.urdf -o arm.toml                                    # a scene of a robot description
   cdot-run list                                                           # all joints with their parameters
   cdot-run list --keys                                                    # all keys of a scene
 

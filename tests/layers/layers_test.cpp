@@ -74,7 +74,9 @@ const std::vector<std::string> rooms = {
     "runtime/tool/watch",  // ranks and concerns along a run
     "runtime/tool/run",
     "runtime/tool/search", // many runs of a scene: for an accuracy, for advice
-    "runtime/tool/viewer", "runtime/tool/accuracy", "runtime/tool/commands",
+    "runtime/tool/viewer", "runtime/tool/accuracy",
+    "runtime/tool/import", // robot descriptions to scenes
+    "runtime/tool/commands",
     "runtime/tool",
     // cdot-compile.
     "derive/compile/scene", // a scene as numbers

@@ -13,6 +13,7 @@ using command_line::Run;
 Run simulate_command(Line& line);
 Run diagnose_command(Line& line);
 Run accuracy_command(Line& line);
+Run import_command(Line& line);
 Run list_command(Line& line);
 Run moved_to_diagnose(Line& line);  // the former `jacobian`
 

@@ -1,0 +1,51 @@
+// `cdot-run import`: a robot description -> a scene.
+#include <fmt/format.h>
+
+#include "runtime/tool/commands/command.hpp"
+#include "runtime/tool/import/model.hpp"
+#include "runtime/tool/run/output.hpp"
+#include "runtime/tool/scene/scene.hpp"
+
+namespace cdot {
+namespace {
+
+struct Options {
+  std::string file, output = "-";
+  ImportOptions how;
+};
+
+void add_options(Line& line, Options& options) {
+  line.add("FILE", &options.file, "a URDF file; - is standard input").required();
+  line.add("-o,--output", &options.output, "write the scene here; - is standard output")
+      .shown_as("SCENE")
+      .shows_default();
+  line.add("--floating", &options.how.floating, "the root moves freely; without this it is the world");
+  line.add("--balance-inertias", &options.how.balance,
+           "an inertia that no rigid body has becomes the mean of its principal moments");
+  line.footer(R"(
+Links become bodies and joints become joints, with the limits, damping and friction that the file has. Links that fixed
+joints hold together become one body. The scene begins with a list of what was left out or changed.
+
+Examples
+  cdot-run import arm.urdf -o arm.toml && cdot-run simulate arm.toml --html arm.html
+  xacro arm.urdf.xacro | cdot-run import - -o arm.toml)");
+}
+
+int run(const Options& options) {
+  Model model = read_urdf(read_file(options.file), options.file == "-" ? "standard input" : options.file);
+  const std::string text = scene_text(model, options.how);
+  const Scene scene = read_scene(text, options.file + ", as a scene");  // one with mistakes is not written
+  std::FILE* summary = summary_beside({options.output});
+  write_file(options.output, text);
+  fmt::print(summary, "{}: {} bodies and {} joints, of {} links and {} joints\n", options.output, scene.bodies.size(),
+             scene.joints.size(), model.links.size(), model.joints.size());
+  for (const std::string& thing : model.left_out) fmt::print(summary, "  left out  {}\n", thing);
+  for (const std::string& thing : model.changed) fmt::print(summary, "  changed   {}\n", thing);
+  return well;
+}
+
+}  // namespace
+
+Run import_command(Line& line) { return command_line::with_options<Options>(line, add_options, run); }
+
+}  // namespace cdot
