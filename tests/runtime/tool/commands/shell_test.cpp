@@ -20,8 +20,9 @@ TEST(Shell, MisspeltWordsAreUnderstood) {
   } cases[] = {
       {"simulte x", "cdot-run: no command is called `simulte`; did you mean `simulate`?\n"},
       {"diagonse x", "cdot-run: no command is called `diagonse`; did you mean `diagnose`?\n"},
-      {"swim x", "cdot-run: no command is called `swim`: the commands are simulate, diagnose, accuracy, list, "},
-      {"", "cdot-run: no command: the commands are simulate, diagnose, accuracy, list, completion\n"},
+      {"swim x",
+       "cdot-run: no command is called `swim`: the commands are simulate, diagnose, accuracy, import, list, "},
+      {"", "cdot-run: no command: the commands are simulate, diagnose, accuracy, import, list, completion\n"},
       {"--versoin", "cdot-run: no option is called `--versoin`; did you mean `--version`?\n"},
       {"simulate x.toml --stepp 3", "cdot-run: simulate has no option `--stepp`; did you mean `--step`?\n"},
       {"simulate x.toml --integrater=rk4",

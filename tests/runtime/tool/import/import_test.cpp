@@ -12,7 +12,7 @@
 namespace cdot::test::import_test {
 namespace {
 
-std::string double_pendulum() { return (source_dir() / "tests/runtime/tool/import/double_pendulum.urdf").string(); }
+std::string double_pendulum() { return (source_dir() / "specs/scenes/spatial/double_pendulum.urdf").string(); }
 
 Scene imported(const std::string& urdf, const std::string& more = "", bool floating = false) {
   Model model = read_urdf(urdf, "model.urdf");
