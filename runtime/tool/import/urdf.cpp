@@ -27,7 +27,7 @@ class Reader {
   Model read(const std::string& text) {
     tinyxml2::XMLDocument document;
     if (document.Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS)
-      fail(document.ErrorLineNum(), fmt::format("this is no XML: {}", document.ErrorStr()));
+      fail(document.ErrorLineNum(), fmt::format("this is no XML ({})", document.ErrorName()));
     const XMLElement* robot = document.RootElement();
     check_root(*robot);
     model_.name = attribute(*robot, "name");
@@ -123,6 +123,7 @@ class Reader {
       else if (name == "visual") ++left_out_["more than one <visual> of a link"];
       else if (name != "inertial") ++left_out_[fmt::format("<{}> of links", name)];
     }
+    links_.emplace(link.name, static_cast<int>(model_.links.size()));
     model_.links.push_back(link);
   }
 
@@ -170,9 +171,9 @@ class Reader {
                         : fmt::format("{{ disc = {}, width = {} }}", radius, length);
   }
 
-  int find_link(std::string_view name) const {
-    const auto found = std::ranges::find(model_.links, name, &ModelLink::name);
-    return found == model_.links.end() ? -1 : static_cast<int>(found - model_.links.begin());
+  int find_link(const std::string& name) const {
+    const auto found = links_.find(name);
+    return found == links_.end() ? -1 : found->second;
   }
   int link_of(const XMLElement& joint, const char* role) const {
     const XMLElement* e = joint.FirstChildElement(role);
@@ -255,6 +256,7 @@ class Reader {
   }
 
   Model model_;
+  std::map<std::string, int> links_;     // by name
   std::map<std::string, int> left_out_;  // and how often
 };
 
