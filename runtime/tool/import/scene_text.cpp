@@ -30,6 +30,13 @@ struct Part {
 // JSON's strings are TOML's.
 std::string quoted(const std::string& name) { return text::Json(name).dump(); }
 
+// A name may hold line ends.
+std::string comment(std::string line) {
+  std::ranges::replace_if(
+      line, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+  return "# " + line + "\n";
+}
+
 // Numbers of a pose come from products of cosines: what is round-off is 0.
 std::string number(double value) { return fmt::format("{:.12g}", std::abs(value) < 1e-14 ? 0.0 : value); }
 std::string list(const Vector3d& v) { return fmt::format("[{}, {}, {}]", number(v.x()), number(v.y()), number(v.z())); }
@@ -54,10 +61,10 @@ class Writer {
   }
 
   std::string text() const {
-    std::string text = fmt::format("# Of the robot \"{}\" in {}, with every joint at 0 or at its nearest limit.\n",
-                                   model_.name, model_.file);
-    for (const std::string& thing : model_.left_out) text += fmt::format("# Left out: {}.\n", thing);
-    for (const std::string& thing : model_.changed) text += fmt::format("# Changed: {}.\n", thing);
+    std::string text = comment(fmt::format("Of the robot {} in {}, with every joint at 0 or at its nearest limit.",
+                                           quoted(model_.name), model_.file));
+    for (const std::string& thing : model_.left_out) text += comment("Left out: " + thing + ".");
+    for (const std::string& thing : model_.changed) text += comment("Changed: " + thing + ".");
     text += fmt::format("title     = {}\ndimension = 3\n", quoted(model_.name));
     for (const Part& part : parts_) text += text_of(part);
     for (const ModelJoint& joint : model_.joints)

@@ -199,6 +199,12 @@ TEST(Import, ASingleLinkFalls) {
   EXPECT_NEAR(run_of(scene, 1, 1).back().bodies[0].z, -9.81 / 2, 1e-4);
 }
 
+TEST(Import, NamesMayHoldLineEndsAndQuotes) {
+  Model model = read_urdf(changed("robot name=\"lift\"", "robot name=\"a &quot;lift&quot;&#10;up\""), "model\n.urdf");
+  const Scene scene = read_scene(scene_text(model, {}), "scene.toml");
+  EXPECT_EQ(scene.title, "a \"lift\"\nup");
+}
+
 TEST(Import, TheCommandWritesASceneOrNothing) {
   const TemporaryFolder folder;
   const std::string scene = (folder / "arm.toml").string(), wrong = (folder / "wrong.urdf").string();
