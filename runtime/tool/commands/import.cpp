@@ -24,7 +24,7 @@ void add_options(Line& line, Options& options) {
            "an inertia that no rigid body has becomes the mean of its principal moments");
   line.footer(R"(
 Links become bodies and joints become joints, with the limits, damping and friction that the file has. Links that fixed
-joints hold together become one body. The scene begins with a list of what was left out or changed.
+joints hold together become one body. The scene begins with a list of the things left out or changed.
 
 Examples
   cdot-run import arm.urdf -o arm.toml && cdot-run simulate arm.toml --html arm.html

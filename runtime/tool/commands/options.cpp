@@ -95,7 +95,7 @@ Scene scene_of(const SceneOptions& options) {
   scene.accuracy = 0;
   for (const auto& change : options.methods) change(scene);
   scene.step_by_options = scene.step == 0;
-  if (scene.step_by_options) scene.step = usual_step(scene);
+  if (scene.step_by_options) scene.step = usual_step(scene.duration, scene.settings.local_error > 0);
   settle_drift(scene);
   return with_integrator(std::move(scene));
 }

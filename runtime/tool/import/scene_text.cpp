@@ -37,9 +37,19 @@ std::string comment(std::string line) {
   return "# " + line + "\n";
 }
 
-// Numbers of a pose come from products of cosines: what is round-off is 0.
-std::string number(double value) { return fmt::format("{:.12g}", std::abs(value) < 1e-14 ? 0.0 : value); }
+// Numbers of a pose come from products of sines and cosines, whose round-off would hide zeros.
+constexpr double round_off = 1e-14;
+std::string number(double value) { return fmt::format("{:.12g}", std::abs(value) < round_off ? 0.0 : value); }
 std::string list(const Vector3d& v) { return fmt::format("[{}, {}, {}]", number(v.x()), number(v.y()), number(v.z())); }
+
+// With all digits: a plate's largest moment is the sum of the other two, and may not exceed it.
+std::string tensor(const Matrix3d& I) {
+  const auto entry = [&](int r, int c) {
+    return fmt::format("{}", std::abs(I(r, c)) < round_off * I.trace() ? 0.0 : I(r, c));
+  };
+  const auto row = [&](int r) { return fmt::format("[{}, {}, {}]", entry(r, 0), entry(r, 1), entry(r, 2)); };
+  return fmt::format("[{}, {}, {}]", row(0), row(1), row(2));
+}
 
 Matrix3d inertia_of_point(double mass, const Vector3d& r) {
   return mass * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
@@ -78,7 +88,7 @@ class Writer {
   }
   const ModelLink& link(int k) const { return model_.links[static_cast<std::size_t>(k)]; }
 
-  // The joint above each link, and the poses of their frames; what does not hang from one root is a mistake.
+  // The joint above each link, and the poses of their frames; links that do not hang from one root are a mistake.
   void place_links() {
     const std::size_t count = model_.links.size();
     above_.assign(count, nullptr);
@@ -134,7 +144,7 @@ class Writer {
       if (begins) {
         part = static_cast<int>(parts_.size());
         Part& begun = parts_.emplace_back();
-        begun.name = name_of_body(link(k).name), begun.line = link(k).line;
+        begun.name = link(k).name, begun.line = link(k).line;
         begun.axes = poses_[static_cast<std::size_t>(k)].linear();
       } else if (above) {
         part = part_of_[static_cast<std::size_t>(above->parent)];
@@ -163,8 +173,8 @@ class Writer {
                                          quoted(part.name), number(mean)));
   }
 
-  // "world" is the name of what never moves.
-  std::string name_of_body(const std::string& name) const { return name == "world" ? "world_link" : name; }
+  // In a scene "world" never moves.
+  static std::string name_of_body(const Part& part) { return part.name == "world" ? "world_link" : part.name; }
 
   void add(const ModelLink& link, const Isometry3d& pose, Part& part) const {
     const Vector3d centre = pose * link.centre;
@@ -184,8 +194,8 @@ class Writer {
     const Eigen::Quaterniond q(part.axes);
     const Matrix3d turned = part.axes.transpose() * part.inertia * part.axes, I = (turned + turned.transpose()) / 2;
     std::string text =
-        fmt::format("\n[[body]]\nname        = {}\nmass        = {}\n", quoted(part.name), number(part.mass));
-    text += fmt::format("inertia     = [{}, {}, {}]\n", list(I.row(0)), list(I.row(1)), list(I.row(2)));
+        fmt::format("\n[[body]]\nname        = {}\nmass        = {}\n", quoted(name_of_body(part)), part.mass);
+    text += fmt::format("inertia     = {}\n", tensor(I));
     if (!part.shape.empty()) text += fmt::format("shape       = {}\n", part.shape);
     text += fmt::format("position    = {}\n", list(part.centre));
     text += fmt::format("orientation = [{}, {}, {}, {}]\n", number(q.w()), number(q.x()), number(q.y()), number(q.z()));
@@ -194,7 +204,7 @@ class Writer {
 
   std::string body_of(int link) const {
     const int part = part_of_[static_cast<std::size_t>(link)];
-    return part == world ? "world" : parts_[static_cast<std::size_t>(part)].name;
+    return part == world ? "world" : name_of_body(parts_[static_cast<std::size_t>(part)]);
   }
 
   std::string text_of(const ModelJoint& joint) const {
@@ -223,9 +233,9 @@ class Writer {
     if (joint.range)
       text += fmt::format("{}.limit = {{ lower = {}, upper = {} }}\n", coordinate,
                           number(joint.range->lower - joint.start()), number(joint.range->upper - joint.start()));
-    if (joint.friction > 0) text += fmt::format("{}.friction = {}\n", coordinate, number(joint.friction));
+    if (joint.friction > 0) text += fmt::format("{}.friction = {}\n", coordinate, joint.friction);
     if (joint.damping > 0)
-      text += fmt::format("{}.spring = {{ stiffness = 0, damping = {} }}\n", coordinate, number(joint.damping));
+      text += fmt::format("{}.spring = {{ stiffness = 0, damping = {} }}\n", coordinate, joint.damping);
     return text;
   }
 

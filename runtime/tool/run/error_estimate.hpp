@@ -2,7 +2,7 @@
 //
 // After some triples of steps the World goes back, takes them as one, and goes on. A method of order p errs in the
 // three by e = d / (1 - 3^p), d being the difference (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary
-// Differential Equations I", 1993, II.4). A step of three times the length can be beyond what that formula holds for.
+// Differential Equations I", 1993, II.4). That formula need not hold for a step of three times the length.
 // Where such steps fail, are divided, or promise a warning, steps are taken in three parts from there on: dearer, and
 // true at longer steps. For sweeps a second World takes the step, with more of them.
 //

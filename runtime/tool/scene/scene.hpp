@@ -140,9 +140,9 @@ struct Scene {
 // Of the bodies and joints that it has so far.
 Measurable measurable_of(const Scene& scene);
 
-// Of a scene that names a method without a step [s].
-inline double usual_step(const Scene& scene) {
-  return scene.settings.local_error > 0 ? scene.duration / intervals_of_own_steps : default_step;
+// Of a scene that names a method without a step [s]. With a local error the step is only the interval between outputs.
+inline double usual_step(double duration, bool own_steps) {
+  return own_steps ? duration / intervals_of_own_steps : default_step;
 }
 // True if the run finds its method: for Scene::accuracy, or for default_accuracy if that is 0.
 inline bool chooses_method(const Scene& scene) { return scene.accuracy > 0 || scene.step == 0; }

@@ -36,10 +36,9 @@ constexpr const char* keys_of_methods[] = {"step",      "solver",    "integrator
 
 constexpr const char* picked_integrator = "auto";
 
-// With a local error the step is only the interval between outputs.
 void read_step(Entry& top, const char* key, Scene& scene) {
   const bool named = std::ranges::any_of(keys_of_methods, [&](const char* method) { return top.has(method); });
-  const double step = top.has("local_error") ? scene.duration / intervals_of_own_steps : named ? default_step : 0;
+  const double step = named ? usual_step(scene.duration, top.has("local_error")) : 0;
   scene.step = top.number(key, {Sign::positive}).value_or(step);
   if (scene.step > scene.duration)
     top.error(top.where(key),

@@ -180,7 +180,7 @@ TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunRes
     if (mistake_in_methods(changed.settings)) continue;
     if (advice.until > 0) changed.duration = advice.until;
     const bool changes_step = scene.settings.local_error == 0 && changed.settings.local_error > 0;
-    if (changes_step && scene.step_by_options) changed.step = usual_step(changed);
+    if (changes_step && scene.step_by_options) changed.step = usual_step(changed.duration, true);
     const double most = std::min(left, most_cpu_of_a_trial);
     if (!(most > 0) || Interrupt::asked()) break;
     const Trial trial = try_out(changed, trial_options, most, off);

@@ -84,8 +84,8 @@ class ManyIslands : public testing::TestWithParam<Many> {
       std::filesystem::temp_directory_path() / ("cdot_many_islands_" + std::to_string(getpid()));
 };
 
-// I(n) = a + b n + c n^2 has (I(4n) - I(2n)) / (I(2n) - I(n)) = 2 if c = 0. Measured: 1.999 to 2.0074; from 200 islands
-// on 2.0028, because maps of names add n log n. A square term doubles what is above 2.
+// I(n) = a + b n + c n^2 has (I(4n) - I(2n)) / (I(2n) - I(n)) = 2 if c = 0. Measured: 1.999 to 2.0074,
+// because maps of names add n log n. A square term doubles what is above 2.
 TEST_P(ManyIslands, CostInProportionToTheirNumber) {
   const double few = count(100), more = count(200), most = count(400);
   const double ratio = (most - more) / (more - few);

@@ -182,6 +182,16 @@ TEST(Import, StartsWithinItsLimits) {
   EXPECT_NEAR(run_of(scene, 1, 1).back().bodies[0].z, 3.5, 1e-6);
 }
 
+// A plate's largest moment is the sum of the other two: no rounding of the turned tensor may make it more.
+TEST(Import, PlatesKeepTheirInertia) {
+  const Scene scene = imported(changed("<mass value=\"3\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/>",
+                                       "<origin rpy=\"0.3 0.4 0.5\"/><mass value=\"3\"/><inertia ixx=\"0.01\" "
+                                       "iyy=\"0.02\" izz=\"0.03\"/>"));
+  const Inertia& I = scene.bodies.at(0).spatial.inertia;
+  EXPECT_NEAR(I.xx + I.yy + I.zz, 0.06, 1e-16);
+  EXPECT_GT(std::abs(I.xy) + std::abs(I.xz) + std::abs(I.yz), 1e-3);
+}
+
 TEST(Import, BalancesInertiasOnRequest) {
   Model model = read_urdf(changed("izz=\"1\"", "izz=\"7\""), "model.urdf");
   const std::string text = scene_text(model, {.balance = true});

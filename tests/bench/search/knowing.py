@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""The cost of knowing the error of a run: instructions that the estimate and the balance add to those of the rest.
+
+Usage: tests/bench/search/knowing.py CDOT_RUN [INTEGRATOR]     (rattle; needs valgrind, takes some minutes)
+
+Counts by callgrind, of the whole process, over all scenes of specs/scenes at steps of 2 ms.
+"""
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+STEP, COUNTS = 0.002, (20, 200, 1000)
+# Of these, each with all that it calls.
+PARTS = {
+    "estimate": r"ErrorEstimate<.*>::(before|after)_step\(",
+    "balance": r"World<.*>::balance\(\) const|WorstStepWatch<.*>::look\(",
+    "booking": r"cdot::(begin_accounts|book_kick|begin_kick|book_work|book_stiffness|find_power)<",
+}
+
+
+def counted(program, scene, integrator, steps):
+    """Instructions of the process, and of each part."""
+    with tempfile.NamedTemporaryFile() as profile:
+        subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={profile.name}", program, "simulate", scene,
+                        "--integrator", integrator, "--step", str(STEP), "--until", str(steps * STEP)],
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)  # a failed run counts as well
+        listing = subprocess.run(["callgrind_annotate", "--inclusive=yes", "--threshold=100", profile.name],
+                                 capture_output=True, text=True, check=True).stdout
+    whole, parts = 0, dict.fromkeys(PARTS, 0)
+    for line in listing.splitlines():
+        if not (number := re.match(r"\s*([\d,]+) \(", line)):
+            continue
+        instructions = int(number[1].replace(",", ""))
+        if "PROGRAM TOTALS" in line:
+            whole = instructions
+        for part, name in PARTS.items():
+            if re.search(name, line):
+                parts[part] += instructions
+    return whole, parts
+
+
+def main():
+    program, integrator = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else "rattle"
+    scenes = sorted(str(scene) for scene in Path("specs/scenes").glob("**/*.toml"))
+    for steps in COUNTS:
+        shares = {part: [] for part in ("all", *PARTS)}
+        for scene in scenes:
+            whole, parts = counted(program, scene, integrator, steps)
+            known = sum(parts.values())
+            shares["all"].append((100 * known / (whole - known), scene))
+            for part, instructions in parts.items():
+                shares[part].append((100 * instructions / (whole - known), scene))
+        for part, values in shares.items():
+            worst, scene = max(values)
+            print(f"{integrator}, {steps} steps: {part:8} {statistics.median(v for v, _ in values):5.1f} % in the median of "
+                  f"{len(values)} scenes, {worst:5.1f} % at most ({scene})", flush=True)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    main()
