@@ -188,7 +188,10 @@ TEST(Import, PlatesKeepTheirInertia) {
                                        "<origin rpy=\"0.3 0.4 0.5\"/><mass value=\"3\"/><inertia ixx=\"0.01\" "
                                        "iyy=\"0.02\" izz=\"0.03\"/>"));
   const Inertia& I = scene.bodies.at(0).spatial.inertia;
+  const double determinant =
+      I.xx * (I.yy * I.zz - I.yz * I.yz) - I.xy * (I.xy * I.zz - I.yz * I.xz) + I.xz * (I.xy * I.yz - I.yy * I.xz);
   EXPECT_NEAR(I.xx + I.yy + I.zz, 0.06, 1e-16);
+  EXPECT_NEAR(determinant, 0.01 * 0.02 * 0.03, 1e-19);
   EXPECT_GT(std::abs(I.xy) + std::abs(I.xz) + std::abs(I.yz), 1e-3);
 }
 
