@@ -30,13 +30,6 @@ int System<S>::factor() {
 }
 
 template <class S>
-void System<S>::solve() {
-  solve_rows();
-  share_contradictions();
-  share_redundant_loads(Bounds::unknown);
-}
-
-template <class S>
 void System<S>::solve_rows() {
   if (softened_ == Softened::no) {
     solve_kept_rows();
@@ -136,6 +129,19 @@ bool hold_motors(System<S>& system, Real slight) {
 }
 
 }  // namespace
+
+// Where a motor contradicts joints, it alone misses its rate: a joint that shared the error would open.
+template <class S>
+void System<S>::solve() {
+  solve_rows();
+  share_contradictions();
+  if (lawful_ && contradicted_ && hold_motors(*this, slight(largest_b()))) {
+    factor();
+    solve_rows();
+    share_contradictions();
+  }
+  share_redundant_loads(Bounds::unknown);
+}
 
 // A motor and the limit that it runs into are the same row twice: elimination drops the later one. If holding motors
 // leaves a bounded row unsatisfied, all bounded rows become slightly soft, so the weaker one reaches its bound. True if

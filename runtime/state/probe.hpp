@@ -123,8 +123,10 @@ class Probe {
         const T K = pull_row(row);
         if (!(K > T(0)) || !std::isfinite(C)) break;
         movable = true;
+        // At most 1 rad at once: an angle of the row may not be counted beyond half a turn.
+        const T share = std::min(T(1), T(1) / std::max(T(1), std::abs(C / K) * fastest_turn()));
         for (size_t k = 0; k < here.size(); ++k)
-          bodies_.pose[k] = S::moved(bodies_.pose[k], S::sum({}, bodies_.displacement[k], -C / K));
+          bodies_.pose[k] = S::moved(bodies_.pose[k], S::sum({}, bodies_.displacement[k], -share * C / K));
       }
     }
     return !movable;
@@ -189,6 +191,16 @@ class Probe {
       const auto from = kept.counters.begin() + slot_of(*world_, place) * kept.ops->counters;
       std::copy_n(from, kept.ops->counters, batch_.counters.begin());
     }
+  }
+
+  // The largest component of a rotation in the displacements.
+  T fastest_turn() const {
+    T fastest = 0, numbers[S::freedom];
+    for (const auto& displacement : bodies_.displacement) {
+      S::write(displacement, numbers);
+      for (int c = S::lengths; c < S::freedom; ++c) fastest = std::max(fastest, std::abs(numbers[c]));
+    }
+    return fastest;
   }
 
   // The largest distance of a body from the first one, by component.

@@ -172,7 +172,7 @@ ProjectResult BasicWorld<S>::project(double tolerance) {
     island.evaluated = island.factored = false;
     island.flow.forget();
   }
-  result.met = inconsistencies(tolerance).empty();
+  result.met = inconsistencies(tolerance).empty() && passed_ends(tolerance).empty();
   return result;
 }
 

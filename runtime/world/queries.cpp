@@ -8,6 +8,7 @@
 #include "runtime/rows/parameters.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/state/add_rows.hpp"
+#include "runtime/state/one_slot.hpp"
 #include "runtime/state/probe.hpp"
 
 namespace cdot {
@@ -45,6 +46,24 @@ WorstError worst_of(const WorldData<S>& world, L look, F value) {
     }
   }
   return worst;
+}
+
+// f(passed), a PassedEnd, for each row of an effect that is beyond its end.
+template <class S, class F>
+void for_each_passed_end(const WorldData<S>& world, F f) {
+  Batch<S>& one_slot = scratch_slot<S>();
+  for (const auto& batch : world.batches) {
+    if (!batch->law || batch->law->reported || !batch->law->error) continue;
+    for (int slot = 0; slot < batch->count(); ++slot) {
+      if (world.joints[batch->joint[slot]].broken) continue;
+      copy_slot(*batch, slot, one_slot);
+      batch->ops->position(one_slot, 0, 1, world.bodies, typename S::Scalar(world.time));
+      typename S::Scalar error[most_rows];
+      batch->law->error(one_slot, 0, error);
+      for (int r = 0; r < batch->ops->rows; ++r)
+        if (error[r] != 0) f(PassedEnd{std::abs(double(error[r])), batch->joint[slot], world.sources[batch->source]});
+    }
+  }
 }
 
 template <class S>
@@ -187,6 +206,24 @@ template <class S>
 WorstError BasicWorld<S>::worst_position_error() const {
   return worst_of(
       *data_, [](Probe<S>& probe, const JointRecord& joint) { probe.look_at_C(joint); }, position_violation<S>);
+}
+
+template <class S>
+PassedEnd BasicWorld<S>::worst_passed_end() const {
+  PassedEnd worst;
+  for_each_passed_end(*data_, [&](const PassedEnd& end) {
+    if (beats(end.by, worst.by)) worst = end;
+  });
+  return worst;
+}
+
+template <class S>
+std::vector<PassedEnd> BasicWorld<S>::passed_ends(double tolerance) const {
+  std::vector<PassedEnd> found;
+  for_each_passed_end(*data_, [&](const PassedEnd& end) {
+    if (!(end.by <= tolerance)) found.push_back(end);
+  });
+  return found;
 }
 
 template <class S>

@@ -46,19 +46,6 @@ double heaviest_over_lightest(const Scene& scene) {
   return most > 0 ? most / least : 1;
 }
 
-// An estimate of the rounded operations on a body's velocity in a step: each row of each of its joints, once per solve.
-double operations_of(const Scene& scene) {
-  std::vector<int> rows(scene.bodies.size() + 1, 1);
-  for (const SceneJoint& joint : scene.joints)
-    for (const int body : joint.definition.bodies)
-      rows[static_cast<std::size_t>(body + 1)] +=
-          static_cast<int>(find_joint_type(scene.dimension, joint.definition.type)->row_kinds.size()) + 1;
-  const Settings& s = scene.settings;
-  const double stages = s.integrator == Integrator::dop853 ? 12 : s.integrator == Integrator::rk4 ? 4 : 2;
-  const double sweeps = s.solver == Solver::iterative ? 3 * s.iterations : 10;
-  return *std::max_element(rows.begin(), rows.end()) * stages * sweeps * s.substeps;
-}
-
 template <class S>
 class Trial {
  public:
@@ -81,6 +68,8 @@ class Trial {
   const char* excuse(BasicWorld<S>& world) const;
   double velocity_off(BasicWorld<S>& world) const;
   Gap gap_now(BasicWorld<S>& world) const;
+  double passed_share(const BasicWorld<S>& world) const;
+  std::optional<Verdict> look_at_joints(BasicWorld<S>& world, const Gap& gap, int k) const;
   std::optional<Verdict> look_at_momentum(const Motion& now, const BasicWorld<S>& world, double gap, int k);
   std::optional<Verdict> look_at_energy(double energy, int k) const;
   std::optional<Verdict> look_at_balance(const Balance& balance, int k) const;
@@ -99,6 +88,7 @@ class Trial {
   RowSizes sizes_;
   Motion start_;
   double independence_ = 1;                // at the start
+  bool starts_beyond_ = false;             // an end of a limit, or of another effect
   std::vector<typename S::Place> places_;  // of the scene's bodies, before the step
   double start_energy_ = 0, pushes_ = 0, torques_ = 0;
   std::optional<Accounts> accounts_;
@@ -200,8 +190,15 @@ Gap Trial<S>::gap_now(BasicWorld<S>& world) const {
   return gap_of(world, *scene_, sizes, slack);
 }
 
+// How far coordinates have passed an end, as a share of the mechanism's length or of 1 rad.
+template <class S>
+double Trial<S>::passed_share(const BasicWorld<S>& world) const {
+  return world.worst_passed_end().by / std::max(1.0, sizes_.length);
+}
+
 template <class S>
 const char* Trial<S>::excuse(BasicWorld<S>& world) const {
+  if (starts_beyond_) return "a start beyond an end, which the World tells";
   if (laws_.may_contradict) return "a prescribed motion, or a rolling one, meets what may stop it";
   if (heaviest_over_lightest(*scene_) * told_apart < T >> 1)  // rows of effects as well
     return "masses further apart than pivots are told from round-off";
@@ -218,6 +215,25 @@ const char* Trial<S>::excuse(BasicWorld<S>& world) const {
 }
 
 template <class S>
+std::optional<Verdict> Trial<S>::look_at_joints(BasicWorld<S>& world, const Gap& gap, int k) const {
+  if (scene_->settings.drift != Drift::projection || scene_->settings.solver != Solver::direct) return {};
+  const bool apart = !(gap.share <= held_tolerance<T>);
+  const double share = apart ? gap.share : passed_share(world);
+  const double bound =
+      apart || !works_on_accelerations(scene_->settings.integrator) ? held_tolerance<T> : just_passed<T>;
+  if (share <= bound) return {};
+  const char* why = excuse(world);
+  const std::string of(!apart          ? world.worst_passed_end().effect
+                       : gap.joint < 0 ? ""
+                                       : scene_->joints[static_cast<std::size_t>(gap.joint)].definition.type);
+  return verdict(why ? Outcome::limited : Outcome::broken,
+                 why     ? why
+                 : apart ? "C"
+                         : "an end is passed",
+                 of, share, bound, k);
+}
+
+template <class S>
 std::optional<Verdict> Trial<S>::look(BasicWorld<S>& world, int k) {
   const Frame frame = frame_of(world, world.time(), static_cast<int>(scene_->bodies.size()));
   if (!finite(frame))
@@ -225,11 +241,7 @@ std::optional<Verdict> Trial<S>::look(BasicWorld<S>& world, int k) {
   const Gap gap = gap_now(world);
   const Motion now = motion_of(world);
   accounts_->step(now, spring_rows(world), frame.energy, operations_, world.step_counts().taken, length_of_step(k));
-  if (scene_->settings.drift == Drift::projection && scene_->settings.solver == Solver::direct &&
-      !(gap.share <= held_tolerance<T>))
-    return verdict(excuse(world) ? Outcome::limited : Outcome::broken, excuse(world) ? excuse(world) : "C",
-                   gap.joint < 0 ? "" : scene_->joints[static_cast<std::size_t>(gap.joint)].definition.type, gap.share,
-                   held_tolerance<T>, k);
+  if (auto broken = look_at_joints(world, gap, k)) return broken;
   if (auto broken = look_at_momentum(now, world, gap.share, k)) return broken;
   if (auto broken = look_at_energy(frame.energy, k)) return broken;
   return look_at_balance(world.balance(), k);
@@ -327,6 +339,7 @@ Verdict Trial<S>::run() {
   if (asked_->changes || asked_->forces) laws_.forget_what_is_kept();
   if (scene_->settings.drift != Drift::projection && !(velocity_off(world) <= velocity_tolerance<T>))
     laws_.energy_kept = laws_.energy_falls = false;
+  starts_beyond_ = passed_share(world) > held_tolerance<T>;
   independence_ = independence(system_matrix(world), 8 * std::numeric_limits<T>::epsilon());
   middle_ = end_ = world.snapshot();
   Verdict seen = watch(world);

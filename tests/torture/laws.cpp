@@ -267,4 +267,16 @@ Laws laws_of(const Scene& scene) {
   return laws;
 }
 
+double operations_of(const Scene& scene) {
+  std::vector<int> rows(scene.bodies.size() + 1, 1);
+  for (const SceneJoint& joint : scene.joints)
+    for (const int body : joint.definition.bodies)
+      rows[static_cast<std::size_t>(body + 1)] +=
+          static_cast<int>(find_joint_type(scene.dimension, joint.definition.type)->row_kinds.size()) + 1;
+  const Settings& s = scene.settings;
+  const double stages = s.integrator == Integrator::dop853 ? 12 : s.integrator == Integrator::rk4 ? 4 : 2;
+  const double sweeps = s.solver == Solver::iterative ? 3 * s.iterations : 10;
+  return *std::max_element(rows.begin(), rows.end()) * stages * sweeps * s.substeps;
+}
+
 }  // namespace cdot::torture

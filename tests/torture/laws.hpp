@@ -26,4 +26,7 @@ double lightness(const Scene& scene, const std::vector<int>& bodies, double leng
 // the least effective mass of its bodies with arms up to `length`.
 bool stiff(const Scene& scene, double step, double length);
 
+// An estimate of the rounded operations on a body's velocity in a step: each row of each of its joints, once per solve.
+double operations_of(const Scene& scene);
+
 }  // namespace cdot::torture

@@ -46,6 +46,13 @@ struct Inconsistency {
   double value;
 };
 
+// An end that a coordinate has passed: of a `limit`, or of another effect's row between ends, as a rope's length.
+struct PassedEnd {
+  double by = 0;  // [m] or [rad]
+  int joint = -1;
+  std::string_view effect{};  // as `limit`; valid as long as the World
+};
+
 // The row with the smallest pivot of K = L D L^T, as a share of its diagonal. Where it vanishes, K loses rank: the row
 // becomes redundant. joint is -1 if no factor is at hand.
 struct WeakestRow {
@@ -85,6 +92,8 @@ class BasicWorld {
 
   // Joint rows that the present poses or velocities violate by more than the tolerance ([m] or [rad], and /s).
   std::vector<Inconsistency> inconsistencies(double tolerance) const;
+  // Ends that the present coordinates have passed by more than the tolerance ([m] or [rad]).
+  std::vector<PassedEnd> passed_ends(double tolerance) const;
   // Projects the poses onto C = 0 and the velocities onto Cdot = 0 by the least mass-weighted change. Fails if the
   // joints contradict each other. Refuses to move bodies far for a small error: see ProjectResult.
   ProjectResult project(double tolerance);
@@ -155,6 +164,8 @@ class BasicWorld {
 
   // Over all joints that are neither soft nor broken; inequality rows count only if C < 0.
   WorstError worst_position_error() const;
+  // The end that is passed the farthest; by = 0 and joint = -1 if none is.
+  PassedEnd worst_passed_end() const;
   // At the present poses; inequality rows do not count.
   WorstError worst_velocity_error() const;
   // Kinetic energy + potential of gravity and constant forces (0 at each body's first pose) + springs, soft joints

@@ -89,6 +89,7 @@ Frame frame_of(const BasicWorld<S>& world, double time, int bodies, double energ
   frame.bodies = states_of(world, bodies);
   frame.energy = energy;
   frame.worst = world.worst_position_error();
+  frame.passed = world.worst_passed_end();
   return frame;
 }
 

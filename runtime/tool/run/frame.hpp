@@ -32,6 +32,7 @@ struct Frame {
   std::vector<BodyState> bodies;
   double energy = 0;              // [J]
   WorstError worst;               // the largest |C| of a joint [m], [rad]
+  PassedEnd passed{};             // of an effect, the farthest
   std::vector<double> sensors{};  // of the scene, by number
 };
 

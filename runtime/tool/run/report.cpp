@@ -34,6 +34,9 @@ std::string joint_in_words(const Scene& scene, int joint) {
   return joint < std::ssize(scene.joints) ? fmt::format("joint \"{}\"", name_in(scene.joints, joint)) : "a spring";
 }
 
+// [m] or [rad]; methods pass an end by the error of their events.
+constexpr double shown_end = 1e-6;
+
 // The advice that was tried; without one, what usually helps.
 std::string fix_of(const RunResult& result, const std::string& usual) {
   return result.advice ? in_words(*result.advice) : "Likely fix: " + usual;
@@ -73,6 +76,11 @@ std::string failure(const Scene& scene, const RunResult& result) {
     return fmt::format("|C| of joint \"{}\" is {:.3g} at t = {:.6g} s, above the tolerance of {:.3g}. {}",
                        result.worst_joint, result.worst_error, result.worst_error_time, scene.tolerance,
                        fix_of(result, "a shorter step"));
+  }
+  if (result.worst_end.by > scene.tolerance) {
+    return fmt::format("{} is passed by {:.3g} at t = {:.6g} s, above the tolerance of {:.3g}. {}",
+                       end_name(scene, result.worst_end), result.worst_end.by, result.worst_end_time, scene.tolerance,
+                       fix_of(result, "a start between the ends, or a shorter step"));
   }
   if (const std::string lost = balance_failure(scene, result); !lost.empty())
     return fmt::format("{}. {}", lost, fix_of(result, "a shorter step"));
@@ -143,6 +151,9 @@ std::string summary_text(const Scene& asked, const RunResult& result) {
     text += fmt::format("  worst |C|       {:.3g} (joint \"{}\", t = {:.6g} s)\n", result.worst_error,
                         result.worst_joint, result.worst_error_time);
   }
+  if (result.worst_end.by > shown_end)
+    text += fmt::format("  passed end      {:.3g} ({}, t = {:.6g} s)\n", result.worst_end.by,
+                        end_name(scene, result.worst_end), result.worst_end_time);
   text += fmt::format("  energy          {:.6g} J at the start, {:.6g} J at the end, largest change {:.3g} J\n",
                       result.energy_start, result.energy_end, result.energy_drift);
   for (std::size_t k = 0; k < result.sensors.size(); ++k) {
@@ -209,6 +220,8 @@ std::string summary_json(const Scene& asked, const RunResult& result) {
       {"worst_error", result.worst_error},
       {"worst_error_joint", result.worst_joint},
       {"worst_error_time", result.worst_error_time},
+      {"passed_end", result.worst_end.by},
+      {"passed_end_of", result.worst_end.joint < 0 ? "" : end_name(scene, result.worst_end)},
       {"energy_start", result.energy_start},
       {"energy_end", result.energy_end},
       {"energy_drift", result.energy_drift},

@@ -26,6 +26,8 @@ void judge(const Scene& scene, const Frame& frame, RunResult& result) {
     result.worst_error_time = frame.time;
     result.worst_joint = scene.joints[static_cast<std::size_t>(worst.joint)].name;
   }
+  if (frame.passed.joint >= 0 && !(frame.passed.by <= result.worst_end.by))
+    result.worst_end = frame.passed, result.worst_end_time = frame.time;
   result.finite = finite(frame) && std::isfinite(worst.value);
   result.sensors.resize(frame.sensors.size());
   for (std::size_t k = 0; k < frame.sensors.size(); ++k) {
@@ -203,8 +205,10 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
 std::string refusal(const Scene& scene, const ProjectResult& result) {
   if (result) return {};
   if (!result.refused)
-    return fmt::format("{}: warning: the start could not be projected onto C = 0: joints contradict each other\n",
-                       scene.file);
+    return fmt::format(
+        "{}: warning: the start could not be projected onto C = 0: joints, or ends of limits and ropes, contradict "
+        "each other\n",
+        scene.file);
   return fmt::format(
       "{}: warning: the projection of the start was refused: row {} of {} is off by {:.3g} (m or rad, or per s), and "
       "to "

@@ -64,6 +64,8 @@ struct RunResult {
   double cpu = 0;  // spent in step() [s]
   double worst_error = 0, worst_error_time = 0;
   std::string worst_joint;
+  PassedEnd worst_end;  // the farthest, at worst_end_time
+  double worst_end_time = 0;
   double energy_start = 0, energy_end = 0,
          energy_drift = 0;           // [J]; drift: the largest |E - E_start|
   BalanceWatch balance;              // after every step

@@ -114,6 +114,12 @@ BasicWorld<S> build_world_in(const Scene& scene) {
   return world;
 }
 
+std::string end_name(const Scene& scene, const PassedEnd& end) {
+  const SceneJoint& joint = scene.joints[static_cast<std::size_t>(end.joint)];
+  if (joint.definition.type == end.effect) return fmt::format("an end of {} \"{}\"", end.effect, joint.name);
+  return fmt::format("an end of `{}` of {} \"{}\"", end.effect, joint.definition.type, joint.name);
+}
+
 template <class S>
 std::string inconsistency_report(const Scene& scene, const BasicWorld<S>& world, double tolerance) {
   std::string report;
@@ -131,6 +137,13 @@ std::string inconsistency_report(const Scene& scene, const BasicWorld<S>& world,
         "warning", source.where,
         fmt::format("the start violates {} \"{}\": {}", source.definition.type, source.name, list),
         "correct the pose or velocity, or set project = true");
+  }
+  for (const PassedEnd& end : world.passed_ends(tolerance)) {
+    if (++violated > most_violated) continue;
+    report +=
+        scene.source->paragraph("warning", scene.joints[static_cast<std::size_t>(end.joint)].where,
+                                fmt::format("the start passes {} by {:.3g} (m or rad)", end_name(scene, end), end.by),
+                                "correct the pose or the end, or set project = true");
   }
   if (violated > most_violated)
     report += fmt::format("warning: the start violates {} more joint{}\n", violated - most_violated,

@@ -178,9 +178,12 @@ auto in_space_of(const Scene& scene, F f) {
   return scene.dimension == Dimension::planar ? f(Planar<T>{}) : f(Spatial<T>{});
 }
 
-// The rows that the start violates by more than `tolerance`: a paragraph per joint for the first few, and the number
-// of the others. Empty if there are none.
+// The rows that the start violates and the ends that it passes by more than `tolerance`: a paragraph for each of the
+// first few, and the number of the others. Empty if there are none.
 template <class S>
 std::string inconsistency_report(const Scene& scene, const BasicWorld<S>& world, double tolerance);
+
+// "an end of `limit` of revolute "r"", "an end of tearing_rope "e1"".
+std::string end_name(const Scene& scene, const PassedEnd& end);
 
 }  // namespace cdot

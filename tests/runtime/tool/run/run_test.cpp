@@ -1,6 +1,7 @@
 // Runs from inside: verdicts, warnings, projection, selection of frames.
 #include <cmath>
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include "tests/runtime/tool/support.hpp"
 
@@ -38,6 +39,61 @@ TEST(Run, InconsistentStartIsReportedPerJointAndRow) {
   EXPECT_NEAR(result.worst_error, 0.25, 1e-12);  // the steps close the joint
   EXPECT_EQ(result.worst_error_time, 0);
   EXPECT_EQ(result.time, 1);
+}
+
+// The hinge stands 0.25 rad outside its limit; the rope is 0.3 m too long. Both are told with place and amount and fail
+// the run, and the projection that the message advises mends them.
+TEST(Run, AStartBeyondAnEndIsReportedAndFails) {
+  const auto is_told = [](const std::string& text, const std::string& end, const std::string& amount) {
+    std::string warnings;
+    Scene scene = scene_of(text);
+    const std::string failed = failure(scene, simulate(scene, {}, warnings));
+    EXPECT_NE(warnings.find("the start passes " + end + " by " + amount + " (m or rad)"), std::string::npos)
+        << warnings;
+    EXPECT_EQ(failed.find(end + " is passed by " + amount + " at t = 0 s, above the tolerance of 0.01"), 0u) << failed;
+    scene.project = true;
+    warnings.clear();
+    EXPECT_EQ(failure(scene, simulate(scene, {}, warnings)), "");
+    EXPECT_EQ(warnings, "");
+  };
+  is_told(with(pendulum, "[[joint]]", "[[joint]]\nangle.limit = [0.25, 1]"), "an end of `limit` of revolute \"pivot\"",
+          "0.25");
+  is_told(std::string(pendulum) +
+              "[[joint]]\nname = \"line\"\ntype = \"tearing_rope\"\nbodies = [\"world\", \"rod\"]\n"
+              "pa = [0.5, 0.9]\npb = [0, 0]\nl = 0.6\nstrength = 1e9\n",
+          "an end of tearing_rope \"line\"", "0.3");
+}
+
+// A wheel stands where its angle jumps by a turn, and the row is off by more than half a turn. A pose satisfies it.
+TEST(Run, AGearThatStartsATurnOffIsNoContradiction) {
+  const Scene scene = scene_of(R"(
+dimension = 3
+duration = 0.1
+step = 0.01
+[[body]]
+name = "a"
+mass = 532.7
+inertia = 0.185
+orientation = [-0.6955410621613091, -0.08749382829420078, 0.7129629143681643, -0.015853819527068654]
+[[body]]
+name = "b"
+mass = 70.5
+inertia = [[0.0197, -0.0039, 0.0075], [-0.0039, 0.0253, 0.006], [0.0075, 0.006, 0.0199]]
+orientation = [0.6404103156958032, -0.3584163729715481, 0.24894078167924058, 0.6320133055191562]
+[[joint]]
+name = "teeth"
+type = "gear"
+bodies = ["a", "b"]
+fa = [[0.8515218137089237, 0.44521080749632763, -0.2769439251298588], [0.2454232586687331, 0.12831742582655306, 0.9608860818711379]]
+fb = [[0.6976828778569025, 0.2454471511631597, 0.6730485315418249], [-0.17664793495985087, 0.9694099731207065, -0.17041071295118526]]
+ga = [[-0.205042214108906, -0.15541670075282576, 0.9663350037954869], [-0.5442148224471061, -0.8025139461764014, -0.24454364277413604]]
+gb = [[-0.0885444043858149, 0.7322190351260082, 0.6752889552266488], [0.9960722305395134, 0.06508955511195388, 0.06002883776458309]]
+ratio = 2.9677753944961407
+phi = 8.541431651279963
+)");
+  const std::vector<Inconsistency> off = build_world_in<Spatial<double>>(scene).inconsistencies(1e-6);
+  ASSERT_EQ(off.size(), 1u);
+  EXPECT_LT(off.front().value, -std::numbers::pi * 2.9);
 }
 
 // Floats have no digits left for 0.1 m at 1e7 m: the poses of this scene are relative to a point among its bodies.
