@@ -175,19 +175,4 @@ bool depends_on_velocity(Expr e) {
                              [](Expr leaf) { return leaf->role == Role::velocity || leaf->role == Role::spin; });
 }
 
-Expr substitute(Expr e, const std::map<const Node*, Expr>& replacements, KeepNames names) {
-  std::map<const Node*, Expr> done = replacements;
-  for (const Expr n : topological(std::span(&e, 1))) {
-    if (done.contains(&*n)) continue;
-    std::vector<Expr> args;
-    for (const Expr arg : n->args) args.push_back(done.at(&*arg));
-    const Expr rebuilt = args == n->args ? n : rebuild(n, args);
-    if (names == KeepNames::yes && rebuilt != n && !n->name.empty()) {
-      n->pool->name(rebuilt, n->name, n->named_by_let);
-    }
-    done.emplace(&*n, rebuilt);
-  }
-  return done.at(&*e);
-}
-
 }  // namespace cdot::derive

@@ -8,6 +8,7 @@
 
 #include "derive/derivation/derivation.hpp"
 #include "derive/expression/components.hpp"
+#include "derive/expression/substitution.hpp"
 #include "derive/program/effort.hpp"
 #include "derive/program/program.hpp"
 
@@ -100,7 +101,8 @@ class PoseInputs {
   // Products with vectors that are fixed in `in_axes_of` are taken in the axes of this body
   // (expression/components.hpp).
   explicit PoseInputs(const Joint& joint, int in_axes_of = -1);
-  Expr of(Expr scalar);  // any scalar expression of the joint
+  PoseInputs(const PoseInputs&) = delete;  // a member knows another by its address
+  Expr of(Expr scalar);                    // any scalar expression of the joint
 
  private:
   void rotate(const Joint& joint, const Parameter& parameter);
@@ -108,6 +110,8 @@ class PoseInputs {
 
   std::map<const Node*, Expr> rotated_;
   std::optional<LocalAxes> axes_;
+  std::optional<Components> components_;
+  std::optional<Substitution> rotation_;
 };
 
 // Adds energy, force, unstored and slopes.

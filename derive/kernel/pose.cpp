@@ -40,6 +40,8 @@ PoseInputs::PoseInputs(const Joint& joint, int in_axes_of) {
     }
   }
   if (in_axes_of >= 0) fix(joint, in_axes_of);
+  components_.emplace(axes_ ? &*axes_ : nullptr);
+  rotation_.emplace(rotated_);
 }
 
 void PoseInputs::fix(const Joint& joint, int body) {
@@ -82,10 +84,7 @@ void PoseInputs::rotate(const Joint& joint, const Parameter& parameter) {
   }
 }
 
-Expr PoseInputs::of(Expr scalar) {
-  Components components(axes_ ? &*axes_ : nullptr);
-  return substitute(components.of(scalar), rotated_);
-}
+Expr PoseInputs::of(Expr scalar) { return rotation_->of(components_->of(scalar)); }
 
 // The default of a parameter in its own frame: R^T (p - x) for a point, R^T u for a vector.
 DefaultValue plan_default(const Joint& joint, int index) {

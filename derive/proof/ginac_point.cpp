@@ -104,10 +104,14 @@ std::size_t Steps::add(Kind kind, std::span<const std::size_t> operands, const e
   const std::size_t begin = operands_.size();
   operands_.insert(operands_.end(), operands.begin(), operands.end());
   std::size_t level = 0;
-  for (const std::size_t operand : operands) level = std::max(level, steps_[operand].level);
+  bool constant = !is_a<GiNaC::symbol>(e);
+  for (const std::size_t operand : operands) {
+    level = std::max(level, steps_[operand].level);
+    constant = constant && steps_[operand].constant;
+  }
   const bool root =
       kind == Kind::power && !ex_to<numeric>(e.op(1)).is_integer() && (2 * ex_to<numeric>(e.op(1))).is_integer();
-  steps_.push_back({kind, e, function_in(e), begin, operands_.size(), root, level + (root ? 1 : 0),
+  steps_.push_back({kind, e, function_in(e), begin, operands_.size(), root, constant, level + (root ? 1 : 0),
                     kind == Kind::leaf && is_a<numeric>(e) ? modular_if_any(ex_to<numeric>(e)) : std::nullopt});
   return steps_.size() - 1;
 }

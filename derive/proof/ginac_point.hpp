@@ -52,6 +52,7 @@ class Steps {
     std::optional<Fn> fn;    // none of a function that no table knows
     std::size_t begin, end;  // its operands
     bool root;               // a power k/2
+    bool constant;           // without symbols
     std::size_t level;
     std::optional<Modular> number;  // the value of a leaf that is one
   };
@@ -61,14 +62,14 @@ class Steps {
   std::size_t add(Kind kind, std::span<const std::size_t> operands, const ex& e = 0);
   std::size_t sum(std::span<const std::size_t> terms);
   std::size_t product(std::span<const std::size_t> factors);
-  std::size_t slope_of_step(std::size_t place, std::size_t by);
+  std::map<std::size_t, std::size_t> gradient(std::size_t last);
   std::vector<std::size_t> factors_of_slopes(const Step& step, std::span<const std::size_t> operands);
 
   std::vector<Step> steps_;
   std::vector<std::size_t> operands_;
   std::unordered_map<ex, std::size_t, std::hash<ex>, SameExpression> places_;
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> slopes_;  // by places of a step and of a symbol
-  std::vector<std::size_t> visits_;                                    // by place: the last one
+  std::unordered_map<std::size_t, std::map<std::size_t, std::size_t>> gradients_;  // slopes by step and symbol
+  std::vector<std::size_t> visits_;                                                // by place: the last one
   std::size_t visit_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// Slopes of steps, by the chain rule from step to step. They are as many as the steps, however long GiNaC's own
-// derivative would be.
+// Slopes of steps by all symbols at once, by the chain rule from step to step. They are as many as the steps, however
+// long GiNaC's own derivative would be, and however many symbols there are.
 #include <algorithm>
 #include <array>
 
@@ -22,30 +22,30 @@ std::size_t Steps::product(std::span<const std::size_t> factors) {
 }
 
 std::size_t Steps::slope(std::size_t last, const ex& symbol) {
-  const std::size_t by = place_of(symbol);
-  for (const std::size_t place : parts_of(last)) {
-    if (slopes_.contains({place, by})) continue;
-    const std::size_t slope = slope_of_step(place, by);
-    slopes_.emplace(std::pair(place, by), slope);
-  }
-  return slopes_.at({last, by});
+  const auto [found, fresh] = gradients_.try_emplace(last);
+  if (fresh) found->second = gradient(last);
+  const auto slope = found->second.find(place_of(symbol));
+  return slope == found->second.end() ? place_of(0) : slope->second;
 }
 
-// f(x, y)' = f_x x' + f_y y'
-std::size_t Steps::slope_of_step(std::size_t place, std::size_t by) {
-  if (place == by) return place_of(1);
-  const Step step = steps_[place];
-  const std::vector<std::size_t> operands(operands_.begin() + static_cast<std::ptrdiff_t>(step.begin),
-                                          operands_.begin() + static_cast<std::ptrdiff_t>(step.end));
-  const std::size_t zero = place_of(0);
-  std::vector<std::size_t> slopes, terms;
-  for (const std::size_t operand : operands) slopes.push_back(slopes_.at({operand, by}));
-  if (std::ranges::all_of(slopes, [&](std::size_t slope) { return slope == zero; })) return zero;
-  const std::vector<std::size_t> factors = factors_of_slopes(step, operands);
-  for (std::size_t i = 0; i < operands.size(); ++i) {
-    if (slopes[i] != zero) terms.push_back(product(std::array{factors[i], slopes[i]}));
+// From users to operands: a step adds its own slope, times its partial derivative, to that of each operand.
+std::map<std::size_t, std::size_t> Steps::gradient(std::size_t last) {
+  std::map<std::size_t, std::size_t> by_symbols;
+  std::unordered_map<std::size_t, std::vector<std::size_t>> terms = {{last, {place_of(1)}}};
+  const std::vector<std::size_t> parts = parts_of(last);
+  for (auto place = parts.rbegin(); place != parts.rend(); ++place) {
+    if (steps_[*place].constant) continue;
+    const std::size_t slope = sum(terms.at(*place));
+    terms.erase(*place);
+    const Step step = steps_[*place];
+    if (step.kind == Kind::leaf) by_symbols.emplace(*place, slope);
+    const std::vector<std::size_t> operands(operands_.begin() + static_cast<std::ptrdiff_t>(step.begin),
+                                            operands_.begin() + static_cast<std::ptrdiff_t>(step.end));
+    const std::vector<std::size_t> factors = factors_of_slopes(step, operands);
+    for (std::size_t i = 0; i < operands.size(); ++i)
+      if (!steps_[operands[i]].constant) terms[operands[i]].push_back(product(std::array{factors[i], slope}));
   }
-  return sum(terms);
+  return by_symbols;
 }
 
 // The partial derivatives of a step by its operands.
@@ -53,6 +53,7 @@ std::vector<std::size_t> Steps::factors_of_slopes(const Step& step, std::span<co
   std::vector<std::size_t> factors(operands.size(), place_of(1));
   if (step.kind == Kind::product) {
     for (std::size_t i = 0; i < operands.size(); ++i) {
+      if (steps_[operands[i]].constant) continue;
       std::vector<std::size_t> others(operands.begin(), operands.end());
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
       factors[i] = product(others);
