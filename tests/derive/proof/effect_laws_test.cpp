@@ -156,10 +156,10 @@ TEST(EffectLaws, ForcesThatAreNotOppositeAreTold) {
   EXPECT_EQ(text_of("  force on pa = F*n\n  force on pb = -F*n\n  torque on b = cross(pb - pa, F*n)\n"), "");
 }
 
-// The notes of a check about power.
-std::string power_of(const std::string& force) {
+// The first note of a check about power.
+std::string power_by(const std::string& statement) {
   const ReadResult read =
-      effect_in("  scalar d [N*m*s/rad]\n  coordinate q [rad] = angle(a) - angle(b)\n  force on q = " + force + "\n");
+      effect_in("  scalar d [N*m*s/rad]\n  coordinate q [rad] = angle(a) - angle(b)\n  " + statement + "\n");
   const CheckReport report = check(read);
   EXPECT_TRUE(report.clean());
   for (const Finding& finding : report.findings)
@@ -167,11 +167,17 @@ std::string power_of(const std::string& force) {
   return "";
 }
 
+std::string power_of(const std::string& force) { return power_by("force on q = " + force); }
+
 TEST(EffectLaws, DampersTakeEnergyAndMotorsPutItIn) {
   EXPECT_NE(power_of("-d*rate(q)").find("only takes energy"), std::string::npos) << power_of("-d*rate(q)");
   EXPECT_NE(power_of("-d*rate(q)*abs(rate(q))/(1 [rad/s])").find("only takes energy"), std::string::npos);
   EXPECT_NE(power_of("d*rate(q)").find("can put energy in"), std::string::npos) << power_of("d*rate(q)");
   EXPECT_NE(power_of("d*(3 [rad/s] - rate(q))").find("rate"), std::string::npos);
+  EXPECT_NE(power_of("-d*abs(rate(q))").find("can put energy in"), std::string::npos) << "at negative rates alone";
+  const std::string within = ", force in [-d*(1 [rad/s]), d*(1 [rad/s])]";
+  EXPECT_NE(power_by("rate(q) = 2 [rad/s]" + within).find("can put energy in"), std::string::npos);
+  EXPECT_NE(power_by("rate(q) = 0" + within).find("only takes energy"), std::string::npos);
   EXPECT_EQ(check(effect_in(damped_spring)).findings.size(), 1u);
 }
 

@@ -19,7 +19,7 @@ constexpr std::size_t most_letters = 400000;  // of a lecture
 
 constexpr std::size_t longest_message = 600;  // in a line of a report
 
-// Its laws take longer than 5 s to prove (README.md).
+// Its laws take seconds to prove (README.md).
 const std::set<std::uint64_t> slow = {14};
 
 struct Seeds {
