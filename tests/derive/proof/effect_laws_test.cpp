@@ -5,6 +5,7 @@
 #include <set>
 
 #include "derive/check/check.hpp"
+#include "derive/kernel/plan.hpp"
 #include "derive/language/read.hpp"
 #include "derive/language/specs_folder.hpp"
 #include "derive/proof/prove.hpp"
@@ -179,6 +180,19 @@ TEST(EffectLaws, DampersTakeEnergyAndMotorsPutItIn) {
   EXPECT_NE(power_by("rate(q) = 2 [rad/s]" + within).find("can put energy in"), std::string::npos);
   EXPECT_NE(power_by("rate(q) = 0" + within).find("only takes energy"), std::string::npos);
   EXPECT_EQ(check(effect_in(damped_spring)).findings.size(), 1u);
+}
+
+// An implicit step takes a law as linear only if its slopes cannot feed energy in.
+TEST(EffectLaws, SlopesThatMayBeNegativeAreNotLinear) {
+  const auto is_linear = [](const std::string& damping) {
+    const Derivation derivation = derivation_of(
+        "  scalar d [N*m*s/rad] above 0\n  scalar e [N*m*s/rad] above 0\n"
+        "  coordinate q [rad] = angle(a) - angle(b)\n  force on q = -(" +
+        damping + ")*rate(q)\n");
+    return slopes_of(derivation.joint, *derivation.law).linear;
+  };
+  EXPECT_TRUE(is_linear("d + e"));
+  EXPECT_FALSE(is_linear("d - e"));
 }
 
 // The powers of the rows cancel but for round-off, which is neither of both.
