@@ -1,5 +1,6 @@
 // Calls of operators: the table's row that fits the arguments, its unit rule, and the error if none fits.
 #include <algorithm>
+#include <fmt/format.h>
 #include <map>
 
 #include "derive/expression/symbols.hpp"
@@ -8,6 +9,15 @@
 
 namespace cdot::derive {
 namespace {
+
+// The fix for the root of a negative number, or the logarithm of one that is not positive; else empty.
+std::string missing_domain(const Operator& o, const std::vector<Value>& arguments) {
+  if (arguments.size() != 1 || !arguments[0].e || arguments[0].e->kind != Kind::number) return "";
+  const int sign = arguments[0].e->value.sign();
+  if (o.name == "sqrt" && sign < 0) return "give sqrt an argument of 0 or more";
+  if (o.name == "log" && sign <= 0) return "give log an argument above 0";
+  return "";
+}
 
 unsigned bit_of(const Value& v, bool hand) {
   switch (v.type) {
@@ -185,6 +195,9 @@ Value Evaluator::apply(const Operator& o, const std::vector<Value>& arguments, c
                  "subtract two points instead");
   const auto rule = unit_of_call(o, built, ast);
   if (!rule) return {};
+  if (const std::string fix = missing_domain(o, built); !fix.empty())
+    return error(ast.args[0].where,
+                 fmt::format("{} has no value at any pose: its argument is {}", o.name, built[0].e->value.text()), fix);
   Value result = o.build(pool_, built);
   result.unit = rule->unit;
   result.ratio = rule->ratio;
