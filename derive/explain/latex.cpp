@@ -129,6 +129,13 @@ std::string item(const std::string& words, bool bullet) { return filled(bullet ?
 
 }  // namespace
 
+std::string chain_latex(const Chain& chain, const std::vector<std::string>& bodies) {
+  const FormulaWriter formula(style, bodies);
+  std::string out = formula.write(chain.left);
+  for (const Link& link : chain.links) out += " = " + formula.write(link.formula);
+  return out;
+}
+
 std::string explanation_latex(const Explanation& explanation) {
   return written(explanation, {style, head, "\\end{document}\n", "\n\\section{#2}\n", "\\begin{itemize}\n",
                                "\\end{itemize}\n", "$#1$", escaped, prose, item, chain});

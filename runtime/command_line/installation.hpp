@@ -8,7 +8,11 @@ namespace cdot::command_line {
 // The folder of the running program.
 std::filesystem::path own_folder();
 
-// share/cdot/PART of the prefix in which the program is installed; empty if there is none.
+// share/cdot/PART of the prefix in which the program is installed, or a PART that a library has beside it; empty if
+// there is none.
 std::filesystem::path installed(const std::filesystem::path& part);
+
+// For a library in a program of others: `folder` holds what a program finds in share/cdot.
+void install_in(const std::filesystem::path& folder);
 
 }  // namespace cdot::command_line

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <type_traits>
+#include <utility>
 
 #include <cdot/spaces.hpp>
 
@@ -158,6 +159,8 @@ void settle_state(WorldData<S>& world) {
   Layout<T> move(world.block, bytes.data());
   StateList::each(world, move);
   world.block.bytes.swap(bytes);
+  if (const auto heir = world.block.heir.lock()) *heir = std::move(bytes);
+  world.block.heir.reset();
   world.before.assign(world.block.bytes.size(), std::byte{0});
   world.block.islands.clear();
   const std::vector<std::vector<int>> breakable = find_breakable(world);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include <cdot/snapshot.hpp>
@@ -16,6 +17,8 @@ struct Block {
   std::vector<Snapshot::Item> items;
   Range common{};                           // time and counts
   std::vector<std::vector<Range>> islands;  // ranges of each that steps change
+  // Of whoever shows the bytes to a program (derive/python): receives them when another layout replaces them.
+  std::weak_ptr<std::vector<std::byte>> heir;
 };
 
 // Lays out the State of a World after the analysis of islands and moves it into one block. Allocates.

@@ -21,7 +21,7 @@ const fs::path source_dir = CDOT_SOURCE_DIR;
 // clang-format off
 const std::set<std::string> shared_rooms = {"runtime/text", "runtime/command_line", "runtime/tape"};  // of derive/ too
 // Scenes by the runtime, kernels and derivations by the generator: these rooms include both.
-const std::vector<std::string> bridges = {"derive/compile", "derive/play"};
+const std::vector<std::string> bridges = {"derive/compile", "derive/play", "derive/python"};
 
 // The parts of the generator that cdot-run may include: expressions of scenes, and joints without a compiler. The
 // runtime's library includes nothing.
@@ -83,6 +83,7 @@ const std::vector<std::string> rooms = {
     "derive/compile/rows", // its rows and laws as programs
     "derive/compile",      // a scene to a header of its own
     "derive/play",         // the playground: its engine and its page
+    "derive/python",       // `import cdot`
 };
 // One room in two folders, which may include each other.
 const std::map<std::string, std::string> annexes = {{"derive/language/hand", "derive/language"}};

@@ -63,6 +63,8 @@ def front_page():
         files = re.findall(r"\]\(((?:specs|generated|tests)/[^)]+)\)", before)
         if language == "cmake":
             kind = "cmake"  # tests/install does what it says
+        elif language == "python":
+            kind = "python"  # tests/derive/python runs it
         elif first.startswith("./"):
             kind = "programs"
             for line in lines:
@@ -83,7 +85,7 @@ def front_page():
             kind = "unknown"
             claim(False, "README.md has a block that nothing checks: " + first)
         kinds.add(kind)
-    claim(kinds == {"cmake", "programs", "stages", "commands", "files"}, "README.md has blocks of every kind")
+    claim(kinds == {"cmake", "python", "programs", "stages", "commands", "files"}, "README.md has blocks of every kind")
     for row in re.findall(r"^\| [\w, ]+ \| (`.*?`) \|", (source / "README.md").read_text(), re.M):
         for name in re.findall(r"`(.*?)`", row):
             name = name if "/" in name else "derive/" + name
