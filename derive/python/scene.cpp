@@ -49,6 +49,16 @@ void check_times(const std::vector<double>& times) {
       throw py::value_error(fmt::format("a time of the output must be a finite number >= 0, but is {}", time));
 }
 
+void record_known(Scene& scene, const std::vector<std::string>& groups) {
+  std::string known = "all";
+  for (const Recordable& group : recordables()) known += fmt::format(", {}", group.name);
+  for (const std::string& name : groups)
+    if (name != "all" &&
+        std::ranges::find(recordables(), std::string_view(name), &Recordable::name) == recordables().end())
+      throw py::value_error(fmt::format("there is no group `{}` to record. Known groups: {}", name, known));
+  record(scene, groups);
+}
+
 RunResult run_scene(const Scene& scene, const RunOptions& options, std::string& warnings) {
   const py::gil_scoped_release others_may_run;
   RunResult run = simulate(scene, options, warnings);
@@ -136,7 +146,7 @@ void bind_scenes(py::module_& module) {
       .def_property_readonly(
           "sensors", [](const Scene& s) { return names_in(s.sensors); }, "Names of the sensors.")
       .def_property_readonly("columns", columns_in, "Names of the numbers of a body's state: x, y, angle, vx, ...")
-      .def("record", &record, py::arg("groups"), "Adds sensors, as `cdot-run simulate --record`: [\"all\"], ...")
+      .def("record", &record_known, py::arg("groups"), "Adds sensors, as `cdot-run simulate --record`: [\"all\"], ...")
       .def("_simulate", &simulate_scene, py::arg("times"), py::arg("start"), py::arg("save"))
       .def("__copy__", [](const Scene& s) { return Scene(s); })
       .def("__deepcopy__", [](const Scene& s, const py::dict&) { return Scene(s); });

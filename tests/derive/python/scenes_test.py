@@ -68,6 +68,8 @@ class Runs(unittest.TestCase):
             cdot.simulate(scene, until=-1)
         with self.assertRaisesRegex(ValueError, "a time of the output must be"):
             cdot.simulate(scene, times=[math.nan])
+        with self.assertRaisesRegex(ValueError, "no group `torques` to record. Known groups: all, coordinates"):
+            cdot.simulate(scene, record=["torques"])
 
     def test_world_of_a_scene_moves_as_its_run(self):
         scene = cdot.Scene.of_text(SWING)
