@@ -80,7 +80,13 @@ void bind_run(Type<S>& type) {
 template <class S>
 void bind_state(Type<S>& type) {
   using World = NamedWorld<S>;
-  type.def_property_readonly(
+  type.def("__repr__",
+           [](const World& w) {
+             return fmt::format("<cdot.{} of {} bodies and {} joints, t = {:.6g} s>",
+                                S::dimension == Dimension::planar ? "World" : "SpatialWorld", w.world().body_count(),
+                                w.world().joint_count(), w.world().time());
+           })
+      .def_property_readonly(
           "time", [](const World& w) { return w.world().time(); }, "Of the simulation [s].")
       .def_property_readonly("usual_step", &World::usual_step, "[s] of step() without h.")
       .def_readonly("why", &World::why, "Why this method was picked for a scene that names none; else empty.")
