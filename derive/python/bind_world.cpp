@@ -1,4 +1,5 @@
 // Worlds in the plane and in space, in doubles, as classes of Python.
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include "derive/python/keywords.hpp"
