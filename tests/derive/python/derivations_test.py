@@ -37,6 +37,19 @@ class Sympy(unittest.TestCase):
         self.assertTrue(zero(joint.b + joint.J * v + joint.C_t))
         self.assertFalse(zero(joint.C_t))
 
+    def test_gamma_is_the_turning_of_the_jacobian(self):
+        """gamma = -Jdot v, with J on the way q + s v."""
+        s = sympy.Symbol("s")
+        for name in ("line", "pulley"):
+            joint = cdot.derive(name)
+            v = sympy.Matrix([joint.symbols[column] for column in joint.columns])
+            q = [joint.symbols[column.replace("v_", "x_").replace("w_", "theta_")] for column in joint.columns]
+            on_the_way = joint.in_pose(joint.J).subs({x: x + s * rate for x, rate in zip(q, v)}, simultaneous=True)
+            off = joint.in_pose(joint.gamma) + ((on_the_way * v).diff(s)).subs(s, 0)
+            numbers = {symbol: sympy.Rational(k + 2, 7) for k, symbol in
+                       enumerate(sorted(off.free_symbols, key=lambda symbol: symbol.name))}
+            self.assertLess(abs(off.subs(numbers).evalf(30)[0]), 1e-25, name)
+
     def test_coordinates(self):
         joint = cdot.derive("revolute")
         angle = joint.coordinates["angle"]
@@ -62,6 +75,10 @@ class Sympy(unittest.TestCase):
         np.testing.assert_allclose(joint.function("Cdot")(**numbers)[:, 0], world.velocity_error("j"), rtol=1e-12)
         many = {name: np.full(7, value) for name, value in numbers.items()}
         self.assertEqual(joint.function("J")(**many).shape, (1, 6, 7))
+        many["theta_a"] = np.linspace(0, 1, 7)
+        slopes = joint.function("J")(**many)
+        for k, angle in enumerate(many["theta_a"]):
+            np.testing.assert_array_equal(slopes[..., k], joint.function("J")(**{**numbers, "theta_a": angle}))
         with self.assertRaisesRegex(TypeError, "needs the numbers inv_I_a"):
             joint.function("K")()
         with self.assertRaisesRegex(TypeError, "has no symbols mass"):

@@ -58,7 +58,7 @@ class Runs(unittest.TestCase):
         result = cdot.simulate("simple_pendulum", until=1, accuracy=1e-6, times=[1])
         self.assertEqual(result.failure, "")
         self.assertIn("accuracy", json.loads(result.json))
-        self.assertIn("delivered", result.text)
+        self.assertIn("1.0e-06 m, rad asked for", result.text)
 
     def test_failures_say_why(self):
         scene = cdot.Scene.of_text(SWING.replace('"rk4"', '"euler"').replace("step = 0.01", "step = 0.5"))

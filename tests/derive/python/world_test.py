@@ -86,6 +86,8 @@ class Motion(unittest.TestCase):
             alone = pendulum(angle=angle)
             alone.step(1e-3, count=200)
             np.testing.assert_array_equal(state, alone.states())
+        with self.assertRaisesRegex(ValueError, "a World occurs twice"):
+            cdot.batch([alone, alone], 1e-3, 1)
 
 
 class Arrays(unittest.TestCase):
