@@ -107,8 +107,9 @@ void bind_state(Type<S>& type) {
       .def(
           "energy", [](const World& w) { return w.world().energy(); }, "Kinetic and potential energy [J].")
       .def("balance", &World::balance,
-           "Energies [J] since the first step: kinetic, potential, start, put_in, taken, and method: what the method "
-           "itself made up (> 0) or lost.")
+           "Energies [J] since the first step: kinetic, potential, start, put_in, taken, and method: made up (> 0) or "
+           "lost "
+           "by the method itself.")
       .def("work", &World::work, "Work [J] since the first step by who did it: motor, friction, drag, ...")
       .def(
           "hash", [](const World& w) { return w.world().hash(); }, "Of every bit of poses and velocities.");

@@ -179,7 +179,7 @@ void NamedWorld<S>::set_pose(const py::handle& which, const py::handle& value) {
   world().set_pose(body(which), place_of_numbers<S>(numbers_of(value, "pose", S::pose_numbers).data()));
 }
 
-// What is as it was stays untouched: it wakes nothing and costs nothing.
+// An unchanged state stays untouched: it wakes nothing and costs nothing.
 template <class S>
 void NamedWorld<S>::set_states(const py::handle& states) {
   const auto count = static_cast<py::ssize_t>(world().body_count());

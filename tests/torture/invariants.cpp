@@ -36,16 +36,6 @@ constexpr double nearly_lost = 0.05;  // of the rows' independence at the start
 template <class T>
 constexpr double told_apart = Ldlt::pivot_share<T>;
 
-double heaviest_over_lightest(const Scene& scene) {
-  double least = std::numeric_limits<double>::infinity(), most = 0;
-  for (const SceneBody& body : scene.bodies) {
-    if (body.is_static) continue;
-    const double mass = mass_of(scene, body);
-    least = std::min(least, mass), most = std::max(most, mass);
-  }
-  return most > 0 ? most / least : 1;
-}
-
 template <class S>
 class Trial {
  public:

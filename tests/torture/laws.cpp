@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <cdot/jacobian.hpp>
+
+#include "tests/torture/pushes.hpp"
 
 namespace cdot::torture {
 namespace {
@@ -277,6 +280,16 @@ double operations_of(const Scene& scene) {
   const double stages = s.integrator == Integrator::dop853 ? 12 : s.integrator == Integrator::rk4 ? 4 : 2;
   const double sweeps = s.solver == Solver::iterative ? 3 * s.iterations : 10;
   return *std::max_element(rows.begin(), rows.end()) * stages * sweeps * s.substeps;
+}
+
+double heaviest_over_lightest(const Scene& scene) {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (const SceneBody& body : scene.bodies) {
+    if (body.is_static) continue;
+    const double mass = mass_of(scene, body);
+    least = std::min(least, mass), most = std::max(most, mass);
+  }
+  return most > 0 ? most / least : 1;
 }
 
 }  // namespace cdot::torture

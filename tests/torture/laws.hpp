@@ -29,4 +29,7 @@ bool stiff(const Scene& scene, double step, double length);
 // An estimate of the rounded operations on a body's velocity in a step: each row of each of its joints, once per solve.
 double operations_of(const Scene& scene);
 
+// The ratio of masses of movable bodies.
+double heaviest_over_lightest(const Scene& scene);
+
 }  // namespace cdot::torture
