@@ -128,17 +128,23 @@ void tell_slip(Entry& entry, const Part* part, const HandItem& item, std::size_t
   std::vector<Difference>& differences = entry.verdict.differences;
   const std::size_t told = differences.size() - before;
   const std::string what = part ? item.what : "claim on " + item.what;
-  if (told == 0 || (told == 1 && item.what != "K" && part)) return;
-  const std::optional<Slip> slip =
-      slip_of_whole(entry, part, part ? item.what : "claim", sides.published, sides.generated);
-  const bool without_words = differences[before].sentence.ends_with("it is not the generated one");
+  if (told == 0) return;
+  const auto says = [&](const char* words) { return differences[before].sentence.find(words) != std::string::npos; };
+  const bool without_words = says(not_generated) || (says(and_opposite) && differences[before].kind == "factor");
+  if (told == 1 && item.what != "K" && part && !without_words) return;
+  const std::string on_C = fmt::format("{}; equal where C = 0", not_generated);
+  const bool all_on_C = std::all_of(differences.begin() + static_cast<std::ptrdiff_t>(before), differences.end(),
+                                    [](const Difference& d) { return d.kind == "undeclared assumption"; });
+  const std::optional<Slip> slip = part && told > 1 && all_on_C ? Slip{"undeclared assumption", on_C}
+                                                                : slip_of_whole(entry, part, part ? item.what : "claim",
+                                                                                sides.published, sides.generated);
   if (!slip || (told == 1 && part && slip->kind != "inverse" && slip->kind != "frame" && !without_words)) return;
   differences.erase(differences.begin() + static_cast<std::ptrdiff_t>(before), differences.end());
   int wrong = 0;
   const auto index = [](int i) { return static_cast<std::size_t>(i); };
   while (entry.equal(sides.published.entries[index(wrong)], sides.generated.entries[index(wrong)])) ++wrong;
-  add_plain(entry, item, {what, "", "", {}, {}, &entry.joint}, slip->kind, slip->sentence,
-            confirm(wrong / sides.generated.columns, wrong % sides.generated.columns));
+  add_slip(entry, item, {what, "", "", {}, {}, &entry.joint}, *slip,
+           confirm(wrong / sides.generated.columns, wrong % sides.generated.columns));
 }
 
 // A published quantity beside the generated one, in the source's signs and scales of C.
@@ -161,7 +167,8 @@ struct Quantity {
       }
     }
     const std::size_t before = entry.verdict.differences.size();
-    const Sides sides{item.what, published, generated, groups_of_rows(entry, part, generated.rows), columns};
+    const Sides sides{item.what, published,        generated,       groups_of_rows(entry, part, generated.rows),
+                      columns,   item.what == "K", item.what == "J"};
     derive::compare(entry, sides, [&](int r, int c) {
       Place place{item.what, name_of_row(part, r), "", {}, {}, &entry.joint};
       describe(place, r, c);

@@ -22,9 +22,11 @@ bool all_same(const Differences& entries, Text text) {
   return true;
 }
 
-// Component i of a vector formula, as the formula: "-cross(ra, n).x" as "-cross(ra, n)".
+// Component i of a vector formula, as the formula: "-cross(ra, n).x" as "-cross(ra, n)". An axis of the world stays.
 std::string without_component(const std::string& text, std::size_t i) {
-  return std::regex_replace(text, std::regex(std::string("\\.") + "xyz"[i] + "\\b"), "");
+  const std::string axis = std::string(".") + "xyz"[i];
+  if (text.find("world" + axis) != text.npos) return text;
+  return std::regex_replace(text, std::regex("\\" + axis + "\\b"), "");
 }
 
 std::string condition_of(const Difference& d) {
@@ -33,11 +35,22 @@ std::string condition_of(const Difference& d) {
 }
 
 void set_reason(Difference& d, const std::string& reason) {
-  std::string place = d.sentence.substr(0, d.sentence.find(","));  // "J", "claim on C"
+  std::string place = d.sentence.substr(0, std::min(d.sentence.find(","), d.sentence.find(": ")));  // "J", "claim on C"
   if (!d.row.empty()) place += (d.row.find_first_of("-,") == d.row.npos ? ", row " : ", rows ") + d.row;
   const bool numbers = d.column.find_first_not_of("0123456789-") == d.column.npos;
-  if (!d.column.empty()) place += (numbers ? ", columns " : ", ") + d.column;
+  const bool several = d.column.find('-') != d.column.npos;
+  if (!d.column.empty()) place += (!numbers ? ", " : several ? ", columns " : ", column ") + d.column;
   d.sentence = place + ": " + reason;
+}
+
+// "K, row 1, column 2: ..." as "K, row 1, column 2, and row 2, column 1: ...".
+void add_mirror(Difference& d) {
+  const auto place = [](const std::string& row, const std::string& column) {
+    const auto is_several = [](const std::string& s) { return s.find_first_of("-,") != s.npos; };
+    return fmt::format("{} {}, {} {}", is_several(row) ? "rows" : "row", row, is_several(column) ? "columns" : "column",
+                       column);
+  };
+  d.sentence = fmt::format("{}, {}, and {}: {}", d.what, place(d.row, d.column), place(d.column, d.row), reason_of(d));
 }
 
 // "[a, b ; c, d]": the texts of `entry(row, column)` in a block.
@@ -53,10 +66,20 @@ std::string text_of(const Group& rows, const Group& columns, const Joint& joint,
   return s + "]";
 }
 
+bool is_transposed(const Sides& sides, const Group& rows, const Group& columns, const Poses& poses) {
+  if (rows.count != columns.count) return false;
+  for (int r = 0; r < rows.count; ++r)
+    for (int c = 0; c < rows.count; ++c)
+      if (!poses.equal(sides.published.at(rows.first + r, columns.first + c),
+                       sides.generated.at(rows.first + c, columns.first + r)))
+        return false;
+  return true;
+}
+
 // Merges the differences within a block into one, if one reason fits them all. Each is of one entry; their order is
 // that of vector components.
-Differences merged(Differences entries, const Sides& sides, const Group& rows, const Group& columns,
-                   const Joint& joint) {
+Differences merged(Differences entries, const Sides& sides, const Group& rows, const Group& columns, const Joint& joint,
+                   const Poses& poses) {
   if (entries.size() < 2) return entries;
   Difference one = entries[0];
   one.row = rows.name;
@@ -73,7 +96,14 @@ Differences merged(Differences entries, const Sides& sides, const Group& rows, c
     for (std::string Difference::*formula : formulas) one.*formula = without_component(one.*formula, 0);
     return {one};
   }
-  if (kinds && all_same(entries, [](const Difference& d, std::size_t) { return reason_of(d); })) {
+  const bool same_reason = all_same(entries, [](const Difference& d, std::size_t) { return reason_of(d); });
+  const bool unexplained = !same_reason || reason_of(entries[0]).starts_with(not_generated);
+  if (unexplained && is_transposed(sides, rows, columns, poses)) {
+    one.kind = "transposed";
+    set_reason(one, "the block is transposed");
+    return {one};
+  }
+  if (kinds && same_reason) {
     const Matrix &published = sides.published, &generated = sides.generated;
     set_reason(one, reason_of(entries[0]));
     one.generated = text_of(rows, columns, joint, [&](int r, int c) { return generated.at(r, c); });
@@ -119,26 +149,79 @@ void add_plain(Entry& entry, const HandItem& item, const Place& place, std::stri
   entry.verdict.differences.push_back(std::move(d));
 }
 
-void compare(Entry& entry, const Sides& sides, const std::function<Difference(int, int)>& difference) {
-  std::vector<bool> wrong(sides.generated.entries.size());
-  for (const Group& rows : sides.rows) {
-    for (const Group& columns : sides.columns) {
-      Differences found;
-      for (int r = rows.first; r < rows.first + rows.count; ++r) {
-        for (int c = columns.first; c < columns.first + columns.count; ++c) {
-          if (entry.equal(sides.published.at(r, c), sides.generated.at(r, c))) continue;
-          wrong[static_cast<std::size_t>(r * sides.generated.columns + c)] = true;
-          found.push_back(difference(r, c));
-        }
-      }
-      for (Difference& d : merged(std::move(found), sides, rows, columns, entry.joint)) {
-        for (std::string* text : {&d.generated, &d.hand, &d.difference, &d.sentence}) {
-          *text = in_names_of_spec(*text, entry.joint);
-        }
-        entry.verdict.differences.push_back(std::move(d));
-      }
+void add_slip(Entry& entry, const HandItem& item, const Place& place, const Slip& slip, std::string confirmed) {
+  add_plain(entry, item, place, slip.kind, slip.sentence, std::move(confirmed));
+  Difference& added = entry.verdict.differences.back();
+  added.generated = slip.generated;
+  added.difference = slip.difference;
+  if (!slip.published.empty()) added.hand = slip.published;
+}
+
+namespace {
+
+// True if both sides have, in these columns, the opposite of what they have in the others.
+bool are_opposite(Entry& entry, const Sides& sides, const Group& rows, const Group& one, const Group& other) {
+  if (one.count != other.count) return false;
+  for (int r = rows.first; r < rows.first + rows.count; ++r)
+    for (int k = 0; k < one.count; ++k)
+      for (const Matrix* of : {&sides.published, &sides.generated})
+        if (!entry.equal(of->at(r, one.first + k), -of->at(r, other.first + k))) return false;
+  return true;
+}
+
+// The differences within a block of rows and columns, marked in `wrong`.
+Differences of_block(Entry& entry, const Sides& sides, const Group& rows, const Group& columns,
+                     const std::function<Difference(int, int)>& difference, std::vector<bool>& wrong) {
+  Differences found;
+  bool mirrored = false;
+  for (int r = rows.first; r < rows.first + rows.count; ++r) {
+    for (int c = columns.first; c < columns.first + columns.count; ++c) {
+      if (entry.equal(sides.published.at(r, c), sides.generated.at(r, c))) continue;
+      wrong[static_cast<std::size_t>(r * sides.generated.columns + c)] = true;
+      const bool twice = sides.symmetric && r != c && entry.equal(sides.published.at(r, c), sides.published.at(c, r));
+      mirrored = mirrored || twice;
+      if (!twice || r < c) found.push_back(difference(r, c));
     }
   }
+  found = merged(std::move(found), sides, rows, columns, entry.joint, entry.poses());
+  for (Difference& d : found) {
+    if (mirrored && rows.first != columns.first) add_mirror(d);
+    for (std::string* text : {&d.generated, &d.hand, &d.difference, &d.sentence})
+      *text = in_names_of_spec(*text, entry.joint);
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<Difference> differences_of(Entry& entry, const Sides& sides,
+                                       const std::function<Difference(int, int)>& difference,
+                                       std::vector<bool>& wrong) {
+  std::vector<Difference> all;
+  for (const Group& rows : sides.rows) {
+    std::vector<std::pair<const Group*, std::size_t>> told;  // columns, and their only difference
+    for (const Group& columns : sides.columns) {
+      Differences found = of_block(entry, sides, rows, columns, difference, wrong);
+      const auto opposite = std::ranges::find_if(told, [&](const auto& before) {
+        return sides.opposites && found.size() == 1 && are_opposite(entry, sides, rows, columns, *before.first);
+      });
+      if (opposite != told.end()) {
+        Difference& before = all[opposite->second];
+        const std::size_t end = before.sentence.find(": ");
+        before.sentence.insert(end, fmt::format("{}{}", and_opposite, columns.name));
+        continue;
+      }
+      if (found.size() == 1) told.emplace_back(&columns, all.size());
+      std::ranges::move(found, std::back_inserter(all));
+    }
+  }
+  return all;
+}
+
+void compare(Entry& entry, const Sides& sides, const std::function<Difference(int, int)>& difference) {
+  std::vector<bool> wrong(sides.generated.entries.size());
+  for (Difference& d : differences_of(entry, sides, difference, wrong))
+    entry.verdict.differences.push_back(std::move(d));
   show(entry, sides, wrong);
 }
 

@@ -29,7 +29,7 @@ std::vector<ScalarRow> rows_named(const Entry& entry, const std::vector<std::str
   std::vector<ScalarRow> rows;
   for (const std::string& name : names) {
     for (const ScalarRow& row : entry.block.rows) {
-      if (row.name == name || row.row->name == name) rows.push_back(row);
+      if (row.name == name || is_named(*row.row, name)) rows.push_back(row);
     }
     for (const Block& coordinate : entry.coordinates) {
       if (coordinate.name == name) rows.push_back(coordinate.rows[0]);
@@ -105,7 +105,13 @@ void prepare_poses(Entry& entry, const std::vector<Part>& parts) {
     for (const Expr e : expressions_of_law(entry)) take_any(e);
   entry.anywhere.emplace(entry.joint, all);
   if (equations.empty()) return;
-  entry.assumed = entry.anywhere->where(equations);
+  // An equation of the spec itself means C = 0 as the joint is assembled.
+  const bool is_C = std::ranges::any_of(equations, [&](Expr equation) {
+    return std::ranges::any_of(entry.block.rows, [&](const ScalarRow& row) {
+      return !is_zero(row.C) && (entry.anywhere->equal(equation, row.C) || entry.anywhere->equal(equation, -row.C));
+    });
+  });
+  entry.assumed = (is_C ? entry.anywhere->aligned() : *entry.anywhere).where(equations);
   if (entry.assumed->empty()) {
     entry.verdict.remarks.push_back("no pose satisfies the assumptions; they are ignored");
     entry.assumed.reset();

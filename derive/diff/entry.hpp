@@ -60,7 +60,7 @@ Judgement judge(Entry entry);
 std::vector<ScalarRow> rows_in_order_of(const Entry& entry, const Part& part);
 
 // The sign and scale of C are the author's choice, equation by equation. All parts together decide them.
-void find_signs(const Entry& entry, std::vector<Part>& parts);
+void find_signs(Entry& entry, std::vector<Part>& parts);
 std::vector<std::string> remarks_on_signs(const std::vector<Part>& parts);
 
 // Each adds its differences to the verdict.
@@ -94,8 +94,16 @@ struct Sides {
   std::string what;  // "K", "claim on K"
   const Matrix &published, &generated;
   std::vector<Group> rows, columns;
+  // The generated one is symmetric: an entry told above the diagonal is not told below.
+  bool symmetric = false;
+  // Of J: where both sides are opposite in two columns, as at two bodies of one joint, the first is told.
+  bool opposites = false;
 };
 void compare(Entry& entry, const Sides& sides, const std::function<Difference(int row, int column)>& difference);
+// What compare() adds to the verdict; `wrong` is set for each entry that differs.
+std::vector<Difference> differences_of(Entry& entry, const Sides& sides,
+                                       const std::function<Difference(int row, int column)>& difference,
+                                       std::vector<bool>& wrong);
 // Adds both sides to the sheets, if these are asked for. `wrong` tells of each entry.
 void show(Entry& entry, const Sides& sides, const std::vector<bool>& wrong);
 // Where entries have no counterparts: `published` is null if it has no value, or too many.
@@ -105,10 +113,11 @@ void show_apart(Entry& entry, const std::string& what, const HandItem& item, con
 // signs.
 struct Slip {
   std::string kind, sentence;
+  std::string generated = "", published = "", difference = "";  // of the part of it that is wrong; may be empty
 };
 // `part`: null for a claim.
-std::optional<Slip> slip_of_whole(const Entry& entry, const Part* part, const std::string& what,
-                                  const Matrix& published, const Matrix& generated);
+std::optional<Slip> slip_of_whole(Entry& entry, const Part* part, const std::string& what, const Matrix& published,
+                                  const Matrix& generated);
 // "w_a", "v_b.x"; of its change in positions "x_b.x".
 std::string column_name(const Joint& joint, Form form, int column, bool positions = false);
 // In space the columns of one velocity, or of its change, form a group.
@@ -118,6 +127,7 @@ std::string name_of_row(const Part& part, int row);
 // Completes a difference: its place, and a condition that its author may have meant.
 Difference finished(Entry& entry, const HandItem& item, Difference difference, Expr published, Expr generated);
 // Adds a difference without a pair of formulas.
+void add_slip(Entry& entry, const HandItem& item, const Place& place, const Slip& slip, std::string confirmed);
 void add_plain(Entry& entry, const HandItem& item, const Place& place, std::string kind, const std::string& sentence,
                std::string confirmed);
 

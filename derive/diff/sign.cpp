@@ -19,6 +19,7 @@ struct Scale {
 
 struct Misfit {
   int blocks = 0;         // differing ones
+  int blocks_on_C = 0;    // those that differ on C = 0, too; counted where scales have equally many others
   std::size_t terms = 0;  // differing ones in them
   friend auto operator<=>(const Misfit&, const Misfit&) = default;
 };
@@ -28,24 +29,41 @@ int block_of(const Entry& entry, int column) {
   return 2 * (column / entry.width()) + (column % entry.width() < entry.joint.dimension ? 0 : 1);
 }
 
-// Adds the misfit of one row of an item, if the row has this scale.
-void add_misfit(Misfit& misfit, const Entry& entry, const Part& part, const HandItem& item, std::size_t row,
-                const Scale& scale) {
-  if (!item.value) return;
-  const Generated& g = part.generated;
-  const Matrix& mine = item.what == "C" ? g.C : item.what == "J" ? g.J : g.Cdot;
-  if (item.value->rows != mine.rows || item.value->columns != mine.columns) return;
-  const Expr factor = item.what == "b" ? -scale.of_J : item.what == "C" ? scale.of_C : scale.of_J;
-  int block = -1;  // columns of v, or of w, of one body count as one
-  for (int c = 0; c < mine.columns; ++c) {
-    const Expr hand = item.value->at(static_cast<int>(row), c);
-    const Expr generated = scaled(factor, mine.at(static_cast<int>(row), c));
-    if (entry.poses().equal(hand, generated)) continue;
-    const Leftover left = leftover_terms(hand, generated, entry.joint, Opened::everything);
-    misfit.blocks += block_of(entry, c) == block ? 0 : 1;
-    block = block_of(entry, c);
-    misfit.terms += left.hand.size() + left.generated.size();
+// One row of an item beside the generated one.
+struct Witness {
+  const Part& part;
+  const HandItem& item;
+  std::size_t row;
+
+  const Matrix& mine() const { return generated_of(part, item); }
+  bool fits() const { return item.value && item.value->rows == mine().rows && item.value->columns == mine().columns; }
+  Expr hand(int column) const { return item.value->at(static_cast<int>(row), column); }
+  Expr generated(int column, const Scale& scale) const {
+    const Expr factor = item.what == "b" ? -scale.of_J : item.what == "C" ? scale.of_C : scale.of_J;
+    return scaled(factor, mine().at(static_cast<int>(row), column));
   }
+};
+
+// Calls `wrong(column, is_of_a_new_block)` for the columns that differ at these poses, if the row has this scale.
+// Columns of v, or of w, of one body are one block.
+template <class Wrong>
+void each_misfit(const Entry& entry, const Poses& poses, const Witness& witness, const Scale& scale, Wrong wrong) {
+  int block = -1;
+  for (int c = 0; witness.fits() && c < witness.mine().columns; ++c) {
+    if (poses.equal(witness.hand(c), witness.generated(c, scale))) continue;
+    wrong(c, block_of(entry, c) != block);
+    block = block_of(entry, c);
+  }
+}
+
+Misfit misfit_of(const Entry& entry, const Witness& witness, const Scale& scale) {
+  Misfit misfit;
+  each_misfit(entry, entry.poses(), witness, scale, [&](int c, bool is_new) {
+    const Leftover left = leftover_terms(witness.hand(c), witness.generated(c, scale), entry.joint, Opened::everything);
+    misfit.blocks += is_new ? 1 : 0;
+    misfit.terms += left.hand.size() + left.generated.size();
+  });
+  return misfit;
 }
 
 // The rows of one vector equation have one sign: its C is the author's choice as a whole. Others are alone.
@@ -161,6 +179,42 @@ std::vector<OtherForm> other_forms(Expr C) {
   return forms;
 }
 
+// The scale that the first entry of an equation shows, of Cdot, b, J or K (there twice over): a number times a factor.
+std::optional<Scale> scale_shown(const Entry& entry, const Part& part, const HandItem& item, std::size_t first,
+                                 Expr factor) {
+  const Matrix& mine = generated_of(part, item);
+  if (!item.value || item.value->rows != mine.rows || item.value->columns != mine.columns) return {};
+  const bool of_K = item.what == "K";
+  const int row = static_cast<int>(first);
+  int column = of_K ? row : 0;
+  while (column < mine.columns && is_zero(mine.at(row, column))) ++column;
+  if (column == mine.columns) return {};
+  const Expr right = scaled(item.what == "b" ? -factor : of_K ? factor * factor : factor, mine.at(row, column));
+  const std::optional<double> ratio = entry.poses().constant_ratio(item.value->at(row, column), right);
+  const std::optional<Rational> k = ratio ? rational_near(of_K ? std::sqrt(*ratio) : *ratio) : std::nullopt;
+  if (!k) return {};
+  const Expr scale = *k * factor;
+  return Scale{scale, scale};
+}
+
+// Scales that two quantities of the part show alike: their C is not given, but it has this scale.
+std::vector<Scale> shown_twice(const Entry& entry, const Part& part, std::size_t first) {
+  std::vector<Scale> once, twice;
+  for (const Expr factor : factors_without_zeros(entry.joint, part.generated.C.entries[first]))
+    for (const HandItem& item : part.hand->items) {
+      if (item.kind != HandItem::Kind::quantity || item.what == "C") continue;
+      const std::optional<Scale> shown = scale_shown(entry, part, item, first, factor);
+      if (!shown) continue;
+      // K shows the size, not the sign.
+      const Scale opposite{-shown->of_J, -shown->of_J};
+      for (const Scale& scale : {*shown, opposite}) {
+        if (scale == opposite && item.what != "K") continue;
+        (std::ranges::find(once, scale) == once.end() ? once : twice).push_back(scale);
+      }
+    }
+  return twice;
+}
+
 // The scales by which the source's C may be that of the spec: 1, -1, and their ratio where that is a number, or a
 // number times a power of a parameter.
 std::vector<Scale> candidates(const Entry& entry, const Part& part, std::size_t first, std::size_t rows) {
@@ -168,15 +222,20 @@ std::vector<Scale> candidates(const Entry& entry, const Part& part, std::size_t 
   const auto both = [](Expr scale) { return Scale{scale, scale}; };
   std::vector<Scale> all = {both(pool.number(1)), both(pool.number(-1))};
   if (!part.rows[first].row) return all;  // the value of a coordinate counts, not its zero alone
+  const auto add = [&](const Scale& scale) {
+    if (std::ranges::find(all, scale) == all.end()) all.push_back(scale);
+  };
+  const auto is_C = [](const HandItem& item) { return item.kind == HandItem::Kind::quantity && item.what == "C"; };
+  if (std::ranges::none_of(part.hand->items, is_C))
+    for (const Scale& scale : shown_twice(entry, part, first)) add(scale);
   for (const HandItem& item : part.hand->items) {
-    if (item.kind != HandItem::Kind::quantity || item.what != "C" || !item.value) continue;
+    if (!is_C(item) || !item.value) continue;
     const Matrix& mine = part.generated.C;
     if (item.value->rows != mine.rows || item.value->columns != 1) continue;
     for (const Expr factor : factors_without_zeros(entry.joint, mine.entries[first])) {
       const std::optional<Rational> k = common_ratio(entry, *item.value, mine, factor, first, rows);
       if (!k) continue;
-      const Scale scale = both(*k * factor);
-      if (std::ranges::find(all, scale) == all.end()) all.push_back(scale);
+      add(both(*k * factor));
       break;
     }
     if (rows != 1) continue;
@@ -197,11 +256,39 @@ std::string as_quotient(std::string product) {
 
 }  // namespace
 
-void find_signs(const Entry& entry, std::vector<Part>& parts) {
-  struct Evidence {
-    std::vector<Scale> scales;
-    std::vector<Misfit> misfits;
-  };
+namespace {
+
+// All that an entry says of one equation.
+struct Evidence {
+  std::vector<Scale> scales;
+  std::vector<Witness> witnesses;
+};
+
+// Scales with equally many wrong blocks differ by those on C = 0, where the source may be meant.
+const Scale& best_scale(Entry& entry, const Evidence& evidence) {
+  std::vector<Misfit> misfits;
+  for (const Scale& scale : evidence.scales) {
+    misfits.emplace_back();
+    for (const Witness& witness : evidence.witnesses) {
+      const Misfit of_one = misfit_of(entry, witness, scale);
+      misfits.back().blocks += of_one.blocks;
+      misfits.back().terms += of_one.terms;
+    }
+  }
+  const auto best = [&] { return std::ranges::min_element(misfits) - misfits.begin(); };
+  const int least = misfits[static_cast<std::size_t>(best())].blocks;
+  const bool tie = least > 0 && std::ranges::count(misfits, least, &Misfit::blocks) > 1;
+  for (std::size_t k = 0; tie && k < misfits.size(); ++k)
+    for (const Witness& witness : evidence.witnesses)
+      if (misfits[k].blocks == least)
+        each_misfit(entry, entry.poses_on_constraint(), witness, evidence.scales[k],
+                    [&](int, bool is_new) { misfits[k].blocks_on_C += is_new ? 1 : 0; });
+  return evidence.scales[static_cast<std::size_t>(best())];
+}
+
+}  // namespace
+
+void find_signs(Entry& entry, std::vector<Part>& parts) {
   std::map<std::string, Evidence> evidence;  // by the first row of an equation; several parts may have it
   for (const Part& part : parts) {
     const std::vector<std::size_t> first = first_of_equation(part.rows);
@@ -212,27 +299,21 @@ void find_signs(const Entry& entry, std::vector<Part>& parts) {
         if (of.scales.empty()) {
           const auto rows = static_cast<std::size_t>(std::count(first.begin(), first.end(), first[row]));
           of.scales = candidates(entry, part, first[row], rows);
-          of.misfits.resize(of.scales.size());
         }
-        for (std::size_t k = 0; k < of.scales.size(); ++k)
-          add_misfit(of.misfits[k], entry, part, item, row, of.scales[k]);
+        of.witnesses.push_back({part, item, row});
       }
     }
   }
+  std::map<std::string, Scale> best;
+  for (const auto& [equation, of] : evidence) best.emplace(equation, best_scale(entry, of));
   for (Part& part : parts) {
     bool any = false;
     for (const std::size_t first : first_of_equation(part.rows)) {
-      const auto found = evidence.find(part.rows[first].name);
-      any = any || found != evidence.end();
-      Scale scale{entry.pool().number(1), entry.pool().number(1)};
-      if (found != evidence.end()) {
-        const std::vector<Misfit>& misfits = found->second.misfits;
-        scale =
-            found->second
-                .scales[static_cast<std::size_t>(std::min_element(misfits.begin(), misfits.end()) - misfits.begin())];
-      }
-      part.scale.push_back(scale.of_J);
-      part.scale_of_C.push_back(scale.of_C);
+      const auto found = best.find(part.rows[first].name);
+      any = any || found != best.end();
+      const Expr one = entry.pool().number(1);
+      part.scale.push_back(found != best.end() ? found->second.of_J : one);
+      part.scale_of_C.push_back(found != best.end() ? found->second.of_C : one);
     }
     if (!any) part.scale = part.scale_of_C = signs_of_mass(entry, part);
   }

@@ -54,7 +54,13 @@ Matrix without_baumgarte(Entry& entry, const Part& part, const HandItem& item, M
     const Expr published = item.value->entries[r], C = scaled(part.scale_of_C[r], part.generated.C.entries[r]);
     const Expr added = published + scaled(part.scale[r], generated.entries[r]);
     if (is_zero(C) || entry.poses().equal(added, C->pool->number(0))) continue;
-    if (!is_constant_share(added, C, -1, entry.poses())) continue;
+    if (!is_constant_share(added, C, -1, entry.poses())) {
+      if (is_constant_share(added, C, 1, entry.poses()))
+        entry.verdict.remarks.push_back(
+            fmt::format("in row {} of b a Baumgarte term has the wrong sign: it drives C away from 0",
+                        name_of_row(part, static_cast<int>(r))));
+      continue;
+    }
     generated.entries[r] = scaled(-pow(part.scale[r], -1), published);
     entry.verdict.remarks.push_back(fmt::format("b agrees in row {}, plus a Baumgarte term that drives C to 0: {}",
                                                 name_of_row(part, static_cast<int>(r)),

@@ -153,17 +153,18 @@ void judge_updates(Entry& entry, const Part& part) {
     return finished(entry, *said_by[static_cast<std::size_t>(c)], std::move(d), hand, right);
   });
   std::vector<Difference>& differences = entry.verdict.differences;
-  if (differences.size() < before + 2) return;
+  const auto unexplained = [](const Difference& d) { return d.sentence.find(not_generated) != std::string::npos; };
+  const std::size_t told = differences.size() - before;
+  if (told == 0 || (told == 1 && !unexplained(differences[before]))) return;
   std::optional<Slip> slip = slip_of_weights(entry, part, lambda, change.published);
   if (!slip) slip = slip_of_whole(entry, &part, "update", published, generated);
-  const auto unexplained = [](const Difference& d) { return d.sentence.find(not_generated) != std::string::npos; };
-  if (!slip && only_size &&
+  if (!slip && only_size && told > 1 &&
       std::all_of(differences.begin() + static_cast<std::ptrdiff_t>(before), differences.end(), unexplained))
     slip = Slip{"factor", not_generated};
   if (!slip) return;
   differences.resize(before);
   if (only_size && slip->kind == "factor") slip->sentence += "; the direction of the impulse is right, its size is not";
-  add_plain(entry, *updates[0], {"update", "", "", {}, {}, &entry.joint}, slip->kind, slip->sentence, confirmed);
+  add_slip(entry, *updates[0], {"update", "", "", {}, {}, &entry.joint}, *slip, confirmed);
 }
 
 void judge_bound(Entry& entry, const Part& part, const HandItem& item) {

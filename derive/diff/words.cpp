@@ -36,7 +36,7 @@ std::string introduced(Expr e, const Joint& joint) {
 
 // The published terms, and those that belong there.
 std::string instead(const std::string& has, const std::string& lacks) {
-  if (has.size() + lacks.size() > longest_formula) return not_generated;
+  if (has.size() + lacks.size() > longest_formula || has == lacks) return not_generated;
   return fmt::format("it has {} where {} belongs", has, lacks);
 }
 
@@ -127,6 +127,10 @@ std::optional<Explained> by_factor(const Leftover& left, Expr has, Expr lacks, c
   for (const Term& theirs : left.generated) {
     const Factors f = leftover_factors(left.hand[0], theirs);
     if (f.rest->kind == Kind::number || !poses.equal(has * f.generated, lacks * f.hand)) continue;
+    const Factors inside = leftover_factors({Rational(1), f.hand}, {Rational(1), f.generated});  // of a let
+    const Expr missing = is_one(inside.hand) ? inside.generated : f.generated * pow(f.hand, -1);
+    if (f.hand->named_by_let && missing->kind == Kind::symbol)
+      return Explained{"factor", fmt::format("the factor {} is missing in {}", spoken(missing), f.hand->name)};
     const std::string ours = spoken(f.hand), right = spoken(f.generated), where = spoken(has);
     const std::string at = where.size() > longest_formula ? "" : " in " + where;
     if (is_one(f.hand)) return Explained{"factor", fmt::format("the factor {} is missing{}", right, at)};
@@ -225,6 +229,7 @@ Difference describe_difference(const Place& place, Expr hand, Expr generated, co
   d.kind = why.kind;
   d.generated = brief_text(generated, *place.joint);
   d.hand = brief_text(hand, *place.joint);
+  if (d.hand == d.generated) d.hand = text_unnamed(hand), d.generated = text_unnamed(generated);  // one name for both
   d.difference = text(difference);
   d.sentence = fmt::format("{}: {}", name_of(place), why.sentence);
   return d;

@@ -21,6 +21,8 @@ struct Contribution {
 
 // The sentence where no formula fits.
 constexpr const char* not_generated = "it is not the generated one";
+// Of two columns of J that differ alike.
+constexpr const char* and_opposite = " and, with the opposite sign, ";
 
 struct Place {
   std::string what, row, column;      // as in Difference

@@ -49,6 +49,7 @@ const std::vector<std::string> rooms = {
     "derive/engines",      // kernels to joints of other engines
     "derive/own",          // a kernel as tapes, for programs without a compiler
     "derive/check", "derive/diff",
+    "derive/diff/slips",   // one slip that explains a whole matrix
     "derive/pipeline",     // read, derive, prove, print
     "derive/commands",
     "derive",              // main()
@@ -86,7 +87,7 @@ const std::vector<std::string> rooms = {
     "derive/python",       // `import cdot`
 };
 // One room in two folders, which may include each other.
-const std::map<std::string, std::string> annexes = {{"derive/language/hand", "derive/language"}};
+const std::map<std::string, std::string> annexes = {{"derive/language/hand", "derive/language"}, {"derive/diff/slips", "derive/diff"}};
 // clang-format on
 
 constexpr int most_files = 25;

@@ -201,7 +201,8 @@ void EntryElaborator::rows(const HandItemAst& item) {
   for (const Row& r : joint_.rows) known.push_back(r.name);
   for (const Coordinate& c : joint_.coordinates) known.push_back(c.name);
   for (const Word& word : item.names) {
-    if (std::find(known.begin(), known.end(), word.text) != known.end()) {
+    const bool of_row = std::ranges::any_of(joint_.rows, [&](const Row& row) { return is_named(row, word.text); });
+    if (of_row || std::find(known.begin(), known.end(), word.text) != known.end()) {
       names.push_back(word.text);
       continue;
     }

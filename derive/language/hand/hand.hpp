@@ -27,6 +27,12 @@ inline bool is_of_law(std::string_view quantity) {
   return std::find(quantities_of_law.begin(), quantities_of_law.end(), quantity) != quantities_of_law.end();
 }
 
+// By the row's name, or by that before `keep 2`: `parallel` for `parallel_y`.
+inline bool is_named(const Row& row, const std::string& name) {
+  return row.name == name ||
+         (row.kept && row.name.size() == name.size() + 2 && row.name.starts_with(name) && row.name[name.size()] == '_');
+}
+
 struct HandFile {
   std::shared_ptr<const SourceFile> file;
   std::vector<HandEntryAst> entries;

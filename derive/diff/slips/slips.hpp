@@ -1,0 +1,77 @@
+// One slip that explains all differences of a published matrix: an order, an inverse, a frame, a factor, a name. A
+// reading turns the generated numbers into those that such a slip gives; it is named if these are the published ones at
+// every pose.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "derive/diff/entry.hpp"
+
+namespace cdot::derive {
+
+using List = std::vector<double>;
+
+inline bool alike(double a, double b) {
+  constexpr double rounding = 1e-8;
+  return std::abs(a - b) <= rounding * (1 + std::abs(a) + std::abs(b));
+}
+inline bool alike(const List& a, const List& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) { return alike(x, y); });
+}
+
+// The inverse of a square matrix, row by row.
+List inverted(const List& matrix);
+
+// A published matrix beside the generated one, and their numbers by pose.
+struct Whole {
+  Whole(Entry& of, const Part* its_part, const std::string& quantity, const Matrix& its_hand, const Matrix& its_mine);
+
+  Entry& entry;
+  const Part* const part;  // null: of a claim
+  const std::string what;
+  const bool by_velocities;  // its columns: the row is M^-1 J^T lambda of an update
+  const Matrix &hand, &mine;
+  std::vector<List> published, generated;
+
+  const std::vector<Sample>& samples() const { return entry.poses().samples(); }
+  std::string row_name(int row) const { return part ? name_of_row(*part, row) : std::to_string(row + 1); }
+  std::size_t at(int row, int column) const { return static_cast<std::size_t>(row * mine.columns + column); }
+
+  // True if the published numbers are `expected(pose)`.
+  template <class Expected>
+  bool is(Expected expected) const {
+    for (std::size_t i = 0; i < published.size(); ++i)
+      if (!alike(published[i], expected(i))) return false;
+    return !published.empty();
+  }
+  // True if the published numbers are the generated ones at samples changed by `change`.
+  template <class Change>
+  bool at_changed(Change change) const {
+    return is([&](std::size_t i) {
+      Sample sample = samples()[i];
+      change(sample);
+      return values_at(mine.entries, sample);
+    });
+  }
+  // True if the published matrix, with these replacements, is the generated one; everywhere, or outside the lets of the
+  // spec. A J has either sign.
+  bool is_right_with(const std::map<const Node*, Expr>& replacements) const;
+  // The same for the generated matrix, which becomes the published one.
+  bool is_made_with(const std::map<const Node*, Expr>& replacements) const;
+  bool turns_into(const Matrix& from, const std::vector<List>& to,
+                  const std::map<const Node*, Expr>& replacements) const;
+  static std::vector<Expr> substituted(const Matrix& in, const std::map<const Node*, Expr>& replacements);
+};
+
+std::optional<Slip> slip_of_order(const Whole& whole);     // rows, columns, bodies
+std::optional<Slip> slip_of_frame(const Whole& whole);     // angular velocities along other axes
+std::optional<Slip> slip_of_sign(const Whole& whole);      // of a body, of v or w, of masses
+std::optional<Slip> slip_of_masses(const Whole& whole);    // inverses, what is missing, another body's axes
+std::optional<Slip> slip_of_symbol(const Whole& whole);    // an arm halved or exchanged, one symbol for another
+std::optional<Slip> slip_of_exchange(const Whole& whole);  // of two symbols
+std::optional<Slip> slip_of_factor(const Whole& whole);    // all of it, or one row
+std::optional<Slip> slip_of_name(const Whole& whole);      // a let of the entry that stands for something else
+
+}  // namespace cdot::derive

@@ -1,0 +1,116 @@
+// One slip is one item in one sentence, however many entries it spoils; and the author's choices are no slips.
+#include <gtest/gtest.h>
+
+#include "tests/derive/diff/support.hpp"
+
+namespace cdot::test {
+namespace {
+
+using derive::Agreement;
+using derive::Judgement;
+
+struct OneThing {
+  const char *joint, *items, *sentence;
+};
+
+TEST(Slips, AreTheOnlySentence) {
+  const OneThing table[] = {
+      // A symmetric K is wrong at both sides of the diagonal.
+      {"revolute",
+       "  K = [1/m(a)+1/m(b)+ra.y^2/I(a)+rb.y^2/I(b), -ra.x*ra.y/I(a) ; "
+       "-ra.x*ra.y/I(a), 1/m(a)+1/m(b)+ra.x^2/I(a)+rb.x^2/I(b)]\n",
+       "K, row 1, column 2, and row 2, column 1: the hand derivation lacks -inv_I_b*rb.x*rb.y; equal where rb = 0"},
+      {"universal",
+       "  let n = cross(fa.y, fb.z)\n  K = [(1/m(a)+1/m(b))*E + skew(ra)*I(a)^-1*skew(ra)' + "
+       "skew(rb)*I(b)^-1*skew(rb)', "
+       "0 ; 0, n'*(I(a)^-1 + I(b)^-1)*n]\n",
+       "K, rows 1-3, column 4, and row 4, columns 1-3: nothing stands here"},
+      {"fixed",
+       "  assume fb.x = fa.x\n  assume fb.y = fa.y\n  let k = skew(ra)*I(a)^-1 + skew(rb)*I(b)^-1\n"
+       "  K = [(1/m(a)+1/m(b))*E + skew(ra)*I(a)^-1*skew(ra)' + skew(rb)*I(b)^-1*skew(rb)', k ; k, I(a)^-1 + "
+       "I(b)^-1]\n",
+       "K, rows 4-6, columns 1-3: the block is transposed"},
+      // Masses.
+      {"revolute",
+       "  K = [1/m(a)+ra.y^2/I(a)+rb.y^2/I(b), -ra.x*ra.y/I(a)-rb.x*rb.y/I(b) ; "
+       "-ra.x*ra.y/I(a)-rb.x*rb.y/I(b), 1/m(a)+ra.x^2/I(a)+rb.x^2/I(b)]\n",
+       "K: the terms with the inverse mass of b are missing"},
+      {"spherical",
+       "  update v(a) += lambda/m(a)\n  update w(a) += I(a)^-1*cross(ra, lambda)\n"
+       "  update v(b) -= lambda/m(b)\n  update w(b) -= cross(rb, lambda)\n",
+       "update: the inverse inertia of b is missing"},
+      // Factors.
+      {"angle_ratio", "  J = [0, -1, 0, 1/ratio]\n",
+       "J: all of it is 1/ratio times what it should be, which is right only with a C scaled alike"},
+      {"rope", "  rows length\n  let m = u/dot(u, u)\n  J = [-m', -cross(ra, m), m', cross(rb, m)]\n",
+       "J: all of it is 1/norm(u) times what it should be, which is right only with a C scaled alike"},
+      {"pulley", "  J = [na', cross(ra, na), nb', cross(rb, nb)]\n",
+       "J: the factor ratio is missing in the columns of b"},
+      // Symbols and names.
+      {"hinge",
+       "  rows parallel\n  J = [0, cross(fa.y, fb.y)', 0, -cross(fa.y, fb.y)' ; 0, cross(fa.z, fb.y)', 0, "
+       "-cross(fa.z, fb.y)']\n",
+       "J: fb.y stands where fb.x belongs"},
+      {"pulley", "  J = [ua', cross(ra, ua), ratio*nb', ratio*cross(rb, nb)]\n", "J: ua stands where na belongs"},
+      {"pulley", "  J = [nb', cross(ra, nb), ratio*na', ratio*cross(rb, na)]\n", "J: na and nb are exchanged"},
+      {"pulley", "  J = [na', cross(rb, na), ratio*nb', ratio*cross(ra, nb)]\n", "J: ra and rb are exchanged"},
+      {"surface",
+       "  let fx = height*cos(k*s.x)*sin(k*s.y)\n  let fy = height*sin(k*s.x)*cos(k*s.y)\n"
+       "  let n = fa.z - fx*fa.x - fy*fa.y\n  J = [-n', -cross(ra + d, n)', n', cross(rb, n)']\n",
+       "J: in n: the factor k is missing in fy"},
+      {"cylindrical",
+       "  let n = cross(fa.y, fb.x)\n  let m = cross(fa.z, fb.x)\n  J = [0, n', 0, -n' ; 0, m', 0, -m' ; "
+       "-fa.y', -cross(ra, fa.y)', fa.y', cross(rb, fa.y)' ; -fa.z', -cross(ra, fa.z)', fa.z', cross(rb, fa.z)']\n",
+       "J: the terms with d are missing"},
+      // Two bodies with opposite columns.
+      {"universal", "  rows bend_a\n  J = [0, fa.y', 0, -fa.y']\n",
+       "J, row bend_a, w_a and, with the opposite sign, w_b: it is not the generated one; equal where C = 0"},
+  };
+  for (const OneThing& row : table) {
+    const Judgement j = judged(row.joint, row.items);
+    EXPECT_EQ(j.agreement, Agreement::differs) << row.items;
+    ASSERT_EQ(j.differences.size(), 1u) << row.items;
+    EXPECT_EQ(j.differences[0].sentence, row.sentence) << row.items;
+  }
+}
+
+// What looks alike is not always the slip: n = unit(u) where the length of u is divided out otherwise.
+TEST(Slips, AreNotNamedByChance) {
+  const Judgement j =
+      judged("rope", "  rows length\n  let m = u/sqrt(norm(u)/1)\n  J = [-m', -cross(ra, m), m', cross(rb, m)]\n");
+  ASSERT_EQ(j.agreement, Agreement::differs);
+  for (const derive::Difference& d : j.differences)
+    EXPECT_EQ(d.sentence.find("stands where"), std::string::npos) << d.sentence;
+}
+
+TEST(Slips, AScaleThatTwoQuantitiesShowIsTheAuthorsChoice) {
+  const std::string Cdot = "  Cdot = w(a)/ratio + w(b)\n", J = "  J = [0, 1/ratio, 0, 1]\n";
+  const Judgement both = judged("gear", Cdot + J);
+  EXPECT_EQ(both.agreement, Agreement::agrees);
+  ASSERT_EQ(both.remarks.size(), 1u);
+  EXPECT_EQ(both.remarks[0], "C is scaled by 1/ratio: J is, too, and K twice over");
+  EXPECT_EQ(judged("gear", J + "  K = [1/I(a)/ratio^2 + 1/I(b)]\n").agreement, Agreement::agrees);
+  EXPECT_EQ(judged("gear", J + "  K = [1/I(a) + ratio^2/I(b)]\n").agreement, Agreement::differs);
+  EXPECT_EQ(judged("gear", Cdot + "  J = [0, 1, 0, ratio]\n").agreement, Agreement::differs);
+  EXPECT_EQ(judged("gear", J).agreement, Agreement::differs);  // the source may have forgotten a factor
+}
+
+// `dot(fa.z, fb.y) = dot(fa.y, fb.z)` has a second branch, half a turn away, on which the joint is never assembled.
+TEST(Slips, ARowThatTheEntryAssumesMeansTheAssembledJoint) {
+  const std::string J = "  rows shafts\n  J = [0, (-fa.x - fb.x)', 0, (fa.x + fb.x)']\n";
+  EXPECT_EQ(judged("constant_velocity", "  assume dot(fa.z, fb.y) = dot(fa.y, fb.z)\n" + J).agreement,
+            Agreement::agrees_if);
+  EXPECT_EQ(judged("constant_velocity", J).agreement, Agreement::differs);
+}
+
+TEST(Slips, ABaumgarteTermWithTheWrongSignIsNamed) {
+  const std::string b = "  free beta, h\n  b = v(b) + cross(w(b), rb) - v(a) - cross(w(a), ra)";
+  EXPECT_EQ(judged("spherical", b + " - beta/h*(pa - pb)\n").agreement, Agreement::agrees);
+  const Judgement wrong = judged("spherical", b + " + beta/h*(pa - pb)\n");
+  EXPECT_EQ(wrong.agreement, Agreement::differs);
+  ASSERT_EQ(wrong.remarks.size(), 3u);
+  EXPECT_EQ(wrong.remarks[0], "in row 1 of b a Baumgarte term has the wrong sign: it drives C away from 0");
+}
+
+}  // namespace
+}  // namespace cdot::test
