@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
 
 #include "derive/check/parts.hpp"
 
@@ -30,9 +31,14 @@ void take_over(const Proved& proved, Findings& findings) {
 
 void check_constraints(const Subject& subject, Draw draw, CheckReport& report) {
   check_rows(subject, report.findings);
-  check_undefined(subject, report.findings);
+  const bool drawn = draw == Draw::yes;
+  std::vector<PoseToDraw> guarded;
+  check_undefined(subject, report.findings, drawn ? &guarded : nullptr);
   check_defaults(subject, report.findings);
-  check_mass(subject, report.findings, draw == Draw::yes ? &report.poses : nullptr);
+  check_mass(subject, report.findings, drawn ? &report.poses : nullptr);
+  if (std::ranges::any_of(report.findings, [](const Finding& f) { return f.level == Level::error; })) return;
+  if (report.poses.empty() && !guarded.empty()) report.poses.push_back({{}, "A regular pose", subject.usual});
+  std::ranges::move(guarded, std::back_inserter(report.poses));
 }
 
 }  // namespace
@@ -81,6 +87,40 @@ CheckReport check(const ReadResult& read, Draw draw) {
   return report;
 }
 
+namespace {
+
+// The end of the word that begins here; short brackets stay together.
+std::size_t end_of_word(const std::string& text, std::size_t begin, std::size_t end) {
+  constexpr std::size_t longest_bracket = 60;
+  const std::size_t plain = std::min(text.find(' ', begin + 1), end);
+  int depth = 0;
+  for (std::size_t at = begin + 1; at < std::min(end, begin + longest_bracket); ++at) {
+    depth += text[at] == '(' ? 1 : text[at] == ')' ? -1 : 0;
+    if (depth <= 0 && text[at] == ' ') return at;
+  }
+  return depth <= 0 && end < begin + longest_bracket ? end : plain;
+}
+
+// The first line of a message in lines of at most 120 columns.
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t widest = 120;
+  const std::size_t end = text.find('\n');
+  std::string lines, line;
+  for (std::size_t at = 0; at < end;) {
+    const std::size_t next = end_of_word(text, at, end);
+    const std::string word = text.substr(at, next - at);
+    if (!line.empty() && line.size() + word.size() > widest) {
+      lines += line + "\n";
+      line = "   ";
+    }
+    line += word;
+    at = next;
+  }
+  return lines + line + text.substr(end);
+}
+
+}  // namespace
+
 std::string_view name_of(Level level) {
   switch (level) {
     case Level::note: return "note";
@@ -94,7 +134,8 @@ std::string_view name_of(Level level) {
 std::string render(const SourceFile& file, const Finding& f) {
   std::string text = render(file, Diagnostic{Severity::warning, f.where, f.also, f.message, f.fix});
   const std::string said = ": warning: ";
-  return text.replace(text.find(said, file.path.size()), said.size(), fmt::format(": {}: ", name_of(f.level)));
+  text.replace(text.find(said, file.path.size()), said.size(), fmt::format(": {}: ", name_of(f.level)));
+  return f.level == Level::note ? wrapped(text) : text;
 }
 
 }  // namespace cdot::derive

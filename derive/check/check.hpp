@@ -32,16 +32,17 @@ struct Findings : std::vector<Finding> {
 };
 
 struct PoseToDraw {
-  bool singular = false;
-  std::string words;  // a sentence without its full stop
+  enum class Why { regular, singular, guarded } why = Why::regular;  // guarded: a guard of the kernel acts
+  std::string words;                                                 // a sentence without its full stop
   Sample pose;
 };
 
 struct CheckReport {
   bool readable = true;
-  Findings findings;              // in the order of the text; errors first where they stand at one place
-  std::vector<Proved> proofs;     // of the rows and of each coordinate
-  std::vector<PoseToDraw> poses;  // if they are asked for: a regular one, then one for each way to be singular
+  Findings findings;           // in the order of the text; errors first where they stand at one place
+  std::vector<Proved> proofs;  // of the rows and of each coordinate
+  // If they are asked for: a regular one, one for each way to be singular, and some at which a guard acts.
+  std::vector<PoseToDraw> poses;
 
   bool clean() const;  // nothing but notes
 };
@@ -51,7 +52,7 @@ CheckReport check(const ReadResult& read, Draw draw = Draw::no);
 
 // The poses of a report as pictures with captions, or the sentence why there are none: a part of a page.
 std::string pictures_html(const ReadResult& read, const CheckReport& report);
-// The same for one derivation, without its proofs and its name; empty if no pose is singular.
+// The same for one derivation, without its proofs and its name; empty if all poses are regular.
 std::string singular_poses_html(const Derivation& derivation);
 // One page of these parts.
 std::string pictures_page(const std::string& parts);

@@ -37,7 +37,7 @@ void draw(const Singular& singular, const std::string& condition, std::vector<Po
   for (std::size_t i = 0; i < singular.poses.size(); ++i) {
     Singular one = singular;
     if (!one.zeros.empty()) one.zeros = {singular.zeros[i]};
-    poses.push_back({true, condition + text_of(one), singular.poses[i]});
+    poses.push_back({PoseToDraw::Why::singular, condition + text_of(one), singular.poses[i]});
   }
 }
 

@@ -28,9 +28,10 @@ double length(const std::vector<double>& row);
 Span place_of(const Block& coordinate, const Joint& joint);
 
 void check_rows(const Subject& subject,
-                Findings& findings);                               // vanishing, dependent, without bodies
-void check_undefined(const Subject& subject, Findings& findings);  // 1/0, roots, directions, angles
-void check_defaults(const Subject& subject, Findings& findings);   // defaults with C != 0
+                Findings& findings);  // vanishing, dependent, without bodies
+// 1/0, roots, directions, angles; with poses to draw if a place for them is given.
+void check_undefined(const Subject& subject, Findings& findings, std::vector<PoseToDraw>* poses = nullptr);
+void check_defaults(const Subject& subject, Findings& findings);  // defaults with C != 0
 // The law of an effect: forces that are not opposite, and the power of what has no energy.
 void check_law(const Derivation& derivation, const Proof& proof, Findings& findings);
 // The poses of check_mass, if nothing but the laws was found wrong.

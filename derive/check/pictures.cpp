@@ -1,4 +1,5 @@
 // The poses of a report, drawn: a part of a page for each spec.
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "derive/check/check.hpp"
@@ -10,8 +11,14 @@ namespace cdot::derive {
 namespace {
 
 constexpr const char* introduction =
-    "<p>At a singular pose some impulses do not change Cdot, so K has no inverse. Bodies are outlines around their "
-    "centres and points, with their axes. What the spec names has its name; a ring marks a vector that is zero.</p>\n";
+    "<p>At a singular pose some impulses do not change Cdot, so K has no inverse. At a guarded pose a length or a "
+    "divisor "
+    "is 0, and the kernel takes the value that the caption tells. Bodies are outlines around their centres and points, "
+    "with their axes. What the spec names has its name; a ring marks a vector that is zero.</p>\n";
+
+bool any_to_show(const std::vector<PoseToDraw>& poses) {
+  return std::ranges::any_of(poses, [](const PoseToDraw& pose) { return pose.why != PoseToDraw::Why::regular; });
+}
 
 std::string sentence(std::string words) {
   if (words[0] >= 'a' && words[0] <= 'z') words[0] = static_cast<char>(words[0] - 'a' + 'A');
@@ -51,21 +58,22 @@ std::string pictures_html(const ReadResult& read, const CheckReport& report) {
   const std::string name = read.joint ? read.joint->name : read.file->path;
   std::string out = fmt::format("<section><h2>{}</h2>\n", html_escaped(name));
   if (read.joint && !read.joint->title.empty()) out += fmt::format("<p>{}</p>\n", html_escaped(read.joint->title));
-  if (report.poses.empty() || !report.poses.back().singular)
-    return out + fmt::format("<p>{}</p>\n</section>\n", html_escaped(why_none(report)));
+  if (!any_to_show(report.poses)) return out + fmt::format("<p>{}</p>\n</section>\n", html_escaped(why_none(report)));
   return out + figures(*read.joint, report.poses) + "</section>\n";
 }
 
 std::string singular_poses_html(const Derivation& derivation) {
   const std::vector<PoseToDraw> poses = poses_to_draw(derivation);
-  if (poses.empty() || !poses.back().singular) return "";
-  return fmt::format("<style>{}</style>\n<section><h2>Where K is singular</h2>\n{}{}</section>\n", picture_style,
-                     introduction, figures(derivation.joint, poses));
+  if (!any_to_show(poses)) return "";
+  return fmt::format(
+      "<style>{}</style>\n<section><h2>Where K is singular, or a guard of the kernel acts</h2>\n{}{}</section>\n",
+      picture_style, introduction, figures(derivation.joint, poses));
 }
 
 std::string pictures_page(const std::string& parts) {
-  return html_head("Where K is singular", std::string("body { max-width: 60rem; }\n") + picture_style) + introduction +
-         parts + html_foot;
+  return html_head("Where K is singular, or a guard of the kernel acts",
+                   std::string("body { max-width: 60rem; }\n") + picture_style) +
+         introduction + parts + html_foot;
 }
 
 }  // namespace cdot::derive

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "derive/check/mass.hpp"
+#include "derive/check/zeros.hpp"
 #include "derive/numbers/newton.hpp"
 #include "derive/proof/words.hpp"
 
@@ -79,11 +80,13 @@ class Search {
     std::vector<std::string> names;
     std::vector<Expr> entries;
     for (const auto& row : J_) entries.insert(entries.end(), row.begin(), row.end());
+    Zeros zeros(subject_);
     for (const Expr e : topological(entries)) {
       const bool guarded = e->kind == Kind::unit || e->kind == Kind::norm;
       const bool enough = names.size() == most_conditions || poses_.empty() || given_up();
       if (!guarded || enough || !breaks(e)) continue;
-      const std::string name = brief_spec_text(e->args[0], subject_.joint);
+      if (zeros.of(e->args[0]).reach == Reach::never) continue;
+      const std::string name = zero_text(e->args[0], subject_.joint);
       if (std::ranges::find(names, name) == names.end()) names.push_back(name);
     }
     return names;
@@ -284,7 +287,7 @@ std::vector<Singular> singular_poses(const Subject& subject, const std::vector<F
   std::vector<Sample> usual = {subject.usual};
   usual.insert(usual.end(), subject.on_constraint.begin(), subject.on_constraint.end());
   const std::optional<Sample> regular = search.regular_among(usual);
-  if (regular) drawn->push_back({false, "A regular pose", completed(*regular, subject.usual)});
+  if (regular) drawn->push_back({PoseToDraw::Why::regular, "A regular pose", completed(*regular, subject.usual)});
   return search.with_poses(regular ? drawn->back().pose : subject.usual);
 }
 

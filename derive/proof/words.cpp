@@ -40,6 +40,17 @@ void spell_points(Expr sum, const Joint& joint, Spelled& spelled) {
   spelled.emplace(&*sum, derive::sum(*joint.pool, points, true));
 }
 
+// `let u4 = unit(cross(v, w))` may be stored as -unit(cross(w, v)), whose part has no name.
+void spell_lets(Expr root, const Joint& joint, Spelled& spelled) {
+  for (const Let& let : joint.lets) {
+    const Term term = split_coefficient(let.value);
+    if (term.e == root || !term.e->name.empty() || term.e->args.empty() || abs(term.coef) != Rational(1)) continue;
+    const Expr name = term.e->vector ? joint.pool->vector_symbol(let.name, Role::given, -1, term.e->unit_length)
+                                     : joint.pool->symbol(let.name, Role::given);
+    spelled.emplace(&*term.e, term.coef * name);
+  }
+}
+
 // An arc tangent that is the angle between directions, as a person writes it; empty for others.
 std::string angle_text(Expr e, const Joint& joint) {
   const auto of = [&](std::initializer_list<Expr> args) {
@@ -68,6 +79,7 @@ bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c =
 std::string spec_text(Expr e, const Joint& joint) {
   if (!e->name.empty()) return e->name;
   Spelled spelled;
+  spell_lets(e, joint, spelled);
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
     const BodySymbols body = body_symbols(joint, static_cast<int>(b));
     const std::string& name = joint.bodies[b];
@@ -96,6 +108,17 @@ std::string brief_spec_text(Expr e, const Joint& joint) {
   std::string text = spec_text(e, joint);
   if (text.size() <= most_letters) return text;
   return text.substr(0, text.find_last_of(" *(", most_letters)) + " …";
+}
+
+std::string zero_text(Expr e, const Joint& joint) {
+  e = split_coefficient(e).e;
+  const bool alike =
+      e->kind == Kind::sum && std::ranges::all_of(e->coefs, [&](Rational c) { return abs(c) == abs(e->coefs[0]); });
+  if (alike && e->name.empty()) e = Rational(1) / abs(e->coefs[0]) * e;
+  for (const Let& let : joint.lets)
+    if (let.value == e || let.value == -e) return let.name;
+  const std::string text = brief_spec_text(e, joint);
+  return text.starts_with('-') ? brief_spec_text(-e, joint) : text;
 }
 
 std::string parallel(Expr u, Expr v, const Joint& joint) {

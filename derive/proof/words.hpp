@@ -16,6 +16,9 @@ std::string spec_text(Expr e, const Joint& joint);
 // The same for messages: the beginning of a long one, and only the size of one that is too large to be written.
 std::string brief_spec_text(Expr e, const Joint& joint);
 
+// The same for messages that e vanishes: without a factor, as a sign or 1/2, that makes no difference.
+std::string zero_text(Expr e, const Joint& joint);
+
 // In space, u parallel to v by two rows: `cross(f.x, v) = 0 keep 2`, if one of them is an axis of a frame, or a
 // direction that may become one (then with the frame to declare). Else empty.
 std::string parallel(Expr u, Expr v, const Joint& joint);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <sstream>
 
 #include "derive/language/specs_folder.hpp"
 
@@ -193,7 +194,10 @@ TEST(Check, TellsWhereTheEffectiveMassIsSingularInSpace) {
   said.clear();
   EXPECT_TRUE(checked("  norm(pa - pb) = 2 [m]\n", &said, "spatial").clean());
   EXPECT_TRUE(mentions(said, "K is regular at every pose while a or b can move\n")) << said;
-  EXPECT_TRUE(mentions(said, "the kernel takes (1, 0, 0)")) << said;
+  EXPECT_FALSE(mentions(said, "direction")) << said;  // 2 m apart, the points do not meet
+  said.clear();
+  EXPECT_TRUE(checked("  scalar l [m]\n  norm(pa - pb) = l\n", &said, "spatial").clean());
+  EXPECT_TRUE(mentions(said, "C1: where pa - pb = 0, which some parameters allow, the kernel takes (1, 0, 0)")) << said;
 }
 
 // Angles as the spec writes them, each place once, and no place that cannot be.
@@ -204,7 +208,7 @@ TEST(Check, TellsOfAnglesInTheWordsOfTheSpec) {
     return said;
   };
   const std::string about = said_of("  unit s on a\n  unit t on b\n  unit n on b\n  angle(t, s, n) = 0\n", "spatial");
-  EXPECT_TRUE(mentions(about, "C2: angle(t, s, n) jumps by 2 pi at pi, and where it is undefined the kernel")) << about;
+  EXPECT_TRUE(mentions(about, "C2: angle(t, s, n) jumps by 2 pi at pi; where it is undefined the kernel")) << about;
   EXPECT_FALSE(mentions(about, "^2")) << about;
   const std::string plane = said_of("  unit s on a\n  unit t on b\n  angle(t, s) = 0\n", "planar");
   EXPECT_TRUE(mentions(plane, "C2: angle(t, s) jumps by 2 pi at pi\n")) << plane;
@@ -283,8 +287,39 @@ TEST(Check, RowsThatVanishInSpaceAreFound) {
 
 TEST(Check, TellsWhatTheKernelDoesWhereADirectionIsUndefined) {
   std::string said;
-  EXPECT_TRUE(checked("  norm(pa - pb) = 2 [m]\n", &said).clean());
-  EXPECT_TRUE(mentions(said, "the kernel takes (1, 0)")) << said;
+  EXPECT_TRUE(checked("  point g on world\n  norm(pa - g) + norm(pb - g) = 2 [m]\n", &said).clean());
+  EXPECT_TRUE(mentions(said, "C1: where pa - g or pb - g is 0 the kernel takes (1, 0) for its direction")) << said;
+}
+
+// Names of the spec, no sign, a condition once, and none that C = 0 excludes, as a rod of 1 m without length.
+TEST(Check, NotesOnGuardsAreShortAndOnTheConstraint) {
+  std::string said;
+  EXPECT_TRUE(checked("  point pc on c\n  point pd on d\n  unit t on c\n  let u = unit(cross(pc - pd, pb - pc))\n"
+                      "  norm(pa - pb) = 1 [m]\n  dot(t, unit(cross(u, pd - pa))) = 0.1\n"
+                      "  norm(pc - pd) + norm(pb - pd) = 3 [m]\n  sqrt(dot(u, t)^2 + 1) = 1.2\n",
+                      &said, "spatial")
+                  .clean());
+  EXPECT_TRUE(mentions(said, "cross(pd - pa, u)")) << said;
+  for (const char* none : {"where -", "-cross", "where pa - pb", "its root"})
+    EXPECT_FALSE(mentions(said, none)) << none << " in " << said;
+  std::istringstream lines(said);
+  int of_note = 0;
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(line.size(), 120u) << line;
+    of_note = mentions(line, ": note: ") ? 1 : line.starts_with("    ") && !mentions(line, " | ") ? of_note + 1 : 0;
+    EXPECT_LE(of_note, 2) << said;
+  }
+}
+
+// The axes of a hinge are never opposite: that is another branch of C = 0, half a turn away.
+TEST(Check, AnotherBranchIsNoPlaceOfAGuard) {
+  std::string said;
+  const std::string frames = "  frame fa on a\n  frame fb on b = fa\n  pa = pb\n",
+                    twist = "  coordinate t [rad] = twist(fa, fb)\n";
+  EXPECT_TRUE(checked(frames + "  cross(fa.x, fb.x) = 0 keep 2\n" + twist, &said, "spatial").clean());
+  EXPECT_FALSE(mentions(said, "dot(fa.x, fb.x) + 1")) << said;
+  EXPECT_TRUE(checked(frames + twist, &said, "spatial").clean());
+  EXPECT_TRUE(mentions(said, "where dot(fa.x, fb.x) + 1 = 0 the kernel takes 0 for 1 over it")) << said;
 }
 
 }  // namespace

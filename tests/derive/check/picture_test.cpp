@@ -86,7 +86,7 @@ TEST_P(Pictures, ShowPosesAtWhichKLosesRank) {
   const Joint& joint = *d.read.joint;
   ASSERT_GE(d.report.poses.size(), 2u);
   EXPECT_EQ(count_of("<svg", d.html), d.report.poses.size());
-  EXPECT_FALSE(d.report.poses[0].singular);
+  EXPECT_EQ(d.report.poses[0].why, PoseToDraw::Why::regular);
   const double usual = eigenvalues(mass_at(joint, d.report.poses[0].pose, "", false)).maxCoeff();
   for (const PoseToDraw& pose : d.report.poses) {
     for (const ScalarRow& row : derive_rows(joint).rows)
@@ -95,8 +95,12 @@ TEST_P(Pictures, ShowPosesAtWhichKLosesRank) {
     std::regex_search(pose.words, only, std::regex("only (.) can move"));
     const bool turns = pose.words.find("nothing can turn") == std::string::npos || !only.empty();
     const double least = eigenvalues(mass_at(joint, pose.pose, only.empty() ? "" : only[1].str(), !turns)).minCoeff();
-    if (pose.singular) EXPECT_LT(least, 1e-8 * usual) << pose.words;
-    else EXPECT_GT(least, 1e-6 * usual) << pose.words;
+    if (pose.why == PoseToDraw::Why::singular) {
+      EXPECT_LT(least, 1e-8 * usual) << pose.words;
+    }
+    if (pose.why == PoseToDraw::Why::regular) {
+      EXPECT_GT(least, 1e-6 * usual) << pose.words;
+    }
   }
 }
 
@@ -194,6 +198,25 @@ TEST(NoPictures, OfASpecWithAnError) {
                        {}));
   EXPECT_EQ(count_of("<svg", d.html), 0u);
   EXPECT_NE(d.html.find("The spec has errors: C1: J vanishes"), std::string::npos) << d.html;
+}
+
+// At a guarded pose C = 0, and what the caption names is 0.
+TEST(OnePicture, ForEachGuard) {
+  const Drawn d = drawn("specs/planar/pulley.joint");
+  ASSERT_EQ(d.report.poses.size(), 3u);
+  EXPECT_EQ(count_of("<svg", d.html), 3u);
+  EXPECT_EQ(d.report.poses[0].why, PoseToDraw::Why::regular);
+  for (const PoseToDraw& pose : {d.report.poses[1], d.report.poses[2]}) {
+    EXPECT_EQ(pose.why, PoseToDraw::Why::guarded);
+    const std::string name = pose.words.substr(6, 2);
+    EXPECT_EQ(pose.words,
+              "where " + name + " = 0, in row rope, the kernel takes (1, 0) for its direction and 0 for 1/norm");
+    const auto let = std::ranges::find(d.read.joint->lets, name, &Let::name);
+    ASSERT_NE(let, d.read.joint->lets.end()) << name;
+    const std::vector<double> u = values_at(components_of(let->value), pose.pose);
+    EXPECT_NEAR(Vector2d(u[0], u[1]).norm(), 0, 1e-9);
+    EXPECT_NEAR(values_at({derive_rows(*d.read.joint).rows[0].C}, pose.pose)[0], 0, 1e-9);
+  }
 }
 
 // One picture for each condition of a note.

@@ -195,7 +195,8 @@ TEST(ExplainCommand, WritesFilesAndSaysWhatIsWrong) {
   EXPECT_EQ(page.status, 0) << page.output;
   EXPECT_TRUE(fs::exists(out / "line.html"));
   const auto singular = [&](const char* joint) {
-    return run(cdot + " explain " + joint + " --format html" + specs).output.find("<h2>Where K is singular</h2>");
+    return run(cdot + " explain " + joint + " --format html" + specs)
+        .output.find("<h2>Where K is singular, or a guard");
   };
   EXPECT_EQ(singular("line"), std::string::npos);
   EXPECT_NE(singular("spherical_spherical"), std::string::npos);
