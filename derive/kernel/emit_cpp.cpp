@@ -116,11 +116,9 @@ class KernelWriter {
     const Derivation& derivation = *kernel_.derivation;
     const DerivedLaw law = derivation.law.value_or(DerivedLaw{});
     std::string acts;
-    for (const Expr force : law.force)
-      acts += std::string(acts.empty() ? "" : ", ") + (is_zero(force) ? "false" : "true");
-    const bool in_time = std::ranges::any_of(leaves_of(law.force), [](Expr leaf) { return leaf->role == Role::time; });
+    for (const bool row_acts : acts_of(law)) acts += fmt::format("{}{}", acts.empty() ? "" : ", ", row_acts);
     line("static constexpr bool is_effect = true;", 1);
-    line(fmt::format("static constexpr bool law_in_time = {};", in_time), 1);
+    line(fmt::format("static constexpr bool law_in_time = {};", depends_on_time(law)), 1);
     line(fmt::format("static constexpr std::array<bool, {}> acts = {{{}}};", law.force.size(), acts), 1);
   }
 
@@ -252,21 +250,13 @@ class KernelWriter {
     std::string names;
     for (const KernelBound& bound : kernel_.bounded) {
       const BoundedRow& row = *bound.row;
-      const auto coordinate = std::ranges::find(joint_.coordinates, row.coordinate, &Coordinate::name);
-      const std::vector<Expr> numbers = {row.lower, row.upper, row.rate, row.after, row.until};
-      const bool in_time = std::ranges::any_of(numbers, [](Expr e) {
-        return e && std::ranges::any_of(leaves_of({&e, 1}), [](Expr leaf) { return leaf->role == Role::time; });
-      });
       line("");
       comment(1, row.name + ": " + row.text);
       line("struct " + row.name + " {", 1);
       line("static constexpr std::string_view name = " + literal(row.name) + ";", 2);
-      line(fmt::format("static constexpr int coordinate = {};", coordinate - joint_.coordinates.begin()), 2);
-      const bool of_value = std::ranges::any_of(std::span(numbers).first(3), [&](Expr e) {
-        return e && std::ranges::any_of(leaves_of({&e, 1}), [&](Expr leaf) { return leaf == row.value; });
-      });
-      line(fmt::format("static constexpr bool of_rate = {}, in_time = {}, of_value = {};", row.of_rate, in_time,
-                       of_value),
+      line(fmt::format("static constexpr int coordinate = {};", bound.coordinate), 2);
+      line(fmt::format("static constexpr bool of_rate = {}, in_time = {}, of_value = {};", row.of_rate, bound.in_time,
+                       bound.of_value),
            2);
       if (row.load) line(fmt::format("static constexpr int load_of = {};", row.load_of), 2);
       out_ += function_text(bound.function, 1, 2);

@@ -43,6 +43,8 @@ struct KernelBlock {
 // The bounds of a bounded row of an effect.
 struct KernelBound {
   const BoundedRow* row = nullptr;
+  int coordinate = 0;                      // its place among those of the joint
+  bool in_time = false, of_value = false;  // the bounds depend on the time, on the coordinate
   KernelFunction function;
   std::vector<KernelFunction> others{};  // by_load, after, until
 };
@@ -63,6 +65,9 @@ struct SlopesOfLaw {
   bool linear = false, vanish = false;
 };
 SlopesOfLaw slopes_of(const Joint& joint, const DerivedLaw& law);
+// By row: false for rows without a force, which only tell the law where a direction points.
+std::vector<bool> acts_of(const DerivedLaw& law);
+bool depends_on_time(const DerivedLaw& law);
 
 struct DefaultValue {
   int parameter = 0;

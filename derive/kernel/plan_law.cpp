@@ -76,10 +76,19 @@ SlopesOfLaw slopes_of(const Joint& joint, const DerivedLaw& law) {
     return leaf->role == Role::parameter || leaf->role == Role::constant || leaf == joint.law->mass;
   };
   const bool limited = std::ranges::any_of(joint.law->inputs, [](const LawInput& i) { return bool(i.lower); });
-  const bool in_time = std::ranges::any_of(leaves_of(law.force), [](Expr e) { return e->role == Role::time; });
-  return {!limited && !in_time && std::ranges::all_of(leaves_of(slopes), known) &&
+  return {!limited && !depends_on_time(law) && std::ranges::all_of(leaves_of(slopes), known) &&
               std::ranges::all_of(slopes, [&](Expr e) { return cannot_be_negative(joint, e); }),
           std::ranges::all_of(slopes, [](Expr e) { return is_zero(e); })};
+}
+
+std::vector<bool> acts_of(const DerivedLaw& law) {
+  std::vector<bool> acts;
+  for (const Expr force : law.force) acts.push_back(!is_zero(force));
+  return acts;
+}
+
+bool depends_on_time(const DerivedLaw& law) {
+  return std::ranges::any_of(leaves_of(law.force), [](Expr leaf) { return leaf->role == Role::time; });
 }
 
 KernelBound plan_bound(const Joint& joint, const BoundedRow& row, const DerivedBound& derived) {
@@ -108,8 +117,18 @@ KernelBound plan_bound(const Joint& joint, const BoundedRow& row, const DerivedB
   add("B.lower", derived.lower);
   add("B.upper", derived.upper);
   if (row.of_rate && !is_zero(derived.rate)) add("B.rate", derived.rate), add("B.acceleration", derived.acceleration);
+  const auto reads = [](std::initializer_list<Expr> numbers, auto is_wanted) {
+    return std::ranges::any_of(numbers, [&](Expr e) {
+      return e && std::ranges::any_of(leaves_of({&e, 1}), is_wanted);
+    });
+  };
+  const bool in_time =
+      reads({row.lower, row.upper, row.rate, row.after, row.until}, [](Expr leaf) { return leaf->role == Role::time; });
+  const bool of_value = reads({row.lower, row.upper, row.rate}, [&](Expr leaf) { return leaf == row.value; });
+  const auto place = std::ranges::find(joint.coordinates, row.coordinate, &Coordinate::name);
   const char* const summary = row.of_rate ? "bounds of the force, and the rate" : "ends of the coordinate";
-  return {&row, {"bounds", summary, assemble(outputs), false, {}}, std::move(others)};
+  return {&row,     static_cast<int>(place - joint.coordinates.begin()), in_time,
+          of_value, {"bounds", summary, assemble(outputs), false, {}},   std::move(others)};
 }
 
 }  // namespace cdot::derive

@@ -34,6 +34,8 @@ const Members& members(int dimension) {
   return dimension == 2 ? planar : spatial;
 }
 
+const std::vector<std::string> members_of_bounds = {"lower", "upper", "rate", "acceleration"};  // of RowBounds
+
 int index_in(const std::vector<std::string>& list, const std::string& name) {
   return static_cast<int>(std::ranges::find(list, name) - list.begin());
 }
@@ -58,6 +60,7 @@ class Places {
         inputs_["p." + field] = {Argument::parameters, at++};
       }
     inputs_["time"] = {Argument::time, 0};
+    if (joint.law) add_law();
   }
 
   OwnFunction of(const Program& program, const std::vector<Field>& fields, int columns) const {
@@ -70,6 +73,22 @@ class Places {
   }
 
  private:
+  void add_law() {
+    int row = 0;
+    const auto add = [&](const LawInput& input, const std::string& axis) {
+      if (input.value) inputs_[input.value->symbol + axis] = {Argument::C, row};
+      inputs_[input.rate->symbol + axis] = {Argument::rate, row++};
+    };
+    for (const LawInput& input : joint_.law->inputs) {
+      if (!input.rate->vector) add(input, "");
+      for (int k = 0; k < joint_.dimension && input.rate->vector; ++k) add(input, std::string("_") + "xyz"[k]);
+    }
+    if (joint_.law->mass) inputs_[joint_.law->mass->symbol] = {Argument::effective_mass, 0};
+    inputs_[bounded_value] = {Argument::C, 0};
+    inputs_[bounded_rate] = {Argument::rate, 0};
+    inputs_[bounded_load] = {Argument::load, 0};
+  }
+
   void add_body(const std::string& body, int b) {
     const auto add = [&](const std::string& name, Argument of, const std::vector<std::string>& list,
                          const std::string& member) {
@@ -111,6 +130,9 @@ class Places {
   OwnFunction::Output output_of(const std::string& name, const std::vector<Field>& fields, int columns) const {
     if (name.starts_with("J.")) return {true, field_of(name, fields)};
     if (name.starts_with("p.")) return {false, offsets_.at(name)};
+    if (name.starts_with("B.")) return {false, index_in(members_of_bounds, name.substr(2))};
+    if (name == "E" || name == "D") return {false, 0};
+    if (name.starts_with("d[") || name.starts_with("upper[")) return {true, element_of(name, columns)};
     const std::size_t dot = name.find('.');
     if (dot == name.npos) return {false, element_of(name, columns)};
     const auto& velocity = members_.velocity;  // "v[1].wx"
@@ -144,6 +166,75 @@ OwnBlock block_of(const KernelBlock& kernel, const Joint& joint, const Places& p
   return block;
 }
 
+// The function of that name; without outputs if there is none.
+OwnFunction function_named(const std::string& name, const std::vector<KernelFunction>& functions, const Places& places,
+                           int columns) {
+  const auto f = std::ranges::find(functions, name, &KernelFunction::name);
+  return f == functions.end() ? OwnFunction{} : places.of(f->program, {}, columns);
+}
+
+OwnLaw law_of(const Kernel& kernel, const DerivedLaw& law, const Places& places) {
+  const auto rows = static_cast<int>(law.force.size());
+  const auto function = [&](const char* name) { return function_named(name, kernel.rows.functions, places, rows); };
+  return {acts_of(law),         depends_on_time(law), function("energy"), function("force"),
+          function("unstored"), function("slopes"),   function("limits")};
+}
+
+OwnBound bound_of(const KernelBound& bound, const Places& places) {
+  const auto other = [&](const char* name) { return function_named(name, bound.others, places, 0); };
+  return {bound.row->name,
+          bound.coordinate,
+          bound.row->of_rate,
+          bound.in_time,
+          bound.of_value,
+          bound.row->load_of,
+          places.of(bound.function.program, {}, 0),
+          other("by_load"),
+          other("after"),
+          other("until")};
+}
+
+void add_effect(const Kernel& kernel, const Places& places, OwnKernel& own) {
+  const Joint& joint = kernel.derivation->joint;
+  const std::optional<DerivedLaw>& law = kernel.derivation->law;
+  own.is_effect = true;
+  if (joint.on_any_coordinate()) own.dimension = 0;
+  if (law) own.law = law_of(kernel, *law, places);
+  for (const KernelBound& bound : kernel.bounded) own.bounded.push_back(bound_of(bound, places));
+  const std::optional<OnCoordinate> on = on_coordinate(joint);
+  if (!on) return;
+  const SlopesOfLaw slopes = law ? slopes_of(joint, *law) : SlopesOfLaw{};
+  own.on_coordinate = {text(on->unit),
+                       {on->uses.begin(), on->uses.end()},
+                       static_cast<bool>(joint.law->mass),
+                       slopes.linear && joint.on_any_coordinate(),
+                       slopes.vanish};
+}
+
+std::vector<OwnParameter> parameters_of(const Kernel& kernel, const Places& places) {
+  const Joint& joint = kernel.derivation->joint;
+  std::vector<OwnParameter> parameters;
+  int offset = 0;
+  for (const Parameter& p : joint.parameters) {
+    const auto size = static_cast<int>(fields_of(joint, p).size());
+    parameters.push_back({p.name,
+                          text(p.unit),
+                          static_cast<int>(p.kind),
+                          p.body,
+                          offset,
+                          size,
+                          static_cast<bool>(p.default_value),
+                          p.above,
+                          p.below,
+                          p.from,
+                          {}});
+    offset += size;
+  }
+  for (const DefaultValue& d : kernel.defaults)
+    parameters[static_cast<std::size_t>(d.parameter)].by_default = places.of(d.program, {}, 0);
+  return parameters;
+}
+
 OwnKernel tapes_of(const Kernel& kernel) {
   const Joint& joint = kernel.derivation->joint;
   const Places places(joint);
@@ -151,24 +242,9 @@ OwnKernel tapes_of(const Kernel& kernel) {
   own.name = joint.name, own.title = joint.title;
   own.dimension = joint.dimension;
   own.body_names = joint.bodies;
-  int offset = 0;
-  for (const Parameter& p : joint.parameters) {
-    const auto size = static_cast<int>(fields_of(joint, p).size());
-    own.parameters.push_back({p.name,
-                              text(p.unit),
-                              static_cast<int>(p.kind),
-                              p.body,
-                              offset,
-                              size,
-                              static_cast<bool>(p.default_value),
-                              p.above,
-                              p.below,
-                              p.from,
-                              {}});
-    offset += size;
-  }
-  for (const DefaultValue& d : kernel.defaults)
-    own.parameters[static_cast<std::size_t>(d.parameter)].by_default = places.of(d.program, {}, 0);
+  own.parameters = parameters_of(kernel, places);
+  if (joint.law) add_effect(kernel, places, own);
+  if (joint.on_any_coordinate()) return own;
   own.rows = block_of(kernel.rows, joint, places);
   for (const KernelBlock& variant : kernel.rows.variants)
     own.variants.push_back(block_of(variant, joint, places, own.rows));
@@ -192,7 +268,6 @@ OwnReading read_own_kernel(const std::string& file) {
     reading.problems += render(*read.file, diagnostics);
     return reading;
   };
-  if (read.joint->law) return refuse("an effect has to be compiled: cdot_add_joints builds it into a program");
   try {
     const Derivation derivation = derive::derive(*read.joint);
     reading.kernel = std::make_shared<OwnKernel>(tapes_of(simplified(plan(derivation))));

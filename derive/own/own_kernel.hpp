@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,19 +16,34 @@ namespace cdot {
 // A function of the kernel contract (runtime/include/cdot/kernel.hpp).
 struct OwnFunction {
   // An argument of the contract as an array of numbers: the members of its structs, body by body.
-  enum class Argument { pose, velocity, mass, parameters, jacobian, time, matrix, numbers };
+  // Those of a law are C and its rate, 1/K as `effective_mass`, and the load of a bounded row.
+  enum class Argument {
+    pose,
+    velocity,
+    mass,
+    parameters,
+    jacobian,
+    time,
+    matrix,
+    numbers,
+    C,
+    rate,
+    effective_mass,
+    load
+  };
   struct Input {
     Argument of;
     int index;
   };
-  // The array of an output: the first, or the numbers of J beside C.
+  // The array of an output: the first, or the second, as the numbers of J beside C.
   struct Output {
-    bool jacobian;
+    bool second;
     int index;
   };
   Tape tape;
   std::vector<Input> inputs;    // of the tape, in its order
   std::vector<Output> outputs;  // likewise; numbers of the arrays that it does not name are 0
+  bool exists() const { return !outputs.empty(); }
 };
 
 // The functions of a row block, in this order.
@@ -69,14 +85,42 @@ struct OwnParameter {
   OwnFunction by_default;  // if it has a default
 };
 
+// The law of an effect along its rows (runtime/include/cdot/detail/effect_law.hpp). Some functions may not exist.
+struct OwnLaw {
+  std::vector<bool> acts;  // by row
+  bool in_time = false;
+  OwnFunction energy, force, unstored, slopes, limits;
+};
+
+// A bounded row of an effect (runtime/include/cdot/detail/bounded_law.hpp). Some functions may not exist.
+struct OwnBound {
+  std::string name;
+  int coordinate;  // its place; 0 for an effect on the coordinate of any joint
+  bool of_rate, in_time, of_value;
+  int load_of;  // another bounded row; -1: the joint's own rows
+  OwnFunction bounds, by_load, after, until;
+  bool has_events() const { return after.exists() || until.exists(); }
+};
+
+// Of an effect that acts on the coordinate of any joint, as cdot::JointType has it.
+struct OwnOnCoordinate {
+  std::string unit;
+  std::vector<int> uses;  // of cdot::CoordinateUse, by parameter
+  bool reads_mass, linear, slopes_vanish;
+};
+
 struct OwnKernel {
   std::string name, title;
-  int dimension = 2;
+  int dimension = 2;  // 0: an effect without bodies, on the coordinate of any joint
   std::vector<std::string> body_names;
   std::vector<OwnParameter> parameters;
   OwnBlock rows;
   std::vector<OwnBlock> variants;  // of the rows, each with one body immovable
   std::vector<OwnBlock> coordinates;
+  bool is_effect = false;
+  std::optional<OwnLaw> law;
+  std::vector<OwnBound> bounded;
+  std::optional<OwnOnCoordinate> on_coordinate;
 
   int bodies() const { return static_cast<int>(body_names.size()); }
   int parameter_size() const { return parameters.empty() ? 0 : parameters.back().offset + parameters.back().size; }

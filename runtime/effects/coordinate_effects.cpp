@@ -100,6 +100,8 @@ std::vector<double> complete(std::size_t index, const std::vector<NamedValue>& g
 
 template <class S>
 NamedLaw<S> law_of(std::size_t index) {
+  if (is_extended<typename S::Scalar> && index >= laws_on_coordinates<S>().size())
+    throw Error(fmt::format("effect `{}` was not made for extended precision", coordinate_effects()[index].name));
   return {*laws_on_coordinates<S>()[index], coordinate_effects()[index].name.data()};
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 #include <random>
 
 #include <cdot/planar.hpp>
@@ -151,7 +152,102 @@ std::string wrong_rate_in(const OwnKernel& kernel, const OwnBlock& block) {
   return {};
 }
 
+// A law at random values, rates, parameters and a random time.
+class LawTrial {
+ public:
+  LawTrial(const OwnKernel& kernel, Random& random)
+      : law_(*kernel.law), parameters_(random_parameters(kernel, random)), time_(random.number()) {
+    for (std::size_t r = 0; r < law_.acts.size(); ++r) C_.push_back(random.number()), rate_.push_back(random.number());
+  }
+
+  using Numbers = std::vector<double>;
+  struct Pair {
+    std::string what;
+    double derived, by_differences;
+  };
+  // Every derived number beside its difference.
+  std::vector<Pair> pairs() const {
+    const std::size_t rows = C_.size();
+    Numbers k(rows * rows), d(rows * rows);
+    run_own(law_.slopes, at(C_, rate_), k.data(), d.data());
+    std::vector<Pair> pairs;
+    for (std::size_t c = 0; c < rows; ++c) {
+      const Numbers by_C = slope(C_, c, [&](const Numbers& C) { return force(C, rate_); });
+      const Numbers by_rate = slope(rate_, c, [&](const Numbers& rate) { return force(C_, rate); });
+      for (std::size_t r = 0; r < rows; ++r) {
+        pairs.push_back({fmt::format("stiffness {} {}", r + 1, c + 1), k[r * rows + c], -by_C[r]});
+        pairs.push_back({fmt::format("damping {} {}", r + 1, c + 1), d[r * rows + c], -by_rate[r]});
+      }
+      if (!law_.energy.exists()) continue;
+      const Numbers by_energy = slope(C_, c, [&](const Numbers& C) { return Numbers{energy(C)}; });
+      pairs.push_back({fmt::format("stored force {}", c + 1), stored()[c], -by_energy[0]});
+    }
+    return pairs;
+  }
+
+ private:
+  OwnArguments<double> at(const Numbers& C, const Numbers& rate) const {
+    return {
+        .parameters = parameters_.data(), .time = &time_, .C = C.data(), .rate = rate.data(), .effective_mass = &mass_};
+  }
+  Numbers force(const Numbers& C, const Numbers& rate) const {
+    Numbers F(C.size());
+    run_own(law_.force, at(C, rate), F.data());
+    return F;
+  }
+  double energy(const Numbers& C) const {
+    double E = 0;
+    run_own(law_.energy, at(C, rate_), &E);
+    return E;
+  }
+  Numbers stored() const {
+    Numbers F = force(C_, rate_), unstored(C_.size());
+    run_own(law_.unstored, at(C_, rate_), unstored.data());
+    for (std::size_t r = 0; r < F.size(); ++r) F[r] -= unstored[r];
+    return F;
+  }
+  template <class F>
+  static Numbers slope(Numbers at, std::size_t c, F f) {
+    const double middle = at[c];
+    at[c] = middle + difference_step;
+    Numbers slope = f(at);
+    at[c] = middle - difference_step;
+    const Numbers before = f(at);
+    for (std::size_t r = 0; r < slope.size(); ++r) slope[r] = (slope[r] - before[r]) / (2 * difference_step);
+    return slope;
+  }
+
+  const OwnLaw& law_;
+  Numbers parameters_, C_, rate_;
+  double time_, mass_ = 1.3;
+};
+
 }  // namespace
+
+std::string wrong_law(const OwnKernel& kernel) {
+  if (!kernel.law) return {};
+  struct Count {
+    int wrong = 0, judged = 0;
+    std::string sample{};
+  };
+  std::map<std::string, Count> counts;
+  Random random;
+  for (int trial = 0; trial < poses; ++trial) {
+    for (const auto& [what, derived, by_differences] : LawTrial(kernel, random).pairs()) {
+      const double off = std::abs(derived - by_differences), size = std::abs(derived) + std::abs(by_differences);
+      if (!std::isfinite(off)) continue;
+      Count& count = counts[what];
+      ++count.judged;
+      if (off <= tolerance * (1 + size)) continue;
+      ++count.wrong;
+      count.sample =
+          fmt::format("{}: derived it is {:.6g}, central differences give {:.6g}", what, derived, by_differences);
+    }
+  }
+  for (const auto& [what, count] : counts)
+    if (2 * count.wrong > count.judged) return count.sample;
+  return {};
+}
 
 std::string wrong_rate(const OwnKernel& kernel) {
   const auto of = [&](const OwnBlock& block) {

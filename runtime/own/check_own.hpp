@@ -1,4 +1,5 @@
-// The derived rates of a kernel of tapes against differences of its C: a second route, as proofs are for compiled ones.
+// The derived rates and slopes of a kernel of tapes against differences of C, energy and force: a second route, as
+// proofs are for compiled ones.
 #pragma once
 
 #include <string>
@@ -10,5 +11,9 @@ namespace cdot {
 // The first row whose J v + dC/dt differs from central differences of C at most of the random poses, with both numbers;
 // empty if there is none. Poses at which C has no finite value do not count.
 std::string wrong_rate(const OwnKernel& kernel);
+
+// Likewise of an effect's law: its slopes against differences of its force, and what its energy stores of the force
+// against differences of that energy.
+std::string wrong_law(const OwnKernel& kernel);
 
 }  // namespace cdot

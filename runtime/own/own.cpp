@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 
+#include <cdot/detail/coordinate_effects.hpp>
 #include <cdot/detail/joint_table.hpp>
 #include <cdot/spaces.hpp>
 
@@ -23,6 +24,17 @@ struct Registered {
   std::shared_ptr<const OwnKernel> kernel;
 };
 
+void describe_effect(const OwnKernel& kernel, JointType& type) {
+  const std::optional<OwnLaw>& law = kernel.law;
+  type.is_effect = true;
+  type.explicit_time |= law && law->in_time;
+  for (const OwnBound& bound : kernel.bounded) type.explicit_time |= bound.in_time;
+  type.without_energy = !law || law->unstored.exists() || !law->energy.exists();
+  if (!kernel.on_coordinate) return;
+  type.coordinate_unit = kernel.on_coordinate->unit;
+  for (const int use : kernel.on_coordinate->uses) type.coordinate_uses.push_back(static_cast<CoordinateUse>(use));
+}
+
 JointType described(const Registered& own) {
   const OwnKernel& kernel = *own.kernel;
   JointType type{};
@@ -37,6 +49,7 @@ JointType described(const Registered& own) {
   for (const OwnBlock& coordinate : kernel.coordinates) type.coordinates.push_back({coordinate.name, coordinate.unit});
   type.parameter_size = kernel.parameter_size();
   type.explicit_time = kernel.rows.explicit_time;
+  if (kernel.is_effect) describe_effect(kernel, type);
   return type;
 }
 
@@ -53,12 +66,65 @@ JointEntry<S> entry_of(std::shared_ptr<const OwnKernel> kernel) {
     run_own<T>(parameter.by_default, {.pose = reinterpret_cast<const T*>(q), .parameters = parameters, .time = &time},
                parameters);
   };
+  entry.law = own_law<S>(*kernel);
+  const std::vector<const Law<S>*> laws = own_bounded_laws<S>(*kernel);
+  for (std::size_t i = 0; i < laws.size(); ++i) {
+    const OwnBound& bound = kernel->bounded[i];
+    entry.bounded.push_back(
+        {bound.coordinate, bound.name, laws[i], [&bound](T C, const T* parameters, T time, RowBounds<T>& B) {
+           run_own<T>(bound.bounds, {.parameters = parameters, .time = &time, .C = &C}, &B.lower);
+         }});
+  }
   return entry;
 }
 
 template <class S>
 void add_entry(const std::shared_ptr<const OwnKernel>& kernel, Dimension dimension) {
   if (S::dimension == dimension) joint_entries<S>().push_back(entry_of<S>(kernel));
+}
+
+bool has_value(const OwnLaw& law, double C, const double* parameters, double time) {
+  const double rate = 0, mass = 1;
+  const OwnArguments<double> in = {
+      .parameters = parameters, .time = &time, .C = &C, .rate = &rate, .effective_mass = &mass};
+  double force = 0, energy = 0;
+  run_own<double>(law.force, in, &force);
+  run_own<double>(law.energy, in, &energy);
+  return std::isfinite(force) && std::isfinite(energy);
+}
+
+FunctionsOnCoordinate functions_of(const std::shared_ptr<const OwnKernel>& kernel) {
+  FunctionsOnCoordinate functions;
+  functions.default_value = [kernel](int index, double* parameters, double time) {
+    const OwnParameter& parameter = kernel->parameters[static_cast<std::size_t>(index)];
+    run_own<double>(parameter.by_default, {.parameters = parameters, .time = &time}, parameters);
+  };
+  if (kernel->bounded.empty())
+    functions.has_value = [kernel](double C, const double* parameters, double time) {
+      return has_value(*kernel->law, C, parameters, time);
+    };
+  else
+    functions.bounds = [kernel](double C, const double* parameters, double time, RowBounds<double>& B) {
+      const OwnFunction& bounds = kernel->bounded.front().bounds;
+      run_own<double>(bounds, {.parameters = parameters, .time = &time, .C = &C}, &B.lower);
+    };
+  return functions;
+}
+
+void add_on_coordinates(const Registered& own) {
+  registered_coordinate_effects().push_back(described(own));
+  functions_on_coordinates().push_back(functions_of(own.kernel));
+#define CDOT_ADD_LAW(S) laws_on_coordinates<S>().push_back(own_law_on_coordinate<S>(*own.kernel));
+  CDOT_FOR_EACH_SPACE(CDOT_ADD_LAW)
+#undef CDOT_ADD_LAW
+}
+
+void add_joint(const Registered& own) {
+  const Dimension dimension = own.kernel->dimension == 2 ? Dimension::planar : Dimension::spatial;
+  add_joint_type(dimension, described(own));
+#define CDOT_ADD_ENTRY(S) add_entry<S>(own.kernel, dimension);
+  CDOT_FOR_EACH_SPACE(CDOT_ADD_ENTRY)
+#undef CDOT_ADD_ENTRY
 }
 
 // Why these tapes cannot stand for a compiled kernel; empty if they can.
@@ -74,13 +140,19 @@ std::string obstacle(const OwnKernel& kernel) {
   for (const OwnParameter& parameter : kernel.parameters)
     if (parameter.unit == "rad" && parameter.name.ends_with("_turns"))
       return fmt::format("its parameter {} counts turns. {}", parameter.name, compile);
-  const std::string wrong = wrong_rate(kernel);
+  std::string wrong = wrong_rate(kernel);
+  if (wrong.empty()) wrong = wrong_law(kernel);
   return wrong.empty() ? wrong : wrong + ". Please report this spec";
 }
 
-std::string free_name(Dimension dimension, const std::string& wanted) {
-  std::string name = wanted;
-  for (int k = 2; find_joint_type(dimension, name); ++k) name = fmt::format("{}#{}", wanted, k);
+std::string free_name(const OwnKernel& kernel) {
+  const Dimension dimension = kernel.dimension == 2 ? Dimension::planar : Dimension::spatial;
+  const auto taken = [&](const std::string& name) {
+    return (kernel.bodies() > 0 && find_joint_type(dimension, name)) ||
+           (kernel.on_coordinate && find_coordinate_effect(name));
+  };
+  std::string name = kernel.name;
+  for (int k = 2; taken(name); ++k) name = fmt::format("{}#{}", kernel.name, k);
   return name;
 }
 
@@ -101,17 +173,14 @@ OwnType add_own_type(const std::string& file) {
   const std::string content = content_of(file);
   if (!last.type.name.empty() && last.content == content) return last.type;
   const auto [kernel, problems] = read_own_kernel(file);
-  if (!kernel) return {"", problems};
+  if (!kernel) return {"", true, problems};
   if (const std::string why = obstacle(*kernel); !why.empty())
-    return {"", fmt::format("{}{}: error: the joint cannot run: {}\n", problems, file, why)};
-  const Dimension dimension = kernel->dimension == 2 ? Dimension::planar : Dimension::spatial;
+    return {"", kernel->bodies() > 0, fmt::format("{}{}: error: it cannot run: {}\n", problems, file, why)};
   static std::vector<std::unique_ptr<Registered>> all;
-  all.push_back(std::make_unique<Registered>(Registered{free_name(dimension, kernel->name), kernel}));
-  add_joint_type(dimension, described(*all.back()));
-#define CDOT_ADD_ENTRY(S) add_entry<S>(kernel, dimension);
-  CDOT_FOR_EACH_SPACE(CDOT_ADD_ENTRY)
-#undef CDOT_ADD_ENTRY
-  last = {content, {all.back()->name, problems}};
+  all.push_back(std::make_unique<Registered>(Registered{free_name(*kernel), kernel}));
+  if (kernel->bodies() > 0) add_joint(*all.back());
+  if (kernel->on_coordinate) add_on_coordinates(*all.back());
+  last = {content, {all.back()->name, kernel->bodies() > 0, problems}};
   return last.type;
 }
 

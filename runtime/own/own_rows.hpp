@@ -16,16 +16,17 @@ namespace cdot {
 template <class T>
 struct OwnArguments {
   const T *pose = nullptr, *velocity = nullptr, *mass = nullptr, *parameters = nullptr, *jacobian = nullptr,
-          *time = nullptr, *matrix = nullptr, *numbers = nullptr;
+          *time = nullptr, *matrix = nullptr, *numbers = nullptr, *C = nullptr, *rate = nullptr,
+          *effective_mass = nullptr, *load = nullptr;
 };
 
 template <class T>
-void run_own(const OwnFunction& function, const OwnArguments<T>& in, T* to, T* jacobian = nullptr) {
+void run_own(const OwnFunction& function, const OwnArguments<T>& in, T* to, T* second = nullptr) {
   thread_local std::vector<T> registers;  // grows to the largest tape of the thread
   registers.resize(std::max(registers.size(), static_cast<std::size_t>(function.tape.registers)));
   T* const r = registers.data();
-  const T* const arguments[] = {in.pose,     in.velocity, in.mass,   in.parameters,
-                                in.jacobian, in.time,     in.matrix, in.numbers};
+  const T* const arguments[] = {in.pose,   in.velocity, in.mass, in.parameters, in.jacobian,       in.time,
+                                in.matrix, in.numbers,  in.C,    in.rate,       in.effective_mass, in.load};
   place_constants(function.tape, r);
   for (std::size_t i = 0; i < function.inputs.size(); ++i) {
     const auto& [of, index] = function.inputs[i];
@@ -33,8 +34,8 @@ void run_own(const OwnFunction& function, const OwnArguments<T>& in, T* to, T* j
   }
   run_tape(function.tape, r);
   for (std::size_t i = 0; i < function.outputs.size(); ++i) {
-    const auto& [of_jacobian, index] = function.outputs[i];
-    (of_jacobian ? jacobian : to)[index] = r[function.tape.output_at[i]];
+    const auto& [of_second, index] = function.outputs[i];
+    (of_second ? second : to)[index] = r[function.tape.output_at[i]];
   }
 }
 

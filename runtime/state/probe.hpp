@@ -43,7 +43,9 @@ class Probe {
   }
 
   // True if the law of an effect has a force and an energy here. Call Cdot() first.
-  bool has_value(const Law<S>& law) const {
+  bool has_value(const Law<S>& law) {
+    batch_.law = &law;
+    batch_.factor.assign(1, T(1));  // laws of tapes are told the effective mass, read or not
     T force[most_rows];
     law.force(batch_, 0, batch_.rate.data(), force);
     return std::all_of(force, force + rows(), [](T F) { return std::isfinite(F); }) &&

@@ -1,7 +1,8 @@
-#include "runtime/tool/scene/depth.hpp"
-
+// Bounds the depth of a scene's text, before toml++ reads it.
 #include <algorithm>
 #include <cctype>
+
+#include "runtime/tool/scene/read.hpp"
 
 namespace cdot {
 namespace {

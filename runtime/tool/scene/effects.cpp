@@ -72,11 +72,16 @@ std::string unit_on(std::string_view unit, std::string_view coordinate) {
 }
 
 // An effect of a spec: { k = 50, most = 3 }, or the number of its only parameter.
-void read_spec(Entry& entry, const JointType& type, const CoordinateInfo& coordinate, double duration,
-               CoordinateEffects& effects) {
+void read_spec(Entry& entry, const std::string& key, const JointType& type, const CoordinateInfo& coordinate,
+               double duration, CoordinateEffects& effects) {
+  if (!type.acts_on(coordinate.unit)) {
+    entry.error(entry.where(key), fmt::format("`{}` acts on coordinates in {}; `{}` is in {}", key,
+                                              type.coordinate_unit, coordinate.name, coordinate.unit));
+    entry.has(key);  // read now, so that close() does not report it again
+    return;
+  }
   const bool turns = coordinate.unit == "rad";
-  const std::string key(type.name);
-  SpecEffect effect{key};
+  SpecEffect effect{std::string(type.name)};
   std::vector<const ParameterInfo*> needed;
   const auto quantity = [turns](const ParameterInfo& info) {
     const Sign sign = !(info.above >= 0) ? Sign::any : info.from ? Sign::not_negative : Sign::positive;
@@ -122,20 +127,20 @@ void read_kind(Entry& entry, const EffectKind& kind, const CoordinateInfo& coord
   const bool turns = coordinate.unit == "rad";
   const JointType* const spec = find_coordinate_effect(kind.key);
   if (spec && spec->acts_on(coordinate.unit) && follows_time(entry, kind, turns))
-    read_spec(entry, *spec, coordinate, duration, effects);
+    read_spec(entry, kind.key, *spec, coordinate, duration, effects);
   else read_effect(entry, kind, turns, effects);
 }
 
 void read_specs(Entry& entry, const CoordinateInfo& coordinate, double duration, CoordinateEffects& effects) {
   for (const JointType& type : coordinate_effects()) {
     const std::string key(type.name);
-    if (is_key_of_kind(key) || !entry.has(key)) continue;
-    if (type.acts_on(coordinate.unit)) read_spec(entry, type, coordinate, duration, effects);
-    else
-      entry.error(entry.where(key),
-                  fmt::format("`{}` acts on coordinates in {}; `{}` is in {}", key, type.coordinate_unit,
-                              coordinate.name, coordinate.unit),
-                  "");
+    if (!is_key_of_kind(key) && entry.has(key)) read_spec(entry, key, type, coordinate, duration, effects);
+  }
+  for (const std::string& key : entry.unread()) {
+    const std::string spec = spec_beside(entry, key, {".effect"});
+    const JointType* const own = spec.empty() ? nullptr : own_effect_type(entry, key, spec);
+    if (own) read_spec(entry, key, *own, coordinate, duration, effects);
+    else if (!spec.empty()) entry.has(key);
   }
 }
 

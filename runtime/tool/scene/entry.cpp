@@ -211,6 +211,13 @@ void Entry::required(const std::string& key, const std::string& fix) {
   if (!has(key)) error(header_, fmt::format("{} has no `{}`", what_, key), fix);
 }
 
+std::vector<std::string> Entry::unread() const {
+  std::vector<std::string> keys;
+  for (auto&& [key, node] : *table_)
+    if (!asked_.contains(std::string(key.str()))) keys.emplace_back(key.str());
+  return keys;
+}
+
 void Entry::close(const std::vector<std::string>& also_known) const {
   std::vector<std::string> known(also_known);
   for (const std::string& key : asked_) {

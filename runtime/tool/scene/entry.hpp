@@ -37,6 +37,7 @@ class Entry {
 
   bool has(const std::string& key);
   bool leaves_table_unread(const std::string& key) const;   // an unread table
+  std::vector<std::string> unread() const;                  // the keys that nobody has read
   Span where(const std::string& key) const;                 // of its value, or of the header if it is absent
   Span element(const std::string& key, std::size_t index);  // of one value of a list
   Span header() const { return header_; }

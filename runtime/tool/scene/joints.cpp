@@ -1,11 +1,9 @@
 // The [[joint]] and [[spring]] entries of a scene -> definitions. The table of joint types lists parameters and
 // coordinates; no joint is known by name here.
 #include <cmath>
-#include <filesystem>
 #include <fmt/format.h>
 #include <map>
 
-#include "runtime/own/own.hpp"
 #include "runtime/rows/parameters.hpp"
 #include "runtime/tool/scene/keys.hpp"
 #include "runtime/tool/scene/profile.hpp"
@@ -38,40 +36,14 @@ void read_joint_name(Entry& joint, const char*, JointReading& to) {
   to.joint.name = read_name(joint, to.used, to.unnamed).value_or("");
 }
 
-// The spec of a joint that nobody compiled: `type` is its file, or its name beside the scene. Empty if there is none.
-std::string spec_called(const Entry& joint, const std::string& type) {
-  for (const char* ending : {"", ".joint", ".effect"}) {
-    const std::filesystem::path path = joint.beside(type + ending);
-    const bool is_spec = path.extension() == ".joint" || path.extension() == ".effect";
-    if (is_spec && std::filesystem::is_regular_file(path)) return path.string();
-  }
-  return {};
-}
-
-// Derives the spec; its mistakes are those of the scene.
-const JointType* own_type(Entry& joint, Dimension dimension, const std::string& spec) {
-  const OwnType own = add_own_type(spec);
-  const Span where = joint.where("type");
-  if (own.name.empty()) {
-    const std::string problems = own.problems.substr(0, own.problems.find_last_not_of('\n') + 1);
-    joint.error(where, fmt::format("{} cannot be used:\n{}", spec, problems), "correct the spec");
-    return nullptr;
-  }
-  const JointType* const type = find_joint_type(dimension, own.name);
-  if (!type)
-    joint.error(where, fmt::format("{} is a joint {}, and this scene is {}", spec,
-                                   dimension == Dimension::spatial ? "of the plane" : "in space",
-                                   dimension == Dimension::spatial ? "in space" : "planar"));
-  return type;
-}
-
 const JointType* type_named(Entry& joint, Dimension dimension) {
   joint.required("type", "type = \"revolute\"");
   const std::optional<std::string> name = joint.text("type");
   if (!name) return nullptr;
   const JointType* type = find_joint_type(dimension, *name);
   if (type) return type;
-  if (const std::string spec = spec_called(joint, *name); !spec.empty()) return own_type(joint, dimension, spec);
+  if (const std::string spec = spec_beside(joint, *name, {".joint", ".effect"}); !spec.empty())
+    return own_joint_type(joint, dimension, spec);
   std::vector<std::string> known;
   for (const JointType& other : joint_types(dimension)) known.emplace_back(other.name);
   const bool in_space = dimension == Dimension::spatial;

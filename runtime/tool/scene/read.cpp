@@ -10,7 +10,6 @@
 #include <sstream>
 
 #include "runtime/command_line/installation.hpp"
-#include "runtime/tool/scene/depth.hpp"
 #include "runtime/tool/scene/start.hpp"
 
 namespace cdot {

@@ -51,6 +51,19 @@ void read_effects(Entry& joint, const JointType& type, double duration,
                   std::vector<CoordinateEffects>& to);  // tool/scene/effects.cpp
 std::optional<Softness> read_softness(Entry& joint, const char* key);
 
+// Types that nobody compiled (tool/scene/own_types.cpp). The spec that `name` means beside the scene; empty if there is
+// none.
+std::string spec_beside(const Entry& entry, const std::string& name, const std::vector<std::string>& endings);
+// The type of a spec for the `type` of a joint, and for the effect `key` of a coordinate. Null after a mistake.
+const JointType* own_joint_type(Entry& joint, Dimension dimension, const std::string& spec);
+const JointType* own_effect_type(Entry& coordinate, const std::string& key, const std::string& spec);
+
+// toml++ bounds nested values itself, but not the parts of a dotted key, each of which costs a stack frame. No key of a
+// scene has more than this.
+inline constexpr int most_parts_of_key = 16;
+// The first key a.b.c… with too many parts: where the first part beyond the bound begins.
+std::optional<Span> find_deep_key(std::string_view text);  // tool/scene/depth.cpp
+
 void read_settings(Entry& top, Scene& scene);                         // tool/scene/settings.cpp
 void read_bodies(Entry& top, Scene& scene);                           // tool/scene/bodies.cpp
 void find_forces_in_time(Scene& scene);                               // tool/scene/bodies.cpp

@@ -1,4 +1,4 @@
-// Joints without a compiler move as compiled ones, bit for bit: every joint of the catalogue, by all methods.
+// Joints and effects without a compiler move as compiled ones, bit for bit: all of the catalogue, by all methods.
 #include "runtime/own/own.hpp"
 
 #include <cstring>
@@ -70,33 +70,81 @@ std::vector<double> run_of(const std::string& type, const JointType& info, const
   return numbers;
 }
 
-template <class S>
-int expect_same_runs(const std::string& compiled, const std::string& own) {
-  const JointType& info = *find_joint_type(S::dimension, compiled);
-  int finite = 0;
+// `run` of the compiled type and of its own one, by every method. Returns how many runs came to their end.
+template <class S, class Run>
+int expect_same_runs(const std::string& compiled, const std::string& own, Run run) {
+  int ended = 0;
   for (const Method& method : methods()) {
     if (std::is_same_v<typename S::Scalar, float> && method.settings.integrator != Integrator::euler) continue;
     for (const bool grounded : {false, true}) {
-      const std::vector<double> a = run_of<S>(compiled, info, method.settings, grounded);
-      const std::vector<double> b = run_of<S>(own, info, method.settings, grounded);
+      const std::vector<double> a = run(compiled, method.settings, grounded);
+      const std::vector<double> b = run(own, method.settings, grounded);
       EXPECT_EQ(a.size(), b.size()) << compiled << " by " << method.name;
       if (a.size() == b.size()) {
         EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(double)), 0) << compiled << " by " << method.name;
       }
-      finite += a.size() > 1;
+      ended += a.size() > 1;
     }
   }
-  return finite;
+  return ended;
+}
+
+template <class S>
+int expect_same_joints(const std::string& compiled, const std::string& own) {
+  const JointType& info = *find_joint_type(S::dimension, compiled);
+  return expect_same_runs<S>(compiled, own, [&](const std::string& type, const Settings& settings, bool grounded) {
+    return run_of<S>(type, info, settings, grounded);
+  });
+}
+
+// Two rods on pins, or a block on a rail, with the effect on the first joint.
+template <class S>
+std::vector<double> run_on_coordinate(const SpecEffect& effect, bool of_turn, const Settings& settings, bool loaded) {
+  BasicWorld<S> world(settings);
+  const bool planar = S::dimension == Dimension::planar;
+  const std::string type = of_turn ? (planar ? "revolute" : "hinge") : (planar ? "prismatic" : "slider");
+  std::vector<int> bodies = {world.ground()}, joints;
+  for (int k = 0; k < 2; ++k) {
+    typename S::BodyDefinition d;
+    d.x = 1 + k, d.y = 0.2 * k, d.mass = 1 + k, d.vx = loaded ? 0.5 : 0, d.vy = 0.4;
+    bodies.push_back(world.add_body(d));
+    joints.push_back(world.add_joint({type,
+                                      {bodies[static_cast<std::size_t>(k)], bodies.back()},
+                                      some_values(*find_joint_type(S::dimension, type)),
+                                      {}}));
+  }
+  const std::string coordinate = of_turn ? "angle" : "slide";
+  add_effect(world, joints[0], coordinate, effect);
+  std::vector<double> numbers;
+  for (int k = 0; k < 25; ++k) {
+    if (!world.step(0.004)) return numbers.push_back(k), numbers;
+    for (const int joint : joints) numbers.push_back(world.coordinate(joint, coordinate));
+    numbers.push_back(world.energy());
+  }
+  return numbers;
+}
+
+template <class S>
+int expect_same_on_coordinate(const std::string& compiled, const std::string& own) {
+  const JointType& info = *find_coordinate_effect(compiled);
+  std::vector<NamedValue> values;
+  for (std::size_t k = 0; k < info.parameters.size(); ++k)
+    if (info.coordinate_uses[k] == CoordinateUse::required)
+      values.push_back({std::string(info.parameters[k].name), {info.parameters[k].name == "lower" ? -0.01 : 0.02}});
+  return expect_same_runs<S>(compiled, own, [&](const std::string& type, const Settings& settings, bool loaded) {
+    return run_on_coordinate<S>({type, values}, info.acts_on("rad"), settings, loaded);
+  });
 }
 
 class InFolder : public testing::TestWithParam<const char*> {};
 
 TEST_P(InFolder, EveryJointMovesAsCompiled) {
   const std::string folder = GetParam();
-  int joints = 0, runs = 0;
+  int joints = 0, effects = 0, runs = 0;
   std::string refused;
   for (const auto& entry : fs::directory_iterator(fs::path(CDOT_SOURCE_DIR "/specs") / folder)) {
-    if (entry.path().extension() != ".joint") continue;
+    const bool is_effect = entry.path().extension() == ".effect";
+    if (entry.path().extension() != ".joint" && !is_effect) continue;
     const std::string compiled = entry.path().stem().string();
     const OwnType own = add_own_type(entry.path().string());
     if (own.name.empty()) {
@@ -105,16 +153,35 @@ TEST_P(InFolder, EveryJointMovesAsCompiled) {
       refused += " " + compiled;
       continue;
     }
-    ++joints;
+    ++(is_effect ? effects : joints);
     EXPECT_EQ(own.name, compiled + "#2");
-    runs += folder == "planar" ? expect_same_runs<Planar<double>>(compiled, own.name) +
-                                     expect_same_runs<Planar<float>>(compiled, own.name)
-                               : expect_same_runs<Spatial<double>>(compiled, own.name) +
-                                     expect_same_runs<Spatial<float>>(compiled, own.name);
+    runs += folder == "planar" ? expect_same_joints<Planar<double>>(compiled, own.name) +
+                                     expect_same_joints<Planar<float>>(compiled, own.name)
+                               : expect_same_joints<Spatial<double>>(compiled, own.name) +
+                                     expect_same_joints<Spatial<float>>(compiled, own.name);
   }
-  fmt::print("{}: {} joints in {} runs; refused:{}\n", folder, joints, runs, refused);
+  fmt::print("{}: {} joints and {} effects in {} runs; refused:{}\n", folder, joints, effects, runs, refused);
   EXPECT_GT(joints, 20);
-  EXPECT_GT(runs, 10 * joints);
+  EXPECT_GT(effects, 10);
+  EXPECT_GT(runs, 10 * (joints + effects));
+}
+
+// Effects on the coordinate of any joint: those of specs/coordinate.
+TEST(Own, EveryEffectOnACoordinateActsAsCompiled) {
+  int effects = 0, runs = 0;
+  for (const auto& entry : fs::directory_iterator(CDOT_SOURCE_DIR "/specs/coordinate")) {
+    const std::string compiled = entry.path().stem().string();
+    const OwnType own = add_own_type(entry.path().string());
+    ASSERT_EQ(own.name, compiled + "#2") << own.problems;
+    EXPECT_FALSE(own.has_bodies);
+    ++effects;
+    runs += expect_same_on_coordinate<Planar<double>>(compiled, own.name) +
+            expect_same_on_coordinate<Planar<float>>(compiled, own.name) +
+            expect_same_on_coordinate<Spatial<double>>(compiled, own.name);
+  }
+  fmt::print("{} effects in {} runs\n", effects, runs);
+  EXPECT_GT(effects, 10);
+  EXPECT_GT(runs, 20 * effects);
 }
 INSTANTIATE_TEST_SUITE_P(Own, InFolder, testing::Values("planar", "spatial"));
 

@@ -151,6 +151,8 @@ struct Law {
   bool (*by_mass)(const Batch<S>&, int slot) = nullptr;
   // dE/dt of one slot at the present C, as its parameters follow functions of time. Null: as `energy`.
   double (*power)(const Batch<S>&, int slot) = nullptr;
+  // The object behind a law that is of no generated struct; else null.
+  const void* context = nullptr;
 
   bool is_of_effect() const { return unstored != nullptr; }
 };

@@ -38,8 +38,8 @@ struct BoundedLaw {
 
   static RowBounds<T> bounds(const Batch<S>& batch, int slot) {
     RowBounds<T> B;
-    Row::bounds(reinterpret_cast<const T(&)[1]>(batch.C[slot]), parameters_of<S, Effect, where>(batch, slot),
-                batch.time, B);
+    effect_of<Row>(batch).bounds(reinterpret_cast<const T(&)[1]>(batch.C[slot]),
+                                 parameters_of<S, Effect, where>(batch, slot), batch.time, B);
     if (!(B.upper > B.lower)) B.upper = B.lower;
     if (batch.driven() && !batch.drives_of(slot).empty()) B.acceleration = acceleration_in_time(batch, slot);
     return B;
@@ -50,16 +50,21 @@ struct BoundedLaw {
     using Jets = typename Effect::template Parameters<Jet<T>>;
     const Jet<T> C[1] = {batch.C[slot]};
     RowBounds<Jet<T>> B;
-    Row::bounds(C, jets_of<Jets>(batch, slot, where == ParametersAt::row), Jet<T>{batch.time, T(1), T(0)}, B);
+    effect_of<Row>(batch).bounds(C, jets_of<Jets>(batch, slot, where == ParametersAt::row),
+                                 Jet<T>{batch.time, T(1), T(0)}, B);
     return B.rate.first;
   }
 
-  static constexpr bool waits = requires { &Row::template after<T>; };
-  static constexpr bool is_ended = requires { &Row::template until<T>; };
-  static constexpr bool has_events = waits || is_ended;
+  static constexpr bool may_wait = requires { &Row::template after<T>; };
+  static constexpr bool may_end = requires { &Row::template until<T>; };
+  static constexpr bool has_events = may_wait || may_end;
+  static bool waits(const Batch<S>& batch) {
+    if constexpr (is_made_by_program<Row>) return effect_of<Row>(batch).waits();
+    else return may_wait;
+  }
   static bool acts(const Batch<S>& batch, int slot) {
     if constexpr (!has_events) return true;
-    else return batch.happened[slot] == (waits ? Event::began : Event::none);
+    else return batch.happened[slot] == (waits(batch) ? Event::began : Event::none);
   }
   static void distance(const Batch<S>& batch, int slot, T rate, T force, T (&from)[2]) {
     from[0] = from[1] = T(unbounded);
@@ -68,16 +73,17 @@ struct BoundedLaw {
       condition(reinterpret_cast<const T(&)[1]>(batch.C[slot]), rates, parameters_of<S, Effect, where>(batch, slot),
                 batch.time, std::abs(force), D);
     };
-    if constexpr (waits) find([](auto&&... numbers) { Row::after(numbers...); }, from[0]);
-    if constexpr (is_ended) find([](auto&&... numbers) { Row::until(numbers...); }, from[1]);
+    [[maybe_unused]] const auto row = effect_of<Row>(batch);
+    if constexpr (may_wait) find([row](auto&&... numbers) { row.after(numbers...); }, from[0]);
+    if constexpr (may_end) find([row](auto&&... numbers) { row.until(numbers...); }, from[1]);
   }
 
   static constexpr bool has_load = requires { Row::load_of; };
   static void by_load(const Batch<S>& batch, int slot, T* lower, T* upper) {
     RowBounds<T> B;
     if constexpr (has_load)
-      Row::by_load(reinterpret_cast<const T(&)[1]>(batch.C[slot]), parameters_of<S, Effect, where>(batch, slot),
-                   batch.time, B);
+      effect_of<Row>(batch).by_load(reinterpret_cast<const T(&)[1]>(batch.C[slot]),
+                                    parameters_of<S, Effect, where>(batch, slot), batch.time, B);
     *lower = B.lower, *upper = B.upper;
   }
 
@@ -101,7 +107,7 @@ struct BoundedLaw {
       return;
     }
     RowBounds<T> B = bounds(batch, slot);
-    if constexpr (has_load) {
+    if (has_load && batch.law->by_load) {
       T lower, upper;
       by_load(batch, slot, &lower, &upper);
       B.lower += lower * batch.load[slot], B.upper += upper * batch.load[slot];

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <tuple>
 #include <vector>
 
@@ -14,10 +15,10 @@ namespace cdot {
 
 // The functions of an effect in doubles, without poses.
 struct FunctionsOnCoordinate {
-  void (*default_value)(int index, double* parameters, double time);
-  void (*bounds)(double C, const double* parameters, double time, RowBounds<double>&);  // null: no bounds
-  // True if force and energy are finite at rest; null: it has bounds.
-  bool (*has_value)(double C, const double* parameters, double time);
+  std::function<void(int index, double* parameters, double time)> default_value;
+  std::function<void(double C, const double* parameters, double time, RowBounds<double>&)> bounds;  // empty: no bounds
+  // True if force and energy are finite at rest; empty: it has bounds.
+  std::function<bool(double C, const double* parameters, double time)> has_value;
 };
 
 std::vector<JointType>& registered_coordinate_effects();
@@ -49,7 +50,8 @@ FunctionsOnCoordinate functions_on_coordinate() {
                                       Effect::default_value(index, nowhere, numbers, time);
                                     }
                                   },
-                                  nullptr, nullptr};
+                                  {},
+                                  {}};
   if constexpr (requires { typename Effect::Bounded; })
     functions.bounds = [](double C, const double* parameters, double time, RowBounds<double>& B) {
       const double value[1] = {C};

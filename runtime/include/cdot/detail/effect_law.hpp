@@ -20,7 +20,7 @@
 #include <cmath>
 #include <limits>
 
-#include <cdot/detail/block.hpp>
+#include <cdot/detail/block_slots.hpp>
 #include <cdot/detail/drives.hpp>
 
 namespace cdot {
@@ -28,11 +28,22 @@ namespace cdot {
 // Where a law finds its parameters: those of its own joint, or the constants of a row on the coordinate of another.
 enum class ParametersAt { joint, row };
 
+// A generated effect is a struct of static functions. One that a program makes while it runs has an object behind it.
+template <class Effect, class S>
+Effect effect_of(const Batch<S>& batch) {
+  if constexpr (is_made_by_program<Effect>) return Effect(batch.law->context);
+  else return {};
+}
+
 template <class S, class Effect, ParametersAt where>
 const auto& parameters_of(const Batch<S>& batch, int slot) {
   using Numbers = typename Effect::template Parameters<typename S::Scalar>;
-  const auto* const numbers = where == ParametersAt::joint ? batch.parameters.data() : batch.constants.data();
-  return reinterpret_cast<const Numbers*>(numbers)[slot];
+  constexpr bool of_joint = where == ParametersAt::joint;
+  const auto* const numbers = of_joint ? batch.parameters.data() : batch.constants.data();
+  if constexpr (is_made_by_program<Effect>) {
+    const int stride = of_joint ? batch.ops->parameter_size : batch.law->constants;
+    return *reinterpret_cast<const Numbers*>(numbers + slot * stride);
+  } else return reinterpret_cast<const Numbers*>(numbers)[slot];
 }
 template <class S, class Effect, ParametersAt where>
 inline constexpr int constants_of_row =
@@ -58,12 +69,14 @@ struct EffectLaw {
   static Row C(const Batch<S>& batch, int slot) { return reinterpret_cast<Row>(batch.C[slot * rows]); }
 
   static void force_without_limits(const Batch<S>& batch, int slot, const T* rate, T* force) {
-    const auto f = [force](const auto&... numbers) { Effect::force(numbers..., reinterpret_cast<T(&)[rows]>(*force)); };
+    const auto effect = effect_of<Effect>(batch);
+    const auto f = [&](const auto&... numbers) { effect.force(numbers..., reinterpret_cast<T(&)[rows]>(*force)); };
     with_mass(batch, slot, f, C(batch, slot), reinterpret_cast<Row>(*rate), parameters(batch, slot), batch.time);
   }
 
   static void slopes(const Batch<S>& batch, int slot, const T (&rate)[rows], T (&k)[rows][rows], T (&d)[rows][rows]) {
-    const auto f = [&](const auto&... numbers) { Effect::slopes(numbers..., k, d); };
+    const auto effect = effect_of<Effect>(batch);
+    const auto f = [&](const auto&... numbers) { effect.slopes(numbers..., k, d); };
     with_mass(batch, slot, f, C(batch, slot), rate, parameters(batch, slot), batch.time);
   }
 
@@ -75,7 +88,7 @@ struct EffectLaw {
     Limits limits;
     std::fill_n(limits.lower, rows, T(-unbounded)), std::fill_n(limits.upper, rows, T(unbounded));
     if constexpr (has_limits)
-      Effect::limits(C(batch, slot), parameters(batch, slot), batch.time, limits.lower, limits.upper);
+      effect_of<Effect>(batch).limits(C(batch, slot), parameters(batch, slot), batch.time, limits.lower, limits.upper);
     return limits;
   }
 
@@ -89,9 +102,8 @@ struct EffectLaw {
 
   static void unstored(const Batch<S>& batch, int slot, const T* rate, T* force) {
     if constexpr (requires { &Effect::template unstored<T>; }) {
-      const auto f = [force](const auto&... numbers) {
-        Effect::unstored(numbers..., reinterpret_cast<T(&)[rows]>(*force));
-      };
+      const auto effect = effect_of<Effect>(batch);
+      const auto f = [&](const auto&... numbers) { effect.unstored(numbers..., reinterpret_cast<T(&)[rows]>(*force)); };
       with_mass(batch, slot, f, C(batch, slot), reinterpret_cast<Row>(*rate), parameters(batch, slot), batch.time);
     } else if constexpr (has_energy) std::fill_n(force, rows, T(0));
     else EffectLaw::force(batch, slot, rate, force);
@@ -102,7 +114,8 @@ struct EffectLaw {
     T E = 0;
     if constexpr (has_energy)
       with_mass(
-          batch, slot, [&](const auto&... n) { Effect::energy(n..., E); }, C(batch, slot), parameters(batch, slot));
+          batch, slot, [&](const auto&... n) { effect_of<Effect>(batch).energy(n..., E); }, C(batch, slot),
+          parameters(batch, slot));
     return double(E);
   }
 
@@ -114,7 +127,7 @@ struct EffectLaw {
       using Jets = typename Effect::template Parameters<Jet<T>>;
       Jet<T> at[rows];
       for (int r = 0; r < rows; ++r) at[r] = batch.C[slot * rows + r];
-      const auto f = [&](const auto&... n) { Effect::energy(n..., E); };
+      const auto f = [&](const auto&... n) { effect_of<Effect>(batch).energy(n..., E); };
       with_mass<Jet<T>>(batch, slot, f, at, jets_of<Jets>(batch, slot, where == ParametersAt::row));
     }
     return double(E.first);
@@ -130,10 +143,11 @@ struct EffectLaw {
   static void bounds(const Batch<S>& batch, int slot, const T (&rate)[rows], SpringNumbers<T> (&bound)[rows]) {
     T k[rows][rows], d[rows][rows];
     slopes(batch, slot, rate, k, d);
+    const auto effect = effect_of<Effect>(batch);
     for (int r = 0; r < rows; ++r) {
       bound[r] = {k[r][r], d[r][r]};
       for (int c = 0; c < rows; ++c)
-        if (c != r && Effect::acts[c]) bound[r].k += std::abs(k[r][c]), bound[r].d += std::abs(d[r][c]);
+        if (c != r && effect.acts[c]) bound[r].k += std::abs(k[r][c]), bound[r].d += std::abs(d[r][c]);
       bound[r] = {std::max(bound[r].k, T(0)), std::max(bound[r].d, T(0))};
     }
   }

@@ -48,7 +48,7 @@ struct BoundedEntry {
   int coordinate;
   std::string_view name;
   const Law<S>* law;
-  void (*bounds)(T C, const T* parameters, T time, RowBounds<T>&);
+  std::function<void(T C, const T* parameters, T time, RowBounds<T>&)> bounds;
 };
 
 template <class S>

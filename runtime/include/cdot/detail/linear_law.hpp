@@ -49,7 +49,8 @@ struct LinearLaw {
       constexpr T rate[1] = {};
       T k[2][1][1], d[1][1];
       for (int mass : {0, 1})
-        Effect::slopes(Force::C(batch, slot), rate, Force::parameters(batch, slot), batch.time, T(mass), k[mass], d);
+        effect_of<Effect>(batch).slopes(Force::C(batch, slot), rate, Force::parameters(batch, slot), batch.time,
+                                        T(mass), k[mass], d);
       return k[0][0][0] != k[1][0][0];
     } else return false;
   }
