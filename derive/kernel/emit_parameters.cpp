@@ -22,14 +22,9 @@ std::string range_of(const Parameter& p) {
   return fmt::format(", {}, {}", bound(p.above), bound(p.below));
 }
 
-bool is_unlimited(Expr e) {
-  const auto infinite = [](Expr leaf) { return leaf->role == Role::constant && leaf->symbol == "unlimited"; };
-  return e && std::ranges::any_of(leaves_of({&e, 1}), infinite);
-}
-
 // ", true, false": whether the range has its lower end, and whether the number may be infinite.
 std::string further(const Parameter& p) {
-  const bool unlimited = is_unlimited(p.default_value);
+  const bool unlimited = may_be_unlimited(p);
   if (!p.from && !unlimited) return "";
   return fmt::format("{}, {}, {}", p.range.empty() ? ", -unbounded, unbounded" : "", p.from, unlimited);
 }
@@ -55,6 +50,12 @@ std::vector<std::string> structure(const Joint& joint) {
 }
 
 }  // namespace
+
+bool may_be_unlimited(const Parameter& p) {
+  const auto infinite = [](Expr leaf) { return leaf->role == Role::constant && leaf->symbol == "unlimited"; };
+  const Expr e = p.default_value;
+  return e && std::ranges::any_of(leaves_of({&e, 1}), infinite);
+}
 
 std::string literal(const std::string& s) {
   std::string out = "\"";

@@ -7,6 +7,7 @@
 
 #include "derive/derivation/derivation.hpp"
 #include "derive/interpret/tape.hpp"
+#include "derive/kernel/emit_parameters.hpp"
 #include "derive/kernel/plan.hpp"
 #include "derive/language/specs_folder.hpp"
 
@@ -227,6 +228,7 @@ std::vector<OwnParameter> parameters_of(const Kernel& kernel, const Places& plac
                           p.above,
                           p.below,
                           p.from,
+                          may_be_unlimited(p),
                           {}});
     offset += size;
   }

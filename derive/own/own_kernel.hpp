@@ -81,7 +81,7 @@ struct OwnParameter {
   int kind, body, offset, size;  // the kind is a cdot::ParameterKind
   bool has_default;
   double above, below;
-  bool from;
+  bool from, unlimited;
   OwnFunction by_default;  // if it has a default
 };
 

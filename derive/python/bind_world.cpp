@@ -36,11 +36,13 @@ void bind_setup(Type<S>& type) {
            "[1/s]; static, fixed_rotation (bool).")
       .def("add_joint", &World::add_joint, py::arg("name"), py::arg("type"), py::arg("bodies"),
            "Adds a joint or an effect between bodies; returns its number. `type` is of the catalogue, or the path of a "
-           ".joint file. `bodies` are names or numbers in the order of the spec; \"world\" is the ground. Keywords are "
+           ".joint or .effect file. `bodies` are names or numbers in the order of the spec; \"world\" is the ground. "
+           "Keywords are "
            "the parameters of the spec: numbers or sequences. Others get their defaults at the present poses.")
       .def("add_effect", &World::add_effect, py::arg("joint"), py::arg("coordinate"), py::arg("type"),
            "Adds an effect to a free coordinate of a joint; returns its number. `type` is limit, motor, spring, "
-           "damper, friction, load or a spec of specs/coordinate; keywords are its numbers.")
+           "damper, friction, load, a spec of specs/coordinate or the path of an .effect file; keywords are its "
+           "numbers.")
       .def("set_effect", &World::set_effect, py::arg("joint"), py::arg("number"), py::arg("type"),
            "Changes the numbers of an effect from the next step on.")
       .def("set_breaking_load", &World::set_breaking_load, py::arg("joint"), py::arg("load"),

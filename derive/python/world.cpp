@@ -101,18 +101,25 @@ int NamedWorld<S>::add_body(const std::string& name, const py::kwargs& keywords)
   return number;
 }
 
+namespace {
+
+// The name of a type: that of the catalogue, or of the spec whose path it is.
+std::string type_named(const std::string& type) {
+  if (!type.ends_with(".joint") && !type.ends_with(".effect")) return type;
+  const OwnType own = add_own_type(type);
+  if (own.name.empty()) throw Error(own.problems);
+  return own.name;
+}
+
+}  // namespace
+
 template <class S>
 int NamedWorld<S>::add_joint(const std::string& name, const std::string& type, const py::sequence& of,
                              const py::kwargs& keywords) {
   if (py::isinstance<py::str>(of)) throw py::type_error("bodies must be a sequence of names or numbers");
   joints.check_new(name);
   JointDefinition definition;
-  definition.type = type;
-  if (type.ends_with(".joint")) {
-    const OwnType own = add_own_type(type);
-    if (own.name.empty()) throw Error(own.problems);
-    definition.type = own.name;
-  }
+  definition.type = type_named(type);
   for (const py::handle& which : of) {
     const bool ground = py::isinstance<py::str>(which) && which.cast<std::string>() == ground_name;
     definition.bodies.push_back(ground ? world().ground() : body(which));
@@ -129,7 +136,7 @@ int NamedWorld<S>::add_effect(const py::handle& which, const std::string& coordi
                               const py::kwargs& keywords) {
   const int of = joint(which);
   int number = -1;
-  effect_of(coordinate, type, keywords).each([&](const auto& effect) {
+  effect_of(coordinate, type_named(type), keywords).each([&](const auto& effect) {
     number = cdot::add_effect(world(), of, coordinate, effect);
   });
   return number;
@@ -139,7 +146,9 @@ template <class S>
 void NamedWorld<S>::set_effect(const py::handle& which, int number, const std::string& type,
                                const py::kwargs& keywords) {
   const int of = joint(which);
-  effect_of("", type, keywords).each([&](const auto& effect) { cdot::set_effect(world(), of, number, effect); });
+  effect_of("", type_named(type), keywords).each([&](const auto& effect) {
+    cdot::set_effect(world(), of, number, effect);
+  });
 }
 
 template <class S>

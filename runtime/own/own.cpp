@@ -45,7 +45,7 @@ JointType described(const Registered& own) {
   for (const int kind : kernel.rows.row_kinds) type.row_kinds.push_back(static_cast<RowKind>(kind));
   for (const OwnParameter& p : kernel.parameters)
     type.parameters.push_back({p.name, static_cast<ParameterKind>(p.kind), p.body, p.unit, p.offset, p.size,
-                               p.has_default, p.above, p.below, p.from});
+                               p.has_default, p.above, p.below, p.from, p.unlimited});
   for (const OwnBlock& coordinate : kernel.coordinates) type.coordinates.push_back({coordinate.name, coordinate.unit});
   type.parameter_size = kernel.parameter_size();
   type.explicit_time = kernel.rows.explicit_time;

@@ -1,6 +1,7 @@
 """Worlds of Python: motion against closed forms, arrays without copies, mistakes as exceptions."""
 import gc
 import math
+import pathlib
 import threading
 import unittest
 
@@ -65,6 +66,22 @@ class Motion(unittest.TestCase):
         self.assertAlmostEqual(world.work()["motor"], 0.5 * 0.5 * 3**2, places=9)
         self.assertAlmostEqual(world.balance()["kinetic"], 0.5 * 0.5 * 3**2, places=9)
         self.assertAlmostEqual(world.balance()["method"], 0, places=9)
+
+    def test_effects_by_the_paths_of_their_specs(self):
+        def turned(motor, brake):
+            world = cdot.World()
+            for name in ("wheel", "rim"):
+                world.add_body(name, mass=1, inertia=0.5)
+            world.add_joint("axle", "revolute", ["world", "wheel"], pa=[0, 0], pb=[0, 0])
+            world.add_joint("shoe", brake, ["wheel", "rim"], torque=0.3)
+            world.add_effect("axle", "angle", motor, speed=3, max=2)
+            world.step(1e-3, count=500)
+            return world.velocities.tolist()
+
+        specs = pathlib.Path(__file__).parents[3] / "specs"
+        own = turned(str(specs / "coordinate/motor.effect"), str(specs / "planar/brake.effect"))
+        self.assertEqual(own, turned("motor", "brake"))
+        self.assertGreater(own[1][2], 0.1)
 
     def test_joints_change_and_break(self):
         world = pendulum()
