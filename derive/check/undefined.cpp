@@ -6,6 +6,7 @@
 #include <set>
 
 #include "derive/check/zeros.hpp"
+#include "derive/expression/sign.hpp"
 #include "derive/proof/words.hpp"
 
 namespace cdot::derive {

@@ -34,7 +34,4 @@ class Zeros {
   double work_ = 0;
 };
 
-// True for sums of squares, lengths and positive numbers.
-bool is_never_negative(Expr e);
-
 }  // namespace cdot::derive

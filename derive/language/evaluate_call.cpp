@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <map>
 
+#include "derive/expression/sign.hpp"
 #include "derive/expression/symbols.hpp"
 #include "derive/language/evaluate.hpp"
 #include "derive/syntax/lexer.hpp"
@@ -10,13 +11,18 @@
 namespace cdot::derive {
 namespace {
 
-// The fix for the root of a negative number, or the logarithm of one that is not positive; else empty.
-std::string missing_domain(const Operator& o, const std::vector<Value>& arguments) {
-  if (arguments.size() != 1 || !arguments[0].e || arguments[0].e->kind != Kind::number) return "";
-  const int sign = arguments[0].e->value.sign();
-  if (o.name == "sqrt" && sign < 0) return "give sqrt an argument of 0 or more";
-  if (o.name == "log" && sign <= 0) return "give log an argument above 0";
-  return "";
+// Of a root of what is never positive, or of such a logarithm: the argument in words, and the fix; else empty.
+std::pair<std::string, std::string> missing_domain(const Operator& o, const std::vector<Value>& arguments) {
+  const bool root = o.name == "sqrt";
+  if ((!root && o.name != "log") || arguments.size() != 1 || !arguments[0].e) return {};
+  const Expr e = arguments[0].e;
+  if (e->kind != Kind::number)
+    return is_never_negative(-e)
+               ? std::pair("never positive", fmt::format("give {} an argument that can be positive", o.name))
+               : std::pair<std::string, std::string>{};
+  const int sign = e->value.sign();
+  if (sign > 0 || (root && sign == 0)) return {};
+  return {e->value.text(), root ? "give sqrt an argument of 0 or more" : "give log an argument above 0"};
 }
 
 unsigned bit_of(const Value& v, bool hand) {
@@ -195,9 +201,9 @@ Value Evaluator::apply(const Operator& o, const std::vector<Value>& arguments, c
                  "subtract two points instead");
   const auto rule = unit_of_call(o, built, ast);
   if (!rule) return {};
-  if (const std::string fix = missing_domain(o, built); !fix.empty())
-    return error(ast.args[0].where,
-                 fmt::format("{} has no value at any pose: its argument is {}", o.name, built[0].e->value.text()), fix);
+  if (const auto [argument, fix] = missing_domain(o, built); !fix.empty())
+    return error(ast.args[0].where, fmt::format("{} has no value at any pose: its argument is {}", o.name, argument),
+                 fix);
   Value result = o.build(pool_, built);
   result.unit = rule->unit;
   result.ratio = rule->ratio;

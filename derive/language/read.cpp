@@ -41,13 +41,14 @@ std::shared_ptr<const SourceFile> load_source(const std::filesystem::path& path)
 }
 
 bool is_spec(const std::filesystem::path& file) {
-  return file.extension() == ".joint" || file.extension() == ".effect";
+  return (file.extension() == ".joint" || file.extension() == ".effect") && !std::filesystem::is_directory(file);
 }
 
 Library load_library(const std::filesystem::path& folder) {
   Library library;
   for (const auto& file : std::filesystem::directory_iterator(folder.empty() ? "." : folder))
-    if (file.path().extension() == ".joint") library.emplace(file.path().stem().string(), load_source(file.path()));
+    if (file.path().extension() == ".joint" && is_spec(file.path()))
+      library.emplace(file.path().stem().string(), load_source(file.path()));
   return library;
 }
 

@@ -29,7 +29,11 @@ void rows_are_independent(Law& law, const Block& block) {
   law.verdict = Verdict::does_not_apply;
   if (block.immovable >= 0) return;  // a row may well speak of that body alone
   const GenericRank found = generic_rank(columns_of(block.rows));
-  if (found.poses == 0) law.text = "no pose was found at which every row is defined";
+  if (found.poses == 0) {
+    law.text = "no pose was found at which every row is defined";
+    law.row = block.rows.front().row;
+    law.fix = "give roots and logarithms arguments that can be positive at one pose, all together";
+  }
   law.verdict = found.poses == 0 ? Verdict::undecided : found.dependences.empty() ? Verdict::holds : Verdict::fails;
   if (law.verdict != Verdict::fails) return;
   const GenericRank::Dependence& first = found.dependences.front();
