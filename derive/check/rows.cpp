@@ -105,7 +105,10 @@ void find_dependent_on_constraint(const Subject& subject, Findings& findings) {
     row = std::max(row, weak.row);
   }
   const Expr C = split_coefficient(rows[row].row->C).e;
-  const std::string two = C->vector && C->kind == Kind::cross ? parallel(C->args[0], C->args[1], subject.joint) : "";
+  const auto of = [&](Expr u, Expr v) { return parallel(u, v, subject.joint); };
+  const bool difference = C->vector && C->kind == Kind::sum && C->args.size() == 2 && C->args[0]->unit_length &&
+                          C->args[1]->unit_length && C->coefs[0] == -C->coefs[1];
+  const std::string two = (C->vector && C->kind == Kind::cross) || difference ? of(C->args[0], C->args[1]) : "";
   findings.add(Level::error, "dependent", rows[row].row->where,
                rows[row].name + ": where C = 0, and only there, its row of J is a combination of the rows before it",
                two.empty() ? "drop the row, or state its condition in another form"

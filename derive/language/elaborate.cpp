@@ -194,6 +194,13 @@ std::string SourceNames::hint(const std::string& name) const {
   if (name == "unlimited") return "the default of a scalar may be unlimited: scalar most [N] = unlimited";
   if (const std::string vector = e_.vector_of_component(name); !vector.empty())
     return "did you mean " + quote(vector + "." + name.back()) + "?";
+  if (name == "C") return "a row is an equation: write pa - pb = 0, with a name C: pa - pb = 0";
+  if (name.size() > 2 && name[name.size() - 2] == '_' && body(name.substr(name.size() - 1)) >= 0) {
+    static const std::map<std::string, std::string> quantities = {
+        {"theta", "angle"}, {"phi", "angle"}, {"angle", "angle"}, {"x", "x"}, {"v", "v"}, {"w", "w"}, {"omega", "w"}};
+    const auto known = quantities.find(name.substr(0, name.size() - 2));
+    if (known != quantities.end()) return "did you mean `" + known->second + "(" + name.back() + ")`?";
+  }
   const auto below = source_.declared_anywhere.find(name);
   if (below == source_.declared_anywhere.end()) {
     for (const auto& [other, entry] : e_.names_)

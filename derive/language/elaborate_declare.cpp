@@ -79,7 +79,9 @@ bool Elaborator::resolve_body(Source& source, const DeclaredAst& d, Parameter& p
   }
   if (p.body < 0) {
     source.diagnostics.error(d.body.where, "there is no body " + quote(word),
-                             "bodies are a, b, c, ... up to h, and world");
+                             word == "ground" || word == "earth" || word == "fixed" || word == "origin"
+                                 ? "the ground is called `world`"
+                                 : "bodies are a, b, c, ... up to h, and world");
     return false;
   }
   names.use_body(p.body, d.body.where);

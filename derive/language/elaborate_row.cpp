@@ -67,7 +67,8 @@ void Elaborator::add_row(Source& source, const StatementAst& s, Row row) {
 void Elaborator::keep(Source& source, const StatementAst& s, const Row& whole) {
   Diagnostics& d = source.diagnostics;
   const Term term = split_coefficient(whole.C);
-  if (s.keep.text != "2" || !whole.C->vector || joint_.dimension == 2)
+  if (!whole.C->vector) return d.error(s.keep.where, "`keep` selects rows, but this is one row", "leave `keep` out");
+  if (s.keep.text != "2" || joint_.dimension == 2)
     return d.error(s.keep.where, "`keep` takes 2 of the three rows of a cross product",
                    "write cross(f.x, u) = 0 keep 2, or the independent rows themselves");
   if (term.e->kind != Kind::cross)
@@ -104,7 +105,8 @@ std::optional<Value> Elaborator::constraint(Source& source, const StatementAst& 
     if (value->type == Type::body || value->type == Type::frame) {
       d.error(ast->where, std::string(in_words(value->type)) + " cannot stand in an equation",
               value->type == Type::body ? "compare positions, x(" + ast->text + "), or angles, angle(" + ast->text + ")"
-                                        : "compare its axes, " + ast->text + ".x");
+              : joint_.dimension == 3 ? "write rotation(fa, fb) = 0, or compare one axis: cross(fa.x, fb.x) = 0 keep 2"
+                                      : "compare its axes, " + ast->text + ".x");
       return {};
     }
   const bool point_and_vector = (left.type == Type::point) != (right.type == Type::point);

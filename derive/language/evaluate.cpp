@@ -32,6 +32,10 @@ std::string fix_of_units(const Value& a, const Value& b) {
     return (*a.unit == x && *b.unit == y) || (*a.unit == y && *b.unit == x);
   };
   if (are(length, angle)) return "an arc is radius times angle: multiply the angle by a radius";
+  if (*a.unit == Unit{} / *b.unit && *a.unit != number)
+    return "a unit belongs to the number before it: in place of pi/2 [rad] write pi/2 * 1 [rad]";
+  const Value& plain = *a.unit == number ? a : b;
+  if (are(number, angle) && plain.e->kind != Kind::number) return "multiply it by 1 [rad]";
   if (are(number, angle)) return "give the number its unit, as in 1.5 [rad] or 90 [deg]";
   if (are(number, length)) return "give the number its unit, as in 2 [m], or the parameter, as in vector d [m] on a";
   if (are(length, {.m = 2})) return "take the root of one side, or square the other";

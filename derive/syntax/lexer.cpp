@@ -168,6 +168,11 @@ class Lexer {
     tokens_.list.pop_back();
     if (rest.starts_with('.'))
       reject(begin, "this is not a number", "digits must stand on both sides of the point, as in 1.0");
+    else if (rest == "m" || rest == "rad" || rest == "deg" || rest == "s" || rest == "kg" || rest == "N" || rest == "J")
+      reject(begin, "a unit stands in square brackets", "write " + digits + " [" + rest + "]");
+    else if (rest == "d" || rest == "D")
+      reject(begin, "this is neither a number nor a name",
+             "a joint is `planar` or `spatial`; a product is " + digits + "*" + rest);
     else
       reject(begin, "this is neither a number nor a name",
              "names do not start with a digit; a product is " + digits + "*" + rest + ", and 2 m is 2 [m]");

@@ -70,7 +70,10 @@ bool Parser::end_of_statement() {
       fail(t.where, quote(t.text) + " closes nothing", "remove it, or open it before");
     else
       fail(t.where, "the statement must end before " + quote(t.text),
-           t.text == ";" ? "a statement ends with its line" : "");
+           t.text == ";" ? "a statement ends with its line"
+           : t.text == "[" && peek(-1).text == ")"
+               ? "a unit belongs to a number: multiply by 1 with that unit, as in pi/2 * 1 [rad]"
+               : "");
   }
   const bool good = !failed_;
   next_statement();
@@ -186,7 +189,9 @@ Ast Parser::postfix() {
     const bool member = take().text == ".";
     Ast outer;
     outer.kind = member ? Ast::Kind::member : Ast::Kind::transpose;
-    if (member) outer.text = name("a component, x or y,").text;
+    if (member && at_symbol("("))
+      fail(peek().where, "a component, x or y, is missing: there is `(`", "the product of two vectors is dot(u, v)");
+    else if (member) outer.text = name("a component, x or y,").text;
     outer.where = {result.where.begin, peek(-1).where.end};
     outer.args.push_back(std::move(result));
     result = std::move(outer);
@@ -217,6 +222,7 @@ Ast Parser::nothing_here() {
     fail(t.where, "square brackets stand behind a number, for its unit, as in 2 [m]", "use round brackets to group");
   else if (at_symbol("+")) fail(t.where, "a leading + is not allowed", "remove it");
   else if (at_symbol("-")) fail(t.where, "two signs stand in a row", "put the negative part into round brackets");
+  else if (at_symbol("/") && at_symbol("/", 1)) fail(t.where, "`//` starts no comment", "a comment starts with #");
   else fail(t.where, "a number, a name or a bracket is missing: " + found());
   return {};
 }
@@ -238,7 +244,7 @@ Ast Parser::brackets() {
   if (!failed_ && !at_symbol(")")) {
     if (at_symbol(","))
       fail(peek().where, "a comma stands between round brackets without an operator before them",
-           "a vector is written with perp, unit vectors or a parameter, not as (x, y)");
+           "a vector is no list of components: along the axes of the world it is 2 [m] * world.x, else a parameter");
     else not_closed(open, ")");
   }
   accept(")");

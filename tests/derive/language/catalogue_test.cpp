@@ -1,6 +1,7 @@
 // Every spec and every hand derivation of the catalogue is read without messages.
 #include <gtest/gtest.h>
 
+#include "derive/language/specs_folder.hpp"
 #include "tests/derive/language/reading.hpp"
 
 namespace cdot::derive {
@@ -37,6 +38,18 @@ TEST(Catalogue, HandDerivationsAreReadWithoutErrors) {
     entries += static_cast<int>(read_hand(file_of(f.path())).entries.size());
   }
   EXPECT_GT(entries, 80);
+}
+
+// A folder with the name of a spec is no spec.
+TEST(Catalogue, AFolderNamedAsASpecIsNone) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "cdot_folder_as_spec";
+  std::filesystem::create_directories(folder / "planar" / "X.joint");
+  std::filesystem::copy_file(CDOT_SOURCE_DIR "/specs/planar/line.joint", folder / "planar" / "line.joint",
+                             std::filesystem::copy_options::overwrite_existing);
+  const SpecsFolder specs(folder);
+  EXPECT_EQ(specs.all(), std::vector{folder / "planar" / "line.joint"});
+  EXPECT_TRUE(specs.read(specs.find("line")).joint);
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
