@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "derive/check/parts.hpp"
+#include "runtime/text/stage.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -30,6 +31,7 @@ void take_over(const Proved& proved, Findings& findings) {
 }
 
 void check_constraints(const Subject& subject, Draw draw, CheckReport& report) {
+  const text::Stage stage("searching for singular poses");
   check_rows(subject, report.findings);
   const bool drawn = draw == Draw::yes;
   std::vector<PoseToDraw> guarded;
@@ -66,9 +68,11 @@ CheckReport check(const ReadResult& read, Draw draw) {
   report.readable = read.joint.has_value();
   if (!report.readable) return report;
   const Joint& joint = *read.joint;
+  const text::Stage stage("deriving");
   try {
     const Derivation derivation = derive(joint);
     const Subject subject = subject_of(derivation);
+    const text::Stage proving("proving");
     report.proofs = prove_blocks(derivation);
     for (const Proved& proved : report.proofs) take_over(proved, report.findings);
     // The rest is about constraints: C = 0, their defaults and their K.

@@ -1,9 +1,11 @@
 // `cdot emit`: a joint as a header that makes it one of another engine.
 #include <fmt/format.h>
+#include <optional>
 
 #include "derive/commands/commands.hpp"
 #include "derive/engines/engines.hpp"
 #include "derive/pipeline/pipeline.hpp"
+#include "derive/pipeline/waiting.hpp"
 #include "runtime/text/colour.hpp"
 
 namespace cdot::derive {
@@ -14,10 +16,15 @@ struct EmitOptions {
   bool single_header = false;
 };
 
-void write_emitted(const Engine& engine, const Kernel& kernel, const EmitOptions& options) {
-  if (options.single_header || options.output == "-") return write_file(options.output, single_header(engine, kernel));
-  const EmittedJoint made = emit_for(engine, kernel);
-  write_file(std::filesystem::path(options.output).parent_path() / made.common_name, made.common);
+// What goes into the named file, and what into the one beside it.
+EmittedJoint emitted(const Engine& engine, const Kernel& kernel, const EmitOptions& options) {
+  if (options.single_header || options.output == "-") return {"", "", single_header(engine, kernel)};
+  return emit_for(engine, kernel);
+}
+
+void write_emitted(const EmittedJoint& made, const EmitOptions& options) {
+  if (!made.common_name.empty())
+    write_file(std::filesystem::path(options.output).parent_path() / made.common_name, made.common);
   write_file(options.output, made.joint);
 }
 
@@ -31,8 +38,13 @@ int emit(const EmitOptions& options) {
   }
   const Engine& engine = engine_named(options.engine);
   try {
-    const Outcome outcome = derive_spec(spec, folder, ProofRecord(), usual_bounds,
-                                        [&](const Kernel& kernel) { write_emitted(engine, kernel, options); });
+    std::optional<EmittedJoint> made;
+    const Outcome outcome = [&] {
+      const Waiting waiting("cdot emit " + options.spec);
+      return derive_spec(spec, folder, ProofRecord(), usual_bounds,
+                         [&](const Kernel& kernel) { made = emitted(engine, kernel, options); });
+    }();
+    if (made) write_emitted(*made, options);
     text::print_messages(stderr, outcome.complaints + outcome.said);
     return outcome.proved ? 0 : command_line::wrong_usage;
   } catch (const CannotEmit& e) {

@@ -9,7 +9,9 @@
 #include "derive/derivation/derivation.hpp"
 #include "derive/explain/mathml.hpp"
 #include "derive/language/specs_folder.hpp"
+#include "derive/pipeline/waiting.hpp"
 #include "runtime/text/colour.hpp"
+#include "runtime/text/stage.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -38,7 +40,11 @@ constexpr const char* json_schema =
     "Expressions are infix text with + - * / ** and the functions of the specs, as sympy and\n"
     "Python read them. A spec's name that Python reserves gets an underscore at its end.";
 
-std::string explanation(const Derivation& derivation, const Options& options) {
+std::string explanation(const Joint& joint, const Options& options) {
+  const Waiting waiting("cdot explain " + joint.name);
+  const text::Stage deriving("deriving");
+  const Derivation derivation = derive(joint);
+  const text::Stage explaining("explaining");
   if (options.json) return explanation_json(derivation);
   const Explanation steps = explain(derivation, form_named(options.form));
   if (options.format == "html") {
@@ -81,7 +87,7 @@ int run(const Options& options) {
     return 2;
   }
   try {
-    return print(explanation(derive(*read.joint), options), options);
+    return print(explanation(*read.joint, options), options);
   } catch (const NotLinear& e) {
     return refused(read, e.what());
   } catch (const NumberTooLarge& e) {

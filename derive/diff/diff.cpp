@@ -2,6 +2,7 @@
 #include "derive/diff/diff.hpp"
 
 #include "derive/diff/entry.hpp"
+#include "runtime/text/stage.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -31,6 +32,7 @@ std::string_view name_of(Agreement agreement) {
 }
 
 DiffReport judge(const std::filesystem::path& hand, const ReadResult& plain, bool with_sheets) {
+  const text::Stage stage("deriving");
   const HandFile file = read_hand(load_source(hand));
   DiffReport report{file.file, {}, file.diagnostics};
   if (!plain.joint) throw NoSuchSpec(render(*plain.file, plain.diagnostics));
@@ -42,6 +44,7 @@ DiffReport judge(const std::filesystem::path& hand, const ReadResult& plain, boo
           ast.where, "with what this entry assumes, the spec cannot be read: " + render(*read.file, read.diagnostics));
       continue;
     }
+    const text::Stage stage("comparing hand derivations");
     read.joint = derive(*read.joint).joint;  // without the coordinates that its rows determine
     const std::size_t before = report.diagnostics.list.size();
     Entry entry = read_entry(ast, file, read, changed(ast.anchors, *plain.joint), report.diagnostics);

@@ -5,6 +5,7 @@
 
 #include "derive/derivation/free_coordinates.hpp"
 #include "derive/diff/diff.hpp"
+#include "runtime/text/stage.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -24,6 +25,7 @@ void prove_derivation(const Derivation& derivation, const ProofRecord& record, O
   outcome.proofs = record.find(derivation, statement);
   outcome.on_record = !outcome.proofs.empty();
   if (!outcome.on_record) {
+    const text::Stage stage("proving");
     const std::vector<Proved> proofs = prove(derivation);
     bool undecided = false;
     for (const Proved& proved : proofs) {
@@ -75,6 +77,7 @@ void judge_hand(const fs::path& spec, const ReadResult& read, Outcome& outcome) 
 
 Outcome derive_spec(const fs::path& spec, const SpecsFolder& folder, const ProofRecord& record, SearchBounds bounds,
                     const UseKernel& use) {
+  const text::Stage stage("deriving");
   Outcome outcome;
   const ReadResult read = folder.read(spec);  // text to C(q) = 0
   outcome.complaints = render(*read.file, read.diagnostics);
@@ -83,6 +86,7 @@ Outcome derive_spec(const fs::path& spec, const SpecsFolder& folder, const Proof
   const Derivation derivation = derive(*read.joint);  // C to Cdot, J, K, gamma; also with a body immovable
   prove_derivation(derivation, record, outcome);      // by GiNaC, all of it
   if (!outcome.proved) return outcome;
+  const text::Stage simplifying("simplifying the kernel");
   std::vector<CutShort> cut_short;
   const Kernel planned = plan(derivation);                        // one program a function
   const Kernel kernel = simplified(planned, &cut_short, bounds);  // common terms and factors shared
@@ -92,6 +96,7 @@ Outcome derive_spec(const fs::path& spec, const SpecsFolder& folder, const Proof
     return outcome;
   }
   outcome.joint = print(kernel);  // C++ and what it costs
+  const text::Stage judging("comparing hand derivations");
   judge_hand(spec, read, outcome);
   return outcome;
 }

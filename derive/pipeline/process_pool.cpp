@@ -15,6 +15,9 @@
 #include <thread>
 #include <unistd.h>
 
+#include "derive/pipeline/waiting.hpp"
+#include "runtime/text/stage.hpp"
+
 namespace cdot::derive {
 namespace {
 
@@ -27,14 +30,16 @@ const std::string well = "well: ";  // precedes the result in a process's answer
 struct Process {
   std::size_t task;
   pid_t id;
-  std::FILE* said;  // in memory that both processes share
+  std::FILE* said;  // in memory that both processes share, as its stage
+  text::StageName* stage;
   Clock::time_point begun = Clock::now();
 };
 
 // Runs a task in the child. The child dies with its parent, also by Ctrl-C or SIGKILL.
-[[noreturn]] void work(const Tasks& tasks, std::size_t task, pid_t parent, std::FILE* file) {
+[[noreturn]] void work(const Tasks& tasks, std::size_t task, pid_t parent, std::FILE* file, text::StageName* stage) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
+  text::place_of_stage() = stage;
   std::string said;
   try {
     said = well + tasks.run(task);
@@ -43,6 +48,13 @@ struct Process {
   }
   const bool written = std::fwrite(said.data(), 1, said.size(), file) == said.size() && std::fflush(file) == 0;
   _exit(written ? 0 : 1);
+}
+
+text::StageName* shared_stage() {
+  void* const memory =
+      mmap(nullptr, sizeof(text::StageName), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) raise_errno("no memory for a stage");
+  return new (memory) text::StageName(nullptr);
 }
 
 std::string content_of(std::FILE* file) {
@@ -71,11 +83,12 @@ class Running {
   void begin(std::size_t task) {
     std::FILE* const said = fdopen(memfd_create("cdot", MFD_CLOEXEC), "w+");
     if (said == nullptr) raise_errno("no memory for an answer");
+    text::StageName* const stage = shared_stage();
     std::cout.flush(), std::cerr.flush(), std::fflush(nullptr);
     const pid_t parent = getpid(), id = fork();
     if (id < 0) raise_errno("no process");
-    if (id == 0) work(tasks_, task, parent, said);
-    processes_.push_back({task, id, said});
+    if (id == 0) work(tasks_, task, parent, said, stage);
+    processes_.push_back({task, id, said, stage});
   }
 
   // Waits until one of them ends.
@@ -84,12 +97,14 @@ class Running {
     int status = 0;
     auto ended = processes_.end();
     while (ended == processes_.end()) {  // a shell that became this program may have left children of its own
-      const pid_t id = ::wait(&status);
+      const pid_t id = waitpid(-1, &status, terminal_ ? WNOHANG : 0);
       if (id < 0 && errno != EINTR) raise_errno("no news");
+      if (id == 0) pause_and_show();
       ended = std::ranges::find(processes_, id, &Process::id);
     }
     answers_[ended->task] = answer_of(content_of(ended->said), status);
     std::fclose(ended->said);
+    munmap(ended->stage, sizeof(text::StageName));
     ++done_;
     clear();
     const std::chrono::duration<double> seconds = Clock::now() - ended->begun;
@@ -109,8 +124,20 @@ class Running {
   // One line that is overwritten, on a terminal.
   void show() const {
     std::string names;
-    for (const Process& process : processes_) names += (names.empty() ? "" : ", ") + tasks_.names[process.task];
+    for (const Process& process : processes_) {
+      names += (names.empty() ? "" : ", ") + tasks_.names[process.task];
+      const std::chrono::duration<double> seconds = Clock::now() - process.begun;
+      const char* const stage = process.stage->load();
+      if (seconds.count() > unnoticed && stage != nullptr)
+        names += fmt::format(": {} ({:.0f} s)", stage, seconds.count());
+    }
     if (terminal_) fmt::print(stderr, "\r\033[K[{} of {}] {}", done_, tasks_.names.size(), names);
+  }
+  // News of children are looked for often, the line is written anew now and then.
+  void pause_and_show() {
+    constexpr int often = 10;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    if (++pauses_ % often == 0) show();
   }
   void clear() const {
     if (terminal_) fmt::print(stderr, "\r\033[K");
@@ -120,7 +147,7 @@ class Running {
   const bool terminal_ = isatty(STDERR_FILENO) == 1;
   std::vector<Process> processes_;
   std::vector<std::optional<Answer>> answers_;
-  std::size_t next_ = 0, done_ = 0;
+  std::size_t next_ = 0, done_ = 0, pauses_ = 0;
 };
 
 }  // namespace
