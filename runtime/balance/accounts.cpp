@@ -8,10 +8,9 @@
 namespace cdot {
 namespace {
 
-// In space a torque may be set at any time.
 template <class S>
-bool may_work(const Island<S>& island) {
-  if (S::has_gyroscopes || !island.drags.empty()) return true;
+bool rows_may_work(const Island<S>& island) {
+  if (!island.drags.empty()) return true;
   for (const Segment<S>& segment : island.segments)
     if (segment.batch->law || segment.batch->explicit_time()) return true;
   return false;
@@ -31,7 +30,8 @@ void prepare_accounts(WorldData<S>& world) {
   bool works = false;
   Bodies<S> at = world.bodies;
   for (Island<S>& island : world.islands) {
-    island.works = may_work(island);
+    island.rows_work = rows_may_work(island);
+    island.works = island.rows_work || S::has_gyroscopes;
     island.driven = is_driven(island);
     works |= island.works;
     find_free_motions(world, island, at);

@@ -5,6 +5,8 @@
 // kick. Integrators at acceleration level integrate the power p' v as two more numbers of their state.
 #pragma once
 
+#include <algorithm>
+
 #include <cdot/balance.hpp>
 
 #include "runtime/state/world_data.hpp"
@@ -46,6 +48,17 @@ void prepare_accounts(WorldData<S>& world);
 // and measures the momentum of islands that changed.
 template <class S>
 void begin_accounts(WorldData<S>& world);
+// True if forces without a potential act: without torques, most mechanisms in space have nothing to book.
+template <class S>
+bool works_now(const WorldData<S>& world, const Island<S>& island) {
+  if constexpr (S::has_gyroscopes)
+    if (!island.rows_work)
+      return std::any_of(island.bodies.begin(), island.bodies.end(), [&](int i) {
+        const auto& force = world.bodies.force[i];
+        return force.wx != 0 || force.wy != 0 || force.wz != 0;
+      });
+  return island.works;
+}
 // Books work that is done at once.
 template <class S>
 void put_in(WorldData<S>& world, Source source, double work);

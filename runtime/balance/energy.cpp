@@ -28,6 +28,16 @@ typename S::InverseMass inverse_mass_at(const WorldData<S>& world, int body, con
   return m;
 }
 
+// The way from the start along which the force works. A rotation in space is dear, and without a torque it is none.
+template <class S>
+typename S::Velocity moved_along(const Bodies<S>& all, int body, const typename S::Velocity& force) {
+  const auto &now = all.pose[body], &start = all.start[body];
+  if constexpr (S::has_gyroscopes)
+    if (force.wx == 0 && force.wy == 0 && force.wz == 0)
+      return {now.x - start.x, now.y - start.y, now.z - start.z, 0, 0, 0};
+  return S::difference(now, start);
+}
+
 }  // namespace
 
 // By the difference of k over 2 epsilon seconds.
@@ -109,9 +119,9 @@ Energy energy_of(const WorldData<S>& world, Batch<S>& one_slot) {
   }
   for (int i = 0; i < all.count(); ++i) {
     if (all.immovable(i)) continue;
-    const auto& m = all.inverse_mass[i];
-    energy.kinetic += 0.5 * S::dot(S::force(m, all.velocity[i]), all.velocity[i]);
-    const auto force = S::force(m, all.acceleration[i]), moved = S::difference(all.pose[i], all.start[i]);
+    const auto mass = S::inverted(all.inverse_mass[i]);
+    energy.kinetic += 0.5 * S::dot(S::weighted(mass, all.velocity[i]), all.velocity[i]);
+    const auto force = S::weighted(mass, all.acceleration[i]), moved = moved_along(all, i, force);
     energy.potential -= S::dot(force, moved);
     if constexpr (S::has_gyroscopes) {
       const double by_torque = S::dot(force, S::damped(moved, 0, 1));

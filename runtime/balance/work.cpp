@@ -47,17 +47,25 @@ void find_damping(const Batch<S>& batch, int slot, const typename S::Scalar* rat
   for (int r = 0; r < batch.ops->rows; ++r) force[r] -= none[r];
 }
 
+// The parts of a spring in the impulses of its rows. RATTLE exerts springs as forces, which are in no impulse: those at
+// rest, over h.
+enum class Springs : char { none, whole, dampers, without_dampers, as_forces };
+
 // Rows of springs whose impulse is that of dampers alone, or of springs without dampers. Batch::rate has J v of the
-// mean velocity.
+// mean velocity. Of springs as forces C must be that of the kick.
 template <class S, class Lambda>
-void work_of_parted_springs(const WorldData<S>& world, Batch<S>& batch, int slot, Lambda lambda, bool dampers,
-                            typename S::Scalar time, Work& work) {
-  typename S::Scalar drift[most_rows] = {};
+void work_of_parted_springs(const WorldData<S>& world, Batch<S>& batch, int slot, Lambda lambda, Springs springs,
+                            typename S::Scalar time, double h, Work& work) {
+  using T = typename S::Scalar;
+  constexpr T at_rest[most_rows] = {};
+  T drift[most_rows] = {}, force[most_rows];
   if (batch.explicit_time()) find_drift(world, batch, slot, time, drift);
+  if (springs == Springs::as_forces) batch.law->force(batch, slot, at_rest, force);
   for (int r = 0; r < batch.ops->rows; ++r) {
     const int i = slot * batch.ops->rows + r;
-    if (dampers) work.take(batch.source, double(lambda(i)) * double(batch.rate[i] + drift[r]));
-    work.put(batch.source, -double(lambda(i)) * double(drift[r]));
+    const double impulse = springs == Springs::as_forces ? h * double(force[r]) : double(lambda(i));
+    if (springs == Springs::dampers) work.take(batch.source, impulse * double(batch.rate[i] + drift[r]));
+    work.put(batch.source, -impulse * double(drift[r]));
   }
 }
 
@@ -80,7 +88,8 @@ void work_of_parted_effect(const WorldData<S>& world, Batch<S>& batch, int slot,
   work.give(batch.source, done);
 }
 
-// Rows that are springs, given J v of the rate at which they acted and, in Batch::rate, of the mean velocity.
+// Rows that are springs, given J v of the rate at which they acted and, in Batch::rate, of the mean velocity. Of an
+// effect without energy the impulse itself does the work: a stiff servo acts implicitly, so its force is not that of C.
 template <class S, class Lambda>
 void work_of_springs(const WorldData<S>& world, Batch<S>& batch, int slot, const typename S::Scalar* acted,
                      Lambda lambda, typename S::Scalar time, double h, Work& work) {
@@ -89,13 +98,14 @@ void work_of_springs(const WorldData<S>& world, Batch<S>& batch, int slot, const
   T drift[most_rows] = {}, rate[most_rows], force[most_rows];
   if (batch.explicit_time()) find_drift(world, batch, slot, time, drift);
   for (int r = 0; r < rows; ++r) rate[r] = acted[r] + drift[r];
-  const bool of_effect = batch.law->is_of_effect();
+  const bool of_effect = batch.law->is_of_effect(), by_impulse = of_effect && !batch.law->energy;
   if (of_effect) batch.law->unstored(batch, slot, rate, force);
   else find_damping(batch, slot, rate, force);
   double done = 0;
   for (int r = 0; r < rows; ++r) {
     const int i = slot * rows + r;
-    const double of_row = h * double(force[r]) * double(batch.rate[i] + drift[r]);
+    const double impulse = by_impulse ? double(lambda(i)) : h * double(force[r]);
+    const double of_row = impulse * double(batch.rate[i] + drift[r]);
     if (of_effect) done += of_row;
     else work.take(batch.source, of_row);
     work.put(batch.source, -double(lambda(i)) * double(drift[r]));
@@ -132,9 +142,6 @@ void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& 
   }
 }
 
-// The parts of a spring in the impulses of its rows.
-enum class Springs : char { none, whole, dampers, without_dampers };
-
 // All rows that may do work, given J v of mean velocities by batch.ops->velocity(..., mean). `acted` finds J v at which
 // whole springs acted, into Batch::impulse.
 template <class S, class Lambda, class Acted>
@@ -153,7 +160,7 @@ void work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S
       const bool dampers = springs == Springs::dampers;
       for (int slot = begin; slot < end; ++slot) {
         if (batch.law->is_of_effect()) work_of_parted_effect(world, batch, slot, of_row, dampers, time, h, work);
-        else work_of_parted_springs(world, batch, slot, of_row, dampers, time, work);
+        else work_of_parted_springs(world, batch, slot, of_row, springs, time, h, work);
       }
     } else if (batch.law->force) {
       const auto* const rates = acted(batch, begin, end);
@@ -228,9 +235,8 @@ constexpr Kick kick_of(Impulses impulses) {
 constexpr Springs springs_of(Impulses impulses) {
   if (impulses == Impulses::drift) return Springs::none;
   if (impulses == Impulses::euler || impulses == Impulses::soft) return Springs::whole;
-  const bool in_kick =
-      impulses == Impulses::rattle_start || impulses == Impulses::rattle_end || impulses == Impulses::middle;
-  return in_kick ? Springs::without_dampers : Springs::dampers;
+  if (impulses == Impulses::rattle_start || impulses == Impulses::rattle_end) return Springs::as_forces;
+  return impulses == Impulses::middle ? Springs::without_dampers : Springs::dampers;
 }
 
 }  // namespace
@@ -242,14 +248,14 @@ void begin_kick(WorldData<S>& world, const Island<S>& island) {
 
 template <class S>
 void begin_kick(WorldData<S>& world, const Island<S>& island, const typename S::Velocity* velocity) {
-  if (!island.works) return;
+  if (!works_now(world, island)) return;
   for (int i : island.bodies) world.start_of_kick[i] = velocity[i];
 }
 
 template <class S>
 void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typename S::Scalar h) {
   using T = typename S::Scalar;
-  if (!(impulses == Impulses::drift ? island.driven : island.works)) return;
+  if (!(impulses == Impulses::drift ? island.driven : works_now(world, island))) return;
   const auto& v = world.bodies.velocity;
   auto &start = world.start_of_kick, &mean = world.mean_of_kick;
   for (size_t k = 0; k < island.bodies.size(); ++k) {
@@ -279,6 +285,8 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
 template <class S>
 void find_power(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar* power) {
   using T = typename S::Scalar;
+  std::fill_n(power, 2 + world.work_by_source.size(), T(0));
+  if (!works_now(world, island)) return;
   std::fill(world.work_by_source.begin(), world.work_by_source.end(), 0);
   Work work{world.work_by_source.data()};
   const auto* const v = world.bodies.velocity.data();
@@ -299,7 +307,7 @@ void find_power(WorldData<S>& world, Island<S>& island, typename S::Scalar time,
 // The same over a step of Euler's method: K is still that of its start.
 template <class S>
 void book_stiffness(WorldData<S>& world, Island<S>& island) {
-  if (!island.works) return;
+  if (!island.rows_work) return;
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     if (!batch.law || !batch.law->energy) continue;

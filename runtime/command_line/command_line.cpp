@@ -105,12 +105,6 @@ std::vector<CompletedCommand> completed_commands(const CLI::App& app) {
   return commands;
 }
 
-// Words of up to four letters differ from every other one by few edits.
-std::string did_you_mean(const std::string& word, std::span<const std::string> known) {
-  const std::string near = text::nearest(word, known, word.size() < 5 ? 1 : 1 + word.size() / 4);
-  return near.empty() ? std::string() : fmt::format("; did you mean `{}`?", near);
-}
-
 // The first word is neither a command nor an option of the program; empty if it is.
 std::string unknown_command(const CLI::App& app, int argc, const char* const* argv) {
   std::vector<std::string> names;
@@ -123,9 +117,9 @@ std::string unknown_command(const CLI::App& app, int argc, const char* const* ar
   if (word.starts_with('-')) {
     const std::vector<std::string> options = {"-h", "--help", "--version"};
     if (std::ranges::find(options, word) != options.end()) return {};
-    return fmt::format("no option is called `{}`{}", word, did_you_mean(word, options));
+    return fmt::format("no option is called `{}`{}", word, text::did_you_mean(word, options));
   }
-  const std::string near = did_you_mean(word, names);
+  const std::string near = text::did_you_mean(word, names);
   return fmt::format("no command is called `{}`{}", word, near.empty() ? ": " + all : near);
 }
 
@@ -138,7 +132,7 @@ std::string unknown_option(const CLI::App& app) {
     for (const std::string& word : app.remaining(true)) {
       if (word.size() < 2 || word[0] != '-') continue;
       const std::string name = word.substr(0, word.find('='));
-      return fmt::format("{} has no option `{}`{}", command->get_name(), name, did_you_mean(name, known));
+      return fmt::format("{} has no option `{}`{}", command->get_name(), name, text::did_you_mean(name, known));
     }
   }
   return {};

@@ -59,8 +59,9 @@ MomentumOf<S> momentum_of(const WorldData<S>& world, const Island<S>& island) {
   MomentumOf<S> sum;
   for (int i : island.bodies) {
     const R m = inverse(R(all.inverse_mass[i].m));
-    const auto impulse = twist<R>(S::force(all.inverse_mass[i], all.velocity[i]));
-    const auto force = twist<R>(S::force(all.inverse_mass[i], all.acceleration[i]));
+    const auto mass = S::inverted(all.inverse_mass[i]);
+    const auto impulse = twist<R>(S::weighted(mass, all.velocity[i]));
+    const auto force = twist<R>(S::weighted(mass, all.acceleration[i]));
     sum.mass += m, sum.centre = sum.centre + m * position<R>(all.pose[i]);
     sum.linear = sum.linear + impulse.linear, sum.linear_size += norm(impulse.linear);
     sum.force = sum.force + force.linear, sum.torque = sum.torque + force.angular;

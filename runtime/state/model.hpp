@@ -41,6 +41,7 @@ struct JointModel {
   std::vector<Place> places;  // the joint's rows, then its effects; empty if all bodies are immovable
   Hash added;                 // of its definition and effects at first
   std::vector<JointDrive> drives{};
+  int companion = -1;  // a joint that is removed with it: the damper of a spring without length
 };
 
 // Who puts work in or takes it. Rows of joints and of generated effects have a source for each joint type, after these.
@@ -61,7 +62,8 @@ struct IslandModel {
   std::vector<Drag<S>> drags;
   std::vector<int> gyroscopes;  // into Model::turning
   bool restless = false;        // depends on t: never sleeps
-  bool works = false;           // forces without a potential may act: dampers, motors, limits, joints in time
+  bool works = false;           // forces without a potential may act: dampers, motors, limits, joints in time, torques
+  bool rows_work = false;       // some of them are more than torques, which in space may be set at any time
   bool driven = false;          // exact rows depend on t
   // Conserves linear momentum, and angular momentum: no immovable body, no drag, every row free of the world.
   bool floats = false, spins_freely = false;

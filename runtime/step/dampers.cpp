@@ -65,8 +65,10 @@ void find_rates_of_effects(WorldData<S>& world, const Island<S>& island) {
 
 template <class S>
 void look_at_effects(WorldData<S>& world, const Island<S>& island, typename S::Scalar time) {
-  for (const auto& [batch, begin, end, whole] : island.segments)
-    if (batch->law && batch->law->is_of_effect()) batch->ops->position(*batch, begin, end, world.bodies, time);
+  for (const auto& [batch, begin, end, whole] : island.segments) {
+    const bool books_force = batch->law && (batch->law->is_of_effect() || (is_force(*batch) && batch->explicit_time()));
+    if (books_force) batch->ops->position(*batch, begin, end, world.bodies, time);
+  }
 }
 
 template <class S>

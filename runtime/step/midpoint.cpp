@@ -111,15 +111,36 @@ void leave_middle(WorldData<S>& world, Island<S>& island) {
   island.factored = false;
 }
 
-// Books the forces of the middle, to whose poses C of effects belongs.
+// f() sees the mean spins of bodies whose inertia tensor turns: theirs belong to the tensor of the start.
+template <class S, class F>
+void with_mean_spins(WorldData<S>& world, Island<S>& island, typename S::Scalar h, F f) {
+  if constexpr (S::has_gyroscopes) {
+    Bodies<S>& all = world.bodies;
+    const auto swap_poses = [&] {
+      for (size_t k = 0; k < island.bodies.size(); ++k) std::swap(all.pose[island.bodies[k]], island.flow.pose[k]);
+    };
+    swap_poses();
+    for_each_gyroscope(world, island,
+                       [&](auto& gyroscope, int i) { S::lend_mean_spin(gyroscope, all.pose[i], all.velocity[i], h); });
+    swap_poses();
+    f();
+    for_each_gyroscope(world, island, [&](auto& gyroscope, int i) { S::restore_spin(gyroscope, all.velocity[i]); });
+  } else {
+    f();
+  }
+}
+
+// Books the forces of the middle, to whose poses C and dC/dt belong.
 template <class S>
 void book_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
-  if (island.works && has_effects(island)) {
+  if (!works_now(world, island)) return;
+  const bool evaluates = has_effects(island) || island.restless;
+  if (evaluates) {
     drift(world, island, h / 2);
     look_at_effects(world, island, typename S::Scalar(world.time) + h / 2);
-    drift(world, island, h);
   }
-  book_kick(world, island, Impulses::middle, h);
+  with_mean_spins(world, island, h, [&] { book_kick(world, island, Impulses::middle, h); });
+  if (evaluates) drift(world, island, h);
 }
 
 // v' = 2 v_m - v

@@ -157,7 +157,7 @@ double stored(const WorldData<S>& world, const Island<S>& island) {
 // Impulses of the relaxation alone, into Batch::correction: `sign` -1 before it, 1 after it, 0 to end.
 template <class S>
 void part_impulses(const Island<S>& island, int sign) {
-  if (!island.works) return;
+  if (!island.rows_work) return;
   for (const auto& [batch, begin, end, whole] : island.segments)
     for (int i = begin * batch->ops->rows; i < end * batch->ops->rows; ++i)
       batch->correction[i] = sign == 0 ? 0 : sign > 0 ? batch->lambda[i] - batch->correction[i] : batch->lambda[i];

@@ -46,4 +46,9 @@ std::string nearest(std::string_view word, std::span<const std::string> candidat
   return best;
 }
 
+std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
+  const std::string near = nearest(word, candidates, word.size() < 5 ? 1 : 1 + word.size() / 4);
+  return near.empty() ? near : "; did you mean `" + near + "`?";
+}
+
 }  // namespace cdot::text

@@ -45,6 +45,7 @@ void BasicWorld<S>::remove_joint(int joint) {
   if (record.broken) return;
   note_change(*data_);
   record.broken = true;
+  if (record.companion >= 0) data_->joints[record.companion].broken = true;
   data_->prepared = false;  // its island may have split
 }
 

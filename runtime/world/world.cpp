@@ -13,6 +13,7 @@
 #include "runtime/state/drives.hpp"
 #include "runtime/state/gyroscopes.hpp"
 #include "runtime/state/probe.hpp"
+#include "runtime/text/spelling.hpp"
 #include "runtime/world/islands.hpp"
 
 namespace cdot {
@@ -31,6 +32,14 @@ void check(const Settings& s) {
   require(s.local_error >= 0 && std::isfinite(s.local_error), "local_error must be finite and >= 0");
   if (const char* wrong = mistake_in_methods(s)) throw Error(wrong);
   require(s.sleep_after >= 0 && s.sleep_speed >= 0, "sleep settings must be >= 0");
+}
+
+// "; did you mean `revolute`?" for a joint that does not exist.
+template <class S>
+std::string near_type(const std::string& word) {
+  std::vector<std::string> names;
+  for (const JointType& type : joint_types(S::dimension)) names.emplace_back(type.name);
+  return text::did_you_mean(word, names);
 }
 
 // Checks that bodies of both dimensions share.
@@ -182,7 +191,7 @@ int BasicWorld<S>::ground() {
 template <class S>
 int BasicWorld<S>::add_joint(const JointDefinition& definition) {
   const JointType* type = find_joint_type(S::dimension, definition.type);
-  if (!type) throw Error(fmt::format("there is no joint `{}`", definition.type));
+  if (!type) throw Error(fmt::format("there is no joint `{}`{}", definition.type, near_type<S>(definition.type)));
   if (is_extended<T> && type - joint_types(S::dimension).data() >= std::ssize(joint_entries<S>()))
     throw Error(fmt::format("joint `{}` was not made for extended precision", type->name));
   check_joint_bodies(*data_, *type, definition.bodies);
@@ -256,7 +265,7 @@ int BasicWorld<S>::add_spring(const SpringDefinition& d) {
   // At length 0 the direction of a spring is undefined, but not the force of one with rest length 0.
   if (d.rest_length > 0 || d.stiffness == 0) return joined(along, d.stiffness, d.damping);
   const int joint = joined(S::dimension == Dimension::planar ? "revolute" : "spherical", d.stiffness, 0);
-  if (d.damping > 0) joined(along, 0, d.damping);
+  if (d.damping > 0) data_->joints[joint].companion = joined(along, 0, d.damping);
   return joint;
 }
 

@@ -79,7 +79,8 @@ constexpr bool takes_midpoint(const Settings& s) {
 // Why these methods exclude each other; nullptr if they do not.
 constexpr const char* mistake_in_methods(const Settings& s) {
   const bool accelerations = works_on_accelerations(s.integrator);
-  if (s.local_error > 0 && !accelerations) return "local_error chooses the steps of rk4, dop853 and radau5 only";
+  if (s.local_error > 0 && !accelerations)
+    return "local_error chooses the steps of rk4, dop853 and radau5 only: leave it out, or choose one of these";
   if (s.local_error > 0 && s.local_error < 1e-20)
     return "no step has an error below round-off: local_error must be at least 1e-20";
   if (row_of(s.integrator).projects && s.drift != Drift::projection)

@@ -65,6 +65,26 @@ TEST(WorkBySource, ADriveFeedsADamper) {
   }
 }
 
+// A joint in time that is a spring: its motor turns the rest pose, and its damper takes the rest of that work.
+TEST(WorkBySource, ASoftDriveFeedsItsSpring) {
+  for (const Method& method : methods()) {
+    World<double> world(method.settings());
+    const int crank = world.add_body({.mass = 1, .inertia = 2});
+    world.add_joint({"driven_crank",
+                     {world.ground(), crank},
+                     {{"pa", {0, 0}}, {"pb", {0, 0}}, {"rate", {1}}},
+                     Softness{.by_frequency = false, .stiffness = 20, .damping = 1}});
+    for (int k = 0; k < 1000; ++k) ASSERT_TRUE(world.step(1e-3)) << method.name();
+    // e'' + (c/I) e' + (k/I) e = 0 of the lag e = w t - angle, e(0) = 0, e'(0) = w; the motor's torque is k e + c e'.
+    constexpr double k = 20, c = 1, I = 2, w = 1, d = c / (2 * I);
+    const double f = std::sqrt(k / I - d * d), rate = w / f * std::exp(-d) * (f * std::cos(f) - d * std::sin(f));
+    const double put_in = w * I * (w - rate);  // the impulse of the torque is I times the speed
+    EXPECT_NEAR(world.balance().put_in, put_in, allowed_of(method)) << method.name();
+    EXPECT_LE(std::abs(world.balance().method()), allowed_of(method)) << method.name();
+    expect_sum(world, method.name());
+  }
+}
+
 // Each source of a mechanism with many of them, and the sum.
 TEST(WorkBySource, TheSumIsThatOfTheBalance) {
   for (const Method& method : methods()) {

@@ -132,6 +132,20 @@ TEST(Changes, AJointRemovedIsNoMoreAndCanBeNamed) {
   for (double impulse : world.impulse(1)) EXPECT_EQ(impulse, 0);
 }
 
+// A spring of rest length 0 is two joints: a soft pin, and a damper along its direction.
+TEST(Changes, ASpringWithoutLengthGoesWithItsDamper) {
+  World<double> world;
+  const int body = world.add_body({.x = 1, .vx = 2, .mass = 1, .inertia = 1});
+  const int spring =
+      world.add_spring({.body_a = world.ground(), .body_b = body, .stiffness = 5, .rest_length = 0, .damping = 3});
+  run(world, 0.1, 0.01);
+  const double speed = world.velocity(body).x;
+  EXPECT_LT(speed, 1.8);
+  world.remove_joint(spring);
+  run(world, 0.1, 0.01);
+  EXPECT_EQ(world.velocity(body).x, speed);
+}
+
 // --- new numbers for every effect at once ---
 
 template <class T>

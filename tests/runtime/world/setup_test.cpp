@@ -22,7 +22,8 @@ TEST(Setup, MistakesInJointsAreNamed) {
   World<double> world;
   const int g = world.ground(), b = world.add_body({.mass = 1, .inertia = 1});
   const auto say = [&](const JointDefinition& joint) { return message_of([&] { world.add_joint(joint); }); };
-  EXPECT_EQ(say({"revolut", {g, b}, {}, {}}), "there is no joint `revolut`");
+  EXPECT_EQ(say({"revolut", {g, b}, {}, {}}), "there is no joint `revolut`; did you mean `revolute`?");
+  EXPECT_EQ(say({"knee", {g, b}, {}, {}}), "there is no joint `knee`");
   EXPECT_EQ(say(revolute_with({g}, {})), "joint `revolute` connects 2 bodies, not 1");
   EXPECT_EQ(say(revolute_with({g, 7}, {})), "there is no body number 7");
   EXPECT_EQ(say(revolute_with({b, b}, {})), "joint `revolute` names the same movable body twice");
