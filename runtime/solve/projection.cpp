@@ -63,11 +63,13 @@ typename S::Scalar round_off_of(const WorldData<S>& world, const Island<S>& isla
 template <class S>
 bool stays_misfit(const WorldData<S>& world, const Island<S>& island, typename S::Scalar error) {
   using T = typename S::Scalar;
-  constexpr T unchanged = T(1e-9), of_round_off = T(1) / 16;
+  // Round-off of floats leaves errors that are to be corrected, or a slack bridge sags: larger ones are misfits.
+  constexpr T unchanged = T(1e-9), of_round_off = T(1) / 16, above_round_off = T(by_precision<T>(4, 0));
   const T left = island.residual;
-  // In float round-off leaves errors too, and these are to be corrected: else a slack bridge sags.
-  return !std::is_same_v<T, float> && left > converged<T> * island.scale &&
-         std::abs(error - left) <= std::max(unchanged * error, of_round_off * round_off_of(world, island));
+  if (!(left > converged<T> * island.scale)) return false;
+  const T round_off = round_off_of(world, island);
+  return left > above_round_off * round_off &&
+         std::abs(error - left) <= std::max(unchanged * error, of_round_off * round_off);
 }
 
 template <class S>

@@ -199,6 +199,20 @@ typename S::Scalar improve(WorldData<S>& world, Island<S>& island, typename S::S
   return move_middle(world, island, h);
 }
 
+// Into Island::residual, and as the error to remove: 0 where misfitting joints keep theirs (`at_start`). Floats would
+// creep.
+template <class S>
+typename S::Scalar find_errors_but_misfits(WorldData<S>& world, Island<S>& island, typename S::Scalar time,
+                                           typename S::Scalar at_start) {
+  using T = typename S::Scalar;
+  const T error = find_errors(world, island, time);
+  island.residual = at_start;
+  if (!stays_misfit(world, island, error)) return island.residual = error;
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    if (!batch->law) each_row(*batch, begin, end, [of = batch](int i) { of->error[i] = T(0); });
+  return T(0);
+}
+
 // The error that contradicting rows keep, as a motor and the limit it runs into.
 template <class S>
 typename S::Scalar shared_error(const Island<S>& island, typename S::Scalar at_start) {
@@ -224,11 +238,12 @@ bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     if (renew) stiffen_masses(world, island, h / 4);
     drift_with_rates(world, island, h);
     find_misses_of_bounded(world, island, h, true);
-    island.residual = find_errors(world, island, time);
+    const T misfit = find_errors_but_misfits(world, island, time, at_start) == T(0) ? T(island.residual) : T(0);
     find_errors_of_rates(island, h);
     if (!std::isfinite(double(island.residual))) return false;
     find_misses_of_bounded(world, island, h, false);
-    const T change = improve(world, island, h, renew), miss = std::max(change / settled<T>, island.residual / goal);
+    const T change = improve(world, island, h, renew),
+            miss = std::max(change / settled<T>, (island.residual - misfit) / goal);
     if (!(change < furthest<T>)) return false;
     const bool stays = change <= settled<T> && island.residual <= shared_error(island, at_start);
     if (stays && miss > T(1) && fitted && island.at_work().doubt_missed_rows()) {

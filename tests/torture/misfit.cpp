@@ -136,7 +136,7 @@ Mechanism nearly_misfitting(std::uint64_t seed, Wish wish) {
     bring_to_rest(made.scene);
     Random random(~seed);
     spoil(random, made.scene);
-  } catch (const Error&) {  // judge_misfit() refuses the mechanism for the same reason
+  } catch (const std::exception&) {  // judge_misfit() refuses the mechanism for the same reason
   }
   return made;
 }
@@ -144,6 +144,8 @@ Mechanism nearly_misfitting(std::uint64_t seed, Wish wish) {
 Verdict judge_misfit(const Scene& scene) {
   try {
     return in_space(scene, [&](auto space) { return judge_in<decltype(space)>(scene); });
+  } catch (const SceneError& error) {
+    return verdict(Outcome::refused, error.what(), "");
   } catch (const Error& error) {
     return verdict(Outcome::refused, error.what(), "");
   }

@@ -38,6 +38,13 @@ Eigen::MatrixXd unit_rows(const SystemMatrix& system, double length) {
   return D;
 }
 
+bool has_velocity_rows(const Scene& scene) {
+  return std::any_of(scene.joints.begin(), scene.joints.end(), [&](const SceneJoint& joint) {
+    const auto& kinds = find_joint_type(scene.dimension, joint.definition.type)->row_kinds;
+    return std::count(kinds.begin(), kinds.end(), RowKind::velocity) > 0;
+  });
+}
+
 }  // namespace
 
 double independence(const SystemMatrix& system, double round_off) {
@@ -68,6 +75,7 @@ Accounts::Accounts(const Motion& start, std::vector<SpringRow> springs, double e
       epsilon_(epsilon),
       start_energy_(energy),
       local_error_(scene.settings.local_error),
+      rolls_(has_velocity_rows(scene)),
       constant_(pushed_by_forces(scene)),
       pushed_(constant_),
       step_(scene.step),
