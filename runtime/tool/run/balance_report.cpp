@@ -27,9 +27,10 @@ struct Wrong {
 
 // "; fastest at t = 1.2 s, where the largest force was the 530 N of "joint3""
 std::string fastest(const Scene& scene, const WorstStep& step) {
-  if (step.joint < 0) return {};
-  return fmt::format("; fastest at t = {:.6g} s, where the largest force was the {:.3g} N of {}", step.time, step.force,
-                     joint_name(scene, step.joint));
+  const auto [joint, force] = step.largest;
+  if (joint < 0) return {};
+  return fmt::format("; fastest at t = {:.6g} s, where the largest force was the {:.3g} N of {}", step.time, force,
+                     joint_name(scene, joint));
 }
 
 std::string energy_words(const Scene& scene, const RunResult& result, const BalanceWatch::Worst& worst) {

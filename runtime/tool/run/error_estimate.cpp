@@ -17,7 +17,7 @@ namespace {
 constexpr int parts = 3;
 // A sample costs some steps and going back twice. A run of some hundred steps has this many samples, of three steps or
 // of one: fewer miss the error of a crank that turns fast. A longer run has one within some steps.
-constexpr long long usual_samples = 8, usual_samples_of_one = 12, most_spacing = 100;
+constexpr long long usual_samples = 7, usual_samples_of_one = 12, most_spacing = 140;
 // Of the share that warns: an estimate by longer steps that promises more by the end of the run is made anew.
 constexpr double doubted = 0.25;
 constexpr double half_turn = 3.141592653589793;  // a larger error of an angle has no meaning

@@ -106,7 +106,7 @@ bool finite(const Frame& frame) {
     if (!std::isfinite(b.x + b.y + b.z + b.angle + b.vx + b.vy + b.vz + b.w)) return false;
     if (!std::isfinite(b.e0 + b.e1 + b.e2 + b.e3 + b.wx + b.wy + b.wz)) return false;
   }
-  return true;
+  return !std::isnan(frame.energy);
 }
 
 template <class S>

@@ -1,4 +1,6 @@
 // The result of a run -> a summary for people and for programs.
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -65,10 +67,20 @@ text::Json failed_step_json(const Scene& scene, const StepResult& step) {
           {"row", step.row + 1}};
 }
 
+// Of a pose where the law of an effect has none, as a gas spring of negative length. Its work tells which.
+std::string energy_without_value(const RunResult& result) {
+  const auto of_effect = std::ranges::find_if_not(result.work, [](const auto& of) { return !std::isnan(of.work); });
+  const std::string effect =
+      of_effect == result.work.end() ? "an effect" : fmt::format("an effect `{}`", of_effect->name);
+  return fmt::format("{} has no energy at the pose of t = {:.6g} s. {}", effect, result.time,
+                     fix_of(result, "a limit or a stop before that pose, or a shorter step"));
+}
+
 }  // namespace
 
 std::string failure(const Scene& scene, const RunResult& result) {
   if (result.failed_step) return failed_step_text(scene, result, *result.failed_step);
+  if (std::isnan(result.energy_end)) return energy_without_value(result);
   if (!result.finite)
     return fmt::format("unstable: the state is not finite at t = {:.6g} s. {}", result.time,
                        fix_of(result, "a shorter step"));
@@ -104,6 +116,16 @@ std::string own_steps_text(const StepCounts& counts) {
 
 namespace {
 
+// "3 steps were left to an implicit method, first by t = 0.24 s, where the largest force was the 12 N of joint "rope"".
+std::string rescue_text(const Scene& scene, const RunResult& result) {
+  std::string text = fmt::format("{} step{} left to an implicit method, first by t = {:.6g} s", result.counts.rescued,
+                                 result.counts.rescued == 1 ? " was" : "s were", result.first_rescue);
+  const auto [joint, force] = result.at_rescue;
+  if (joint >= 0)
+    text += fmt::format(", where the largest force was the {:.3g} N of {}", force, joint_in_words(scene, joint));
+  return text;
+}
+
 // Of a step that an adaptive method left to an implicit method, whose error nobody knows; or of an accuracy that holds
 // in part.
 std::string warning_of_accuracy(const Scene& scene, const RunResult& result) {
@@ -113,10 +135,8 @@ std::string warning_of_accuracy(const Scene& scene, const RunResult& result) {
   }
   if (scene.settings.local_error == 0 || result.counts.rescued == 0) return {};
   return fmt::format(
-      "the local error {:.1e} is broken: {} step{} left to an implicit method, first by t = {:.6g} s. "
-      "Likely fix: a larger local error, or fixed steps of implicit or rattle",
-      scene.settings.local_error, result.counts.rescued, result.counts.rescued == 1 ? " was" : "s were",
-      result.first_rescue);
+      "the local error {:.1e} is broken: {}. Likely fix: a larger local error, or fixed steps of implicit or rattle",
+      scene.settings.local_error, rescue_text(scene, result));
 }
 
 }  // namespace
@@ -141,9 +161,8 @@ std::string summary_text(const Scene& asked, const RunResult& result) {
   if (scene.single) text += "  precision       float\n";
   if (own_steps) text += own_steps_text(result.counts);
   if (result.counts.rescued > 0)
-    text += fmt::format(
-        "  implicit rescue {} steps, first by t = {:.6g} s, for endless events or a useless error estimate\n",
-        result.counts.rescued, result.first_rescue);
+    text += fmt::format("  implicit rescue {}, for endless events or a useless error estimate\n",
+                        rescue_text(scene, result));
   if (result.choice) text += choice_text(*result.choice);
   text += fmt::format("  CPU             {:.4g} s, {:.3g} us per step\n", result.cpu,
                       result.steps > 0 ? 1e6 * result.cpu / static_cast<double>(result.steps) : 0.0);

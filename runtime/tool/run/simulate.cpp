@@ -158,7 +158,8 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     if (!result.finite) break;
     result.balance.look(balance);
     if (k > 0) worst_step.look(world, result.balance);
-    if (result.first_rescue < 0 && world.step_counts().rescued > 0) result.first_rescue = after.time;
+    if (result.first_rescue < 0 && world.step_counts().rescued > 0)
+      result.first_rescue = after.time, result.at_rescue = largest_force(world);
     if (every_step) options.row(after);
     requested.after_step(before, after);
     if (k > 0) error.after_step(world, before, after, k);

@@ -78,6 +78,7 @@ struct RunResult {
   std::vector<RankLoss> rank_losses;
   std::vector<std::string> broken_joints, notes;
   double first_rescue = -1;  // [s] end of the step that an implicit method first had to finish; below 0: none
+  LargestForce at_rescue;    // of a joint, there
   bool finite = true, interrupted = false;
   bool stopped = false;                   // by RunOptions::look
   std::optional<StepResult> failed_step;  // the run ended before it

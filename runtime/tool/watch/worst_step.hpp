@@ -6,11 +6,17 @@
 
 namespace cdot {
 
+struct LargestForce {
+  int joint = -1;    // -1: no joint carried one
+  double force = 0;  // [N]
+};
+template <class S>
+LargestForce largest_force(const BasicWorld<S>& world);
+
 struct WorstStep {
   double change = 0;  // of Balance::method() [J]
   double time = 0;    // [s] at its end
-  int joint = -1;     // with the largest force; -1: no joint carried one
-  double force = 0;   // [N]
+  LargestForce largest;
 };
 
 template <class S>

@@ -64,6 +64,35 @@ TEST(Run, AStartBeyondAnEndIsReportedAndFails) {
           "an end of tearing_rope \"line\"", "0.3");
 }
 
+// In one step of 0.2 s the piston goes on to a negative length, where a gas has no energy.
+TEST(Run, AnEffectWithoutEnergyIsNamed) {
+  const Scene scene = scene_of(R"(
+gravity = [0, 0]
+duration = 0.2
+step = 0.2
+integrator = "euler"
+[[body]]
+name = "piston"
+mass = 1
+inertia = 1
+position = [1, 0]
+velocity = [-10, 0]
+[[joint]]
+type = "prismatic"
+bodies = ["piston", "world"]
+pa = [0, 0]
+pb = [0, 0]
+t = { world = [0, 1] }
+slide.gas_spring = { F = 1e-6, rest = 1 }
+)");
+  std::string warnings;
+  EXPECT_EQ(failure(scene, simulate(scene, {}, warnings))
+                .find("an effect `gas_spring` has no energy at the pose of t = "
+                      "0.2 s. Likely fix: a limit"),
+            0u)
+      << failure(scene, simulate(scene, {}, warnings));
+}
+
 // A wheel stands where its angle jumps by a turn, and the row is off by more than half a turn. A pose satisfies it.
 TEST(Run, AGearThatStartsATurnOffIsNoContradiction) {
   const Scene scene = scene_of(R"(

@@ -207,7 +207,10 @@ TEST(SearchedAccuracy, CountsStepsThatAreLeftToEuler) {
   const RunResult broken = simulate(named, {}, warnings);
   const std::string text = summary_text(named, broken);
   EXPECT_NE(text.find("the local error 1.0e-09 is broken: "), std::string::npos) << text;
-  EXPECT_NE(text.find(fmt::format("first by t = {:.6g} s", broken.first_rescue)), std::string::npos) << text;
+  EXPECT_NE(text.find(fmt::format("first by t = {:.6g} s, where the largest force was the ", broken.first_rescue)),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find(" N of joint \""), std::string::npos) << text;
 }
 
 // At rest, and dear for explicit methods: they are not even begun.
