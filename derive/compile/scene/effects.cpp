@@ -63,7 +63,7 @@ class EffectReader {
     const std::vector<Place>& places = record(joint).places;
     const auto rows = world_.joint_type(joint).row_names.size();
     if (rows > 0 && has_limits(places[0]) && mechanism_.method == Method::euler) {
-      if (rows > 1) return refuse_(&source, fmt::format("{}: several forces with limits", effect.type));
+      if (rows > 1) return refuse_(source, fmt::format("{}: several forces with limits", effect.type));
       effect.law = Effect::limited;
       mechanism_.bounded.push_back(effect);
     } else if (rows > 0) {
@@ -76,12 +76,12 @@ class EffectReader {
 
   void add_bounded(const SceneJoint& source, const Effect& effect, const Place& place) {
     const auto& law = *batch_of(place).law;
-    if (law.by_load) refuse_(&source, fmt::format("{}: bounds that grow with a load", effect.name));
-    else if (law.distance) refuse_(&source, fmt::format("{}: events", effect.name));
+    if (law.by_load) refuse_(source, fmt::format("{}: bounds that grow with a load", effect.name));
+    else if (law.distance) refuse_(source, fmt::format("{}: events", effect.name));
     else if (mechanism_.method == Method::euler) mechanism_.bounded.push_back(effect);
     else
-      refuse_(&source, fmt::format("{} by {}, which has to find when it begins to slip, to hold or to touch",
-                                   effect.name, mechanism_.method_name));
+      refuse_(source, fmt::format("{} by {}, which has to find when it begins to slip, to hold or to touch",
+                                  effect.name, mechanism_.method_name));
   }
 
   void add_soft(const std::string& name, int joint) {

@@ -12,7 +12,7 @@
 namespace cdot::compile {
 
 // refuse(joint of the scene, or null for a spring; what it is): for effects that cannot be compiled.
-using RefuseEffect = std::function<void(const SceneJoint*, const std::string&)>;
+using RefuseEffect = std::function<void(const SceneJoint&, const std::string&)>;
 
 template <class S>
 void read_effects(const Scene& scene, BasicWorld<S>& world, const RefuseEffect& refuse, Mechanism& mechanism);

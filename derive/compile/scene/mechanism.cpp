@@ -184,8 +184,8 @@ void refuse_all_effects(const Scene& scene, const Mechanism& mechanism, Refusals
 template <class S>
 void add_effects(const Scene& scene, BasicWorld<S>& world, Mechanism& mechanism) {
   Refusals refusals(scene);
-  const auto refuse = [&](const SceneJoint* joint, const std::string& what) {
-    refusals.add(joint->where, fmt::format("{}: cdot compile does not know {}", joint->name, what),
+  const auto refuse = [&](const SceneJoint& joint, const std::string& what) {
+    refusals.add(joint.where, fmt::format("{}: cdot compile does not know {}", joint.name, what),
                  mechanism.method == Method::euler ? "leave it to cdot-run"
                                                    : "give --integrator euler, or leave it to cdot-run");
   };
