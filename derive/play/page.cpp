@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <vector>
 
 #include "derive/play/assets.hpp"
@@ -36,26 +37,23 @@ json all_specs(const fs::path& specs) {
   return files;
 }
 
-// title = "A small machine"
-std::string title_of(const std::string& scene, const std::string& otherwise) {
-  const std::size_t key = scene.find("title"), open = scene.find('"', key), close = scene.find('"', open + 1);
-  return key == scene.npos || close == scene.npos ? otherwise : scene.substr(open + 1, close - open - 1);
+// The value of a key at the top of a scene, without quotes; empty if it has none. A scene with mistakes has a title
+// too.
+std::string value_of(const char* key, const std::string& scene) {
+  std::smatch found;
+  const std::regex assignment(fmt::format("(^|\\n) *{} *= *\"?([^\"\\n#]*)", key));
+  return std::regex_search(scene, found, assignment) ? found[2].str() : "";
 }
 
-json example(const fs::path& scene) {
-  const std::string text = read_file(scene.string());
-  return {{"title", title_of(text, scene.stem().string())}, {"scene", text}, {"specs", json::object()}};
-}
-
-// A scene with the specs beside it.
-json start_at(const fs::path& file) {
-  json first = example(file);
-  const std::string scene = first["scene"];
-  const bool in_space = scene.find("dimension = 3") != scene.npos || scene.find("dimension=3") != scene.npos;
+// A scene with the specs beside it that it names.
+json example(const fs::path& file) {
+  const std::string scene = read_file(file.string()), title = value_of("title", scene);
+  const char* const space = value_of("dimension", scene).starts_with('3') ? "spatial" : "planar";
+  json specs = json::object();
   for (const fs::path& spec : files_in(file.parent_path().empty() ? "." : file.parent_path(), {".joint", ".effect"}))
-    first["specs"][fmt::format("specs/{}/{}", in_space ? "spatial" : "planar", spec.filename().string())] =
-        read_file(spec.string());
-  return first;
+    if (scene.find(spec.stem().string()) != scene.npos)
+      specs[fmt::format("specs/{}/{}", space, spec.filename().string())] = read_file(spec.string());
+  return {{"title", title.empty() ? file.stem().string() : title}, {"scene", scene}, {"specs", specs}};
 }
 
 constexpr std::size_t longest_scene = 40000;  // bytes of an example
@@ -63,8 +61,8 @@ constexpr std::size_t longest_scene = 40000;  // bytes of an example
 // The page opens with the scene asked for, or with one that has much to see.
 json gallery(const std::string& start, const fs::path& specs) {
   const fs::path first = start.empty() ? specs / "scenes" / "machine.toml" : fs::path(start);
-  json all = json::array({start_at(first)});
-  for (const char* folder : {"scenes", "scenes/spatial"})
+  json all = json::array({example(first)});
+  for (const char* folder : {"scenes/gallery", "scenes", "scenes/spatial"})
     for (const fs::path& scene : files_in(specs / folder, {".toml"}))
       if (fs::file_size(scene) < longest_scene && !fs::equivalent(scene, first)) all.push_back(example(scene));
   return all;
