@@ -226,8 +226,11 @@ std::optional<Verdict> Trial<S>::look_at_joints(BasicWorld<S>& world, const Gap&
 template <class S>
 std::optional<Verdict> Trial<S>::look(BasicWorld<S>& world, int k) {
   const Frame frame = frame_of(world, world.time(), static_cast<int>(scene_->bodies.size()));
+  Frame poses = frame;
+  poses.energy = 0;
+  if (!finite(poses)) return verdict(Outcome::broken, "finite", "a pose or a velocity is no number", 0, 0, k);
   if (!finite(frame))
-    return verdict(Outcome::broken, "finite", "a pose, a velocity or the energy is no number", 0, 0, k);
+    return verdict(Outcome::limited, "an effect has no energy at a pose, which cdot-run tells", "", 0, 0, k);
   const Gap gap = gap_now(world);
   const Motion now = motion_of(world);
   accounts_->step(now, spring_rows(world), frame.energy, operations_, world.step_counts().taken, length_of_step(k));

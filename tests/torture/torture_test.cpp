@@ -85,7 +85,7 @@ TEST(Torture, EffectsOfSpecs) {
 TEST(Torture, NearlyMisfittingLoopsStay) {
   int told = 0;
   for (std::uint64_t seed = 1; seed <= 150; ++seed) {
-    const Verdict verdict = judge_misfit(nearly_misfitting(seed, {.single = false, .steps = steps}).scene);
+    const Verdict verdict = judge_misfit(nearly_misfitting(seed, {.steps = steps}).scene);
     told += verdict.what == "told";
     EXPECT_FALSE(verdict.broken()) << "seed " << seed << ": " << verdict.what << " " << verdict.value << ", at most "
                                    << verdict.bound;
@@ -133,7 +133,6 @@ TEST(Torture, FoundMisfitsStay) {
       for (const bool single : {false, true}) {
         Scene same = scene;
         same.settings.integrator = integrator, same.single = single;
-        if (single && !scene.single) continue;  // some creep in float: see the README
         const Verdict verdict = judge_misfit(same);
         EXPECT_FALSE(verdict.broken()) << file << ", " << way_of(same) << ": " << verdict.what << " " << verdict.value
                                        << ", at most " << verdict.bound;
