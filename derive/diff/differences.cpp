@@ -115,6 +115,12 @@ Differences merged(Differences entries, const Sides& sides, const Group& rows, c
   }
   const std::string condition = condition_of(entries[0]);
   const bool same_condition = all_same(entries, [](const Difference& d, std::size_t) { return condition_of(d); });
+  constexpr std::size_t most_told = 4;  // one by one
+  if (entries.size() > most_told && (condition.empty() || !same_condition)) {
+    one.kind = "factor";
+    set_reason(one, fmt::format("{}: {} entries differ (the first is shown)", not_generated, entries.size()));
+    return {one};
+  }
   if (!kinds || condition.empty() || !same_condition) return entries;
   set_reason(one, fmt::format("{} entries of it are {} (the first is shown)", entries.size(), condition));
   return {one};

@@ -267,6 +267,10 @@ TEST(Check, NothingIsRegularWhereAGuardMayMakeItSingular) {
   const std::string third = "  point pc on c\n  let u = pa - pb\n  let s = pc - pb\n  scalar phi [rad] = angle(u, s)\n";
   EXPECT_TRUE(checked(third + "  angle(u, s) = phi\n", &said, "spatial").clean());
   EXPECT_TRUE(mentions(said, "but may be singular where cross(u, s) = 0")) << said;
+  said.clear();
+  const std::string bent = "  point pc on c\n  let u = pa - pb\n  let s = pc - pb\n  angle(u, s) = 1.9 [rad]\n";
+  EXPECT_TRUE(checked(bent, &said, "spatial").clean());
+  EXPECT_FALSE(mentions(said, "but may be singular")) << said;  // at 1.9 rad they are not parallel
 }
 
 // Notes on singular poses of a wrong joint would hide its error.

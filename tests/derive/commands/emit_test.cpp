@@ -25,6 +25,15 @@ TEST_F(Emit, WritesOneFileOrTwo) {
   EXPECT_EQ(read("one/line.hpp"), printed.said);
 }
 
+// Two bodies are as many as Box2D's joints take, and each coordinate has a drive of its own.
+TEST_F(Emit, EachCoordinateHasItsDrive) {
+  take("planar/wheel.joint");
+  const Result wheel = cdot("emit wheel --for box2d");
+  EXPECT_EQ(wheel.status, 0) << wheel.said;
+  EXPECT_TRUE(has(wheel, "auto& slide() { return this->drives[0]; }")) << wheel.said;
+  EXPECT_TRUE(has(wheel, "auto& angle() { return this->drives[1]; }")) << wheel.said;
+}
+
 TEST_F(Emit, SaysWhyItCannot) {
   take("planar/drag.effect");
   take("planar/gear_revolute_revolute.joint");

@@ -74,6 +74,15 @@ TEST(Slips, AreTheOnlySentence) {
   }
 }
 
+// A block of nine numbers that no reading explains is one item at each body.
+TEST(Slips, ABlockIsToldAsAWhole) {
+  const Judgement j =
+      judged("fixed", "  let W = (fb.x*fa.x' + fb.y*fa.y' + fb.z*fa.z')/2\n  rows angular\n  J = [0, W, 0, -W']\n");
+  ASSERT_EQ(j.differences.size(), 2u);
+  EXPECT_EQ(j.differences[0].sentence,
+            "J, row angular, w_a: it is not the generated one: 9 entries differ (the first is shown)");
+}
+
 // What looks alike is not always the slip: n = unit(u) where the length of u is divided out otherwise.
 TEST(Slips, AreNotNamedByChance) {
   const Judgement j =

@@ -27,7 +27,9 @@ std::string shown_by(const std::string& words, const std::function<void(const st
   const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
   if (child == 0) {
     run([&] {
-      while (!fs::exists(released)) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      constexpr int patience = 800;  // of a test that fails
+      for (int i = 0; i < patience && !fs::exists(released); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
     });
     _exit(0);
   }
