@@ -1,8 +1,8 @@
 // A spec's text to its tree: header, declarations, lets, rows, coordinates.
 #include <algorithm>
-#include <map>
 #include <utility>
 
+#include "derive/syntax/other_words.hpp"
 #include "derive/syntax/parse_law.hpp"
 #include "derive/syntax/parser.hpp"
 
@@ -282,40 +282,6 @@ class JointParser {
     else p_.fail(t.where, "`=`, `<=` or `>=` is missing: " + p_.found());
   }
 
-  // Statements by the words of other languages: the word of this one, or a sentence.
-  static const std::map<std::string, std::string, std::less<>>& other_words() {
-    static const std::string row = "a row is an equation by itself: pa = pb, or with a name: pin: pa = pb";
-    static const std::string on_coordinate =
-        "it acts on a coordinate: write `coordinate NAME [rad] = ...`, and the rest in the scene";
-    static const std::map<std::string, std::string, std::less<>> words = {{"parameter", "scalar"},
-                                                                          {"param", "scalar"},
-                                                                          {"const", "scalar"},
-                                                                          {"constant", "scalar"},
-                                                                          {"number", "scalar"},
-                                                                          {"real", "scalar"},
-                                                                          {"float", "scalar"},
-                                                                          {"double", "scalar"},
-                                                                          {"var", "scalar"},
-                                                                          {"variable", "scalar"},
-                                                                          {"direction", "unit"},
-                                                                          {"normal", "unit"},
-                                                                          {"axis", "unit"},
-                                                                          {"vec", "vector"},
-                                                                          {"def", "let"},
-                                                                          {"define", "let"},
-                                                                          {"set", "let"},
-                                                                          {"where", "let"},
-                                                                          {"constraint", row},
-                                                                          {"equation", row},
-                                                                          {"row", row},
-                                                                          {"motor", on_coordinate},
-                                                                          {"limit", on_coordinate},
-                                                                          {"spring", on_coordinate},
-                                                                          {"damper", on_coordinate},
-                                                                          {"friction", on_coordinate}};
-    return words;
-  }
-
   void unknown_statement() {
     const Token t = p_.take();
     if (!joint_.effect && (t.text == "energy" || t.text == "force" || t.text == "torque"))
@@ -328,11 +294,11 @@ class JointParser {
           "write `point " + std::string(t.text) + " on " + std::string(p_.peek(1).text) + "`, or vector, unit, frame");
       return declare_broken("point", t);
     }
-    const auto meant = other_words().find(t.text);
-    if (meant != other_words().end() && meant->second.find(' ') != std::string::npos)
-      return p_.fail(t.where, "no statement starts with " + quote(t.text), meant->second);
+    const std::string meant(meaning_of(t.text));
+    if (meant.find(' ') != std::string::npos)
+      return p_.fail(t.where, "no statement starts with " + quote(t.text), meant);
     std::vector<std::string> words = statement_words(false);
-    const std::string near = meant != other_words().end() ? meant->second : nearest(t.text, words);
+    const std::string near = meant.empty() ? nearest(t.text, words) : meant;
     if (near.empty())
       p_.fail(t.where, "no statement starts with " + quote(t.text),
               "statements start with point, vector, unit, frame, scalar, let, include, coordinate, velocity, source; a "
