@@ -36,7 +36,10 @@ int run(const Options& options) {
 }
 
 void add_options(Line& line, Options& options) {
-  line.add("SCENE", &options.start, "The scene to begin with: a TOML file, or the name of one in specs/scenes");
+  line.add(
+      "SCENE|SPEC", &options.start,
+      "To begin with: a scene, by its file or its name in specs/scenes; or a .joint or .effect file, in a first scene "
+      "for it");
   line.add("-o,--output", &options.output, "The page: one file that needs no server").shown_as("FILE").shows_default();
   line.add("--engine", &options.engine, "Folder of engine.js and engine.wasm, which the target `playground` builds")
       .shown_as("DIR");

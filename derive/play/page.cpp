@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "derive/play/assets.hpp"
+#include "derive/play/trial.hpp"
 #include "runtime/tool/run/output.hpp"
 
 namespace cdot::play {
@@ -45,9 +46,12 @@ std::string value_of(const char* key, const std::string& scene) {
   return std::regex_search(scene, found, assignment) ? found[2].str() : "";
 }
 
-// A scene with the specs beside it that it names.
+bool is_spec(const fs::path& file) { return file.extension() == ".joint" || file.extension() == ".effect"; }
+
+// A scene, or a first one for a spec, with the specs beside it that it names.
 json example(const fs::path& file) {
-  const std::string scene = read_file(file.string()), title = value_of("title", scene);
+  const std::string scene = is_spec(file) ? trial_scene(file.string()) : read_file(file.string());
+  const std::string title = value_of("title", scene);
   const char* const space = value_of("dimension", scene).starts_with('3') ? "spatial" : "planar";
   json specs = json::object();
   for (const fs::path& spec : files_in(file.parent_path().empty() ? "." : file.parent_path(), {".joint", ".effect"}))

@@ -1,12 +1,15 @@
 // The playground's engine, asked as the page asks it. The numbers expected are worked out by hand.
 #include "derive/play/engine.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <iterator>
 #include <unistd.h>
+
+#include "derive/play/trial.hpp"
 
 namespace {
 
@@ -126,6 +129,51 @@ TEST_F(Play, ATypedJointMoves) {
   ASSERT_FALSE(marks.contains("problems")) << marks;
   EXPECT_EQ(marks["points"][0]["name"], "pa");
   EXPECT_NEAR(marks["points"][0]["at"][0].get<double>(), state["bodies"][0].get<double>(), 1e-12);
+}
+
+// The first scene of a spec is read, and its joints hold as it runs: all of the plane and of coordinates, and every
+// fourth in space, where derivations take longer.
+TEST_F(Play, EverySpecHasAFirstScene) {
+  int scenes = 0, in_space = 0;
+  std::string still, compiled_only;
+  for (const char* space : {"planar", "spatial", "coordinate"})
+    for (const auto& entry : fs::directory_iterator(fs::path(CDOT_SOURCE_DIR) / "specs" / space)) {
+      const fs::path& spec = entry.path();
+      if (spec.extension() != ".joint" && spec.extension() != ".effect") continue;
+      if (space == std::string_view("spatial") && ++in_space % 4 != 0) continue;
+      std::string text;
+      try {
+        text = cdot::play::trial_scene(spec.string());
+      } catch (const std::exception& error) {
+        EXPECT_NE(std::string(error.what()).find("cdot_add_joints compiles it"), std::string::npos) << error.what();
+        compiled_only += " " + spec.stem().string();
+        continue;
+      }
+      ++scenes;
+      const json scene = load(text);
+      ASSERT_FALSE(scene.contains("problems")) << spec << "\n" << text << scene["problems"];
+      EXPECT_EQ(scene["warnings"], "") << spec << "\n" << text;
+      const json state = run(0.5);
+      EXPECT_EQ(state["failed"], "") << spec << "\n" << text;
+      EXPECT_LT(state["error"].get<double>(), 1e-3) << spec << "\n" << text;
+      if (state["bodies"] == scene["state"]["bodies"]) still += " " + spec.stem().string();
+    }
+  EXPECT_GT(scenes, 70);
+  // no freedom, or friction that holds
+  for (const char* name : {" motor", " weld", " pin_friction", " rail_friction"})
+    if (const std::size_t at = still.find(name); at != still.npos) still.erase(at, std::string_view(name).size());
+  EXPECT_EQ(still, "") << "these do not move";
+  EXPECT_LE(std::ranges::count(compiled_only, ' '), 2) << compiled_only;
+}
+
+TEST_F(Play, AFirstSceneForASpecWithMistakesNamesThem) {
+  std::ofstream("bad.joint") << "joint bad planar\n  \"x\"\n  point pa on a\n  dot(pa, q) = 0\n";
+  try {
+    cdot::play::trial_scene("bad.joint");
+    ADD_FAILURE();
+  } catch (const std::exception& error) {
+    EXPECT_NE(std::string(error.what()).find("bad.joint:4:11: error"), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(Play, MistakesHavePlaces) {
