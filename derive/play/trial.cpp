@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <vector>
 
 #include <cdot/joints.hpp>
 #include <cdot/world.hpp>
@@ -100,13 +101,15 @@ std::string trial_scene(const std::string& spec) {
            fmt::format("[[joint]]\ntype   = \"{}\"\nbodies = [\"world\", \"body1\"]\nat     = [0.5, 0.1]\n{}.{} = {}\n",
                        turns ? "revolute" : "prismatic", coordinate, name, on_coordinate(type));
   }
-  std::string bodies = type.bodies > 1 ? "\"world\"" : "\"body1\"";
+  // One stands still, as specs see it: in the plane b, whose curve a follows; in space a.
+  std::vector<std::string> bodies;
   for (int k = 1; k < std::max(type.bodies, 2); ++k) {
     text += body_text(k, in_space);
-    if (type.bodies > 1) bodies += fmt::format(", \"body{}\"", k);
+    bodies.push_back(fmt::format("\"body{}\"", k));
   }
-  return text +
-         fmt::format("[[joint]]\ntype   = \"{}\"\nbodies = [{}]\n{}", name, bodies, parameters_of(type, in_space));
+  if (type.bodies > 1) bodies.insert(in_space ? bodies.begin() : bodies.begin() + 1, "\"world\"");
+  return text + fmt::format("[[joint]]\ntype   = \"{}\"\nbodies = [{}]\n{}", name, fmt::join(bodies, ", "),
+                            parameters_of(type, in_space));
 }
 
 }  // namespace cdot::play
