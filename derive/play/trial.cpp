@@ -43,9 +43,9 @@ std::string value_of(const ParameterInfo& info, int directions_before, bool in_s
   if (info.kind == ParameterKind::scalar) return fmt::format("{}", usual_value(info));
   if (info.kind == ParameterKind::point)
     return in_space ? fmt::format("[0.3, {:.2g}, 0.1]", turn) : fmt::format("[0.3, {:.2g}]", turn);
-  if (!in_space) return fmt::format("[0.3, {:.2g}]", 1 + turn);
-  return directions_before % 2 == 0 ? fmt::format("[0.3, {:.2g}, 1]", turn - 0.2)
-                                    : fmt::format("[1, {:.2g}, 0.3]", turn);
+  const bool first = directions_before % 2 == 0;
+  if (!in_space) return first ? fmt::format("[1, {:.2g}]", turn) : fmt::format("[{:.2g}, 1]", turn);
+  return first ? fmt::format("[0.3, {:.2g}, 1]", turn - 0.2) : fmt::format("[1, {:.2g}, 0.3]", turn);
 }
 
 std::string parameters_of(const JointType& type, bool in_space) {
