@@ -2,6 +2,7 @@
 #include "runtime/own/own.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>

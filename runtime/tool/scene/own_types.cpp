@@ -1,4 +1,5 @@
 // Joints and effects that nobody compiled: their specs lie beside the scene.
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 

@@ -67,6 +67,7 @@ std::vector<double> run_of(const std::string& type, const JointType& info, const
   }
   for (std::size_t c = 0; c < info.coordinates.size(); ++c)
     numbers.push_back(world.coordinate(joint, info.coordinates[c].name));
+  for (const WorkOfSource& of : world.work_by_source()) numbers.push_back(of.work);
   return numbers;
 }
 
@@ -121,6 +122,7 @@ std::vector<double> run_on_coordinate(const SpecEffect& effect, bool of_turn, co
     for (const int joint : joints) numbers.push_back(world.coordinate(joint, coordinate));
     numbers.push_back(world.energy());
   }
+  for (const WorkOfSource& of : world.work_by_source()) numbers.push_back(of.work);
   return numbers;
 }
 
