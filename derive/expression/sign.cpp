@@ -1,5 +1,7 @@
 #include "derive/expression/sign.hpp"
 
+#include "derive/expression/functions.hpp"
+
 namespace cdot::derive {
 
 bool is_never_negative(Expr e) {

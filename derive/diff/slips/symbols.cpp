@@ -76,7 +76,7 @@ std::vector<std::pair<std::string, Expr>> known_symbols(const Whole& whole) {
       if (leaf->role == Role::parameter || leaf->role == Role::body_vector) known.emplace_back(text(leaf), leaf);
   for (const Let& let : whole.entry.joint.lets) known.emplace_back(let.name, let.value);
   std::ranges::sort(known, {}, [](const auto& one) { return one.first; });
-  known.erase(std::ranges::unique(known).begin(), known.end());
+  known.erase(std::unique(known.begin(), known.end()), known.end());
   return known;
 }
 

@@ -84,14 +84,15 @@ class ManyIslands : public testing::TestWithParam<Many> {
       std::filesystem::temp_directory_path() / ("cdot_many_islands_" + std::to_string(getpid()));
 };
 
-// I(n) = a + b n + c n^2 has (I(4n) - I(2n)) / (I(2n) - I(n)) = 2 if c = 0. Measured: 1.999 to 2.0074,
-// because maps of names add n log n. A square term doubles what is above 2.
+// I(n) = a + b n + c n^2 has (I(4n) - I(2n)) / (I(2n) - I(n)) = 2 if c = 0. Measured: 1.999 to 2.0080, because maps of
+// names add n log n, and because the environment moves it by 0.0005. At twice n a square term doubles what is above 2;
+// for RedundantJoints it falls there from 0.0078 to 0.0012.
 TEST_P(ManyIslands, CostInProportionToTheirNumber) {
   const double few = count(100), more = count(200), most = count(400);
   const double ratio = (most - more) / (more - few);
   std::printf("%s: %.0f instructions an island, ratio %.4f\n", GetParam().name, (most - more) / 200, ratio);
   EXPECT_GT(more - few, 1e6);
-  EXPECT_NEAR(ratio, 2, 0.008);
+  EXPECT_NEAR(ratio, 2, 0.01);
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, ManyIslands, testing::ValuesIn(all),

@@ -206,6 +206,25 @@ TEST(Own, EffectsActOnItsCoordinates) {
   EXPECT_EQ(turned("hinge"), turned(own.name));
 }
 
+// A drive far from its target pushes with its limit, and the work is that of the limited force.
+TEST(Own, AForceAtItsLimitDoesTheSameWork) {
+  const OwnType own = add_own_type(CDOT_SOURCE_DIR "/specs/planar/position_drive.effect");
+  const auto work_of = [](const std::string& type) {
+    Settings by_rk4 = settings(Solver::direct);
+    by_rk4.integrator = Integrator::rk4;
+    World<double> world(by_rk4);
+    BodyDefinition d;
+    d.mass = 1, d.inertia = 1;
+    const int body = world.add_body(d);
+    const int joint = world.add_joint({"revolute", {world.ground(), body}, {{"pa", {0, 0}}}, {}});
+    add_effect(world, joint, "angle", SpecEffect{type, {{"k", {50}}, {"most", {0.5}}, {"target", {3}}}});
+    for (int k = 0; k < 100; ++k) world.step(0.01);
+    return world.work_by_source().at(0).work;
+  };
+  EXPECT_NEAR(work_of("position_drive"), 0.5 * 0.25, 1e-9);  // half a newton metre over a quarter of a radian in 1 s
+  EXPECT_EQ(work_of("position_drive"), work_of(own.name));
+}
+
 // A second route finds a wrong derivation: here a spoiled number of J.
 TEST(Own, AWrongRateIsFound) {
   const OwnReading reading = read_own_kernel(CDOT_SOURCE_DIR "/specs/planar/line.joint");
