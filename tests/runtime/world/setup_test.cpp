@@ -1,4 +1,6 @@
 // Sets Worlds up: refusals and their messages, definitions without influence, inconsistent starts.
+#include <fmt/format.h>
+
 #include "tests/runtime/support.hpp"
 
 namespace cdot::test {
