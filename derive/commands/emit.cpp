@@ -16,7 +16,7 @@ struct EmitOptions {
   bool single_header = false;
 };
 
-// What goes into the named file, and what into the one beside it.
+// The texts of the named file and of the one beside it.
 EmittedJoint emitted(const Engine& engine, const Kernel& kernel, const EmitOptions& options) {
   if (options.single_header || options.output == "-") return {"", "", single_header(engine, kernel)};
   return emit_for(engine, kernel);

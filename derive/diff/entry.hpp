@@ -100,7 +100,7 @@ struct Sides {
   bool opposites = false;
 };
 void compare(Entry& entry, const Sides& sides, const std::function<Difference(int row, int column)>& difference);
-// What compare() adds to the verdict; `wrong` is set for each entry that differs.
+// The additions of compare() to the verdict; `wrong` is set for each entry that differs.
 std::vector<Difference> differences_of(Entry& entry, const Sides& sides,
                                        const std::function<Difference(int row, int column)>& difference,
                                        std::vector<bool>& wrong);

@@ -115,10 +115,7 @@ std::optional<Slip> turned_inertia(const Whole& whole) {
 }  // namespace
 
 std::optional<Slip> slip_of_masses(const Whole& whole) {
-  if (std::optional<Slip> found = inverse(whole)) return found;
-  if (std::optional<Slip> found = masses(whole)) return found;
-  if (std::optional<Slip> found = missing_masses(whole)) return found;
-  return turned_inertia(whole);
+  return first_of({inverse, masses, missing_masses, turned_inertia}, whole);
 }
 
 }  // namespace cdot::derive

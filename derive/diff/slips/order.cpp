@@ -54,9 +54,6 @@ std::optional<Slip> other_columns(const Whole& whole) {
 
 }  // namespace
 
-std::optional<Slip> slip_of_order(const Whole& whole) {
-  if (std::optional<Slip> found = other_rows(whole)) return found;
-  return other_columns(whole);
-}
+std::optional<Slip> slip_of_order(const Whole& whole) { return first_of({other_rows, other_columns}, whole); }
 
 }  // namespace cdot::derive

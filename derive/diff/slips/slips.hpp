@@ -65,6 +65,14 @@ struct Whole {
   static std::vector<Expr> substituted(const Matrix& in, const std::map<const Node*, Expr>& replacements);
 };
 
+// The first of these readings that explains the whole.
+using Reading = std::optional<Slip> (*)(const Whole&);
+inline std::optional<Slip> first_of(std::initializer_list<Reading> readings, const Whole& whole) {
+  for (const Reading reading : readings)
+    if (std::optional<Slip> found = reading(whole)) return found;
+  return {};
+}
+
 std::optional<Slip> slip_of_order(const Whole& whole);     // rows, columns, bodies
 std::optional<Slip> slip_of_frame(const Whole& whole);     // angular velocities along other axes
 std::optional<Slip> slip_of_sign(const Whole& whole);      // of a body, of v or w, of masses

@@ -106,10 +106,7 @@ std::optional<Slip> confused(const Whole& whole, bool both) {
 }  // namespace
 
 std::optional<Slip> slip_of_symbol(const Whole& whole) {
-  if (std::optional<Slip> found = lever(whole)) return found;
-  if (std::optional<Slip> found = other_body(whole)) return found;
-  if (std::optional<Slip> found = lever_of_other_body(whole)) return found;
-  return confused(whole, false);
+  return first_of({lever, other_body, lever_of_other_body, [](const Whole& of) { return confused(of, false); }}, whole);
 }
 
 std::optional<Slip> slip_of_exchange(const Whole& whole) { return confused(whole, true); }

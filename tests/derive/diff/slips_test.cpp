@@ -83,7 +83,7 @@ TEST(Slips, ABlockIsToldAsAWhole) {
             "J, row angular, w_a: it is not the generated one: 9 entries differ (the first is shown)");
 }
 
-// What looks alike is not always the slip: n = unit(u) where the length of u is divided out otherwise.
+// Numbers that look alike are not always the slip: n = unit(u) where the length of u is divided out otherwise.
 TEST(Slips, AreNotNamedByChance) {
   const Judgement j =
       judged("rope", "  rows length\n  let m = u/sqrt(norm(u)/1)\n  J = [-m', -cross(ra, m), m', cross(rb, m)]\n");

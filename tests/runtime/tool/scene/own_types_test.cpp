@@ -43,6 +43,13 @@ q = 1
 
 void write(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
 
+std::string last_line(const std::string& path) {
+  std::ifstream file(path);
+  std::string line, last;
+  while (std::getline(file, line)) last = line;
+  return last;
+}
+
 TEST(OwnTypes, OfAFileBesideTheScene) {
   const TemporaryFolder folder;
   write(folder / "bead_on_ellipse.joint", ellipse);
@@ -51,9 +58,7 @@ TEST(OwnTypes, OfAFileBesideTheScene) {
     const std::string scene = folder / "scene.toml", csv_path = folder / "run.csv";
     const CommandResult run = cdot_run(fmt::format("simulate '{}' -o '{}'", scene, csv_path));
     ASSERT_EQ(run.status, 0) << run.out << run.err;
-    std::ifstream csv(csv_path);
-    std::string line, last;
-    while (std::getline(csv, line)) last = line;
+    const std::string last = last_line(csv_path);
     double t = 0, x = 0, y = 0;
     ASSERT_EQ(std::sscanf(last.c_str(), "%lf,%lf,%lf", &t, &x, &y), 3);
     EXPECT_NEAR(x * x / 4 + y * y, 1, 1e-6);
@@ -128,9 +133,7 @@ TEST(OwnTypes, EffectsBetweenBodiesAndOnCoordinates) {
     const CommandResult run = cdot_run(fmt::format("simulate '{}' --accuracy 1e-6 -o '{}'", scene, csv_path));
     ASSERT_EQ(run.status, 0) << run.out << run.err;
     EXPECT_NE(run.out.find("stiction -"), std::string::npos) << "the work of its friction\n" << run.out;
-    std::ifstream csv(csv_path);
-    std::string line, last;
-    while (std::getline(csv, line)) last = line;
+    const std::string last = last_line(csv_path);
     double t = 0, x = 0;
     ASSERT_EQ(std::sscanf(last.c_str(), "%lf,%lf", &t, &x), 2);
     EXPECT_NEAR(x, 1. / 3, 1e-6);
