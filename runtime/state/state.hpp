@@ -33,6 +33,7 @@ struct FlowState {
   StateNumber<T> next_step = T(0);       // [s] that the error control proposes; 0: none yet
   StateNumber<T> longest = T(0);         // [s] of the steps so far
   StateNumber<int> slivers = 0;          // consecutive steps that were far shorter
+  StateNumber<int> exhausted = 0;        // calls of step(h) that took all their steps, less those that did not
   StateNumber<bool> known = false;       // C, J, forces and dv/dt belong to the end of the last step
   // An adaptive step may end beyond the end of step(h). The bodies then stand between its ends.
   StateNumber<T> ahead = T(0);         // [s] from the bodies to its end; 0: at its end

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <compare>
+#include <limits>
 #include <vector>
 
 #include <cdot/step_result.hpp>
@@ -100,6 +101,8 @@ struct Overload {
 };
 
 struct Workspace {
+  // Of accelerations, counted as StepCounts::evaluations: beyond them fall_back() finishes every step.
+  double most_evaluations = std::numeric_limits<double>::infinity();
   std::vector<int> awake;  // islands, in order
   std::vector<Overload> overloads;
 };

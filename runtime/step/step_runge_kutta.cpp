@@ -24,7 +24,9 @@ namespace {
 // finishes the step.
 constexpr int most_events = 32, most_slivers = 1000;
 // The same for steps of one step(h). An error below round-off, or a force too stiff for explicit steps, asks for more.
-constexpr int most_steps = 20000;
+// After a step(h) that took them all, the next one may take an eighth, so that a run of such steps ends.
+constexpr int most_steps = 20000, fewest_steps = 100;
+int most_steps_after(int exhausted) { return std::max(fewest_steps, most_steps >> std::min(3 * exhausted, 24)); }
 constexpr double sliver = 1e-4;      // share of the longest step so far
 constexpr int most_rejections = 30;  // in a row
 // The same for attempts whose end cannot be projected, or only by a correction that undoes the motion. If steps that
@@ -294,10 +296,13 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
                               typename S::Scalar done, typename S::Scalar h) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
-  for (int events = 0, steps = 0; done < h; ++steps) {
+  const int most = most_steps_after(flow.exhausted);
+  int steps = 0;
+  for (int events = 0; done < h; ++steps) {
     const T time = T(world.time) + done;
     const Way<T> way = way_from(world, island, done, h);
-    const bool chatters = events > most_events || flow.slivers > most_slivers || steps >= most_steps;
+    const bool spent = static_cast<double>(world.counts->evaluations) > world.most_evaluations;
+    const bool chatters = spent || events > most_events || flow.slivers > most_slivers || steps >= most;
     if (chatters) fall_back(world, island, time, way.left, false);
     if (chatters || !take_step(world, island, method, time, way, h)) {
       done = way.end;
@@ -315,6 +320,7 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
     if (flow.length > T(0)) count_step<S>(world.counts, flow.length);
     done = flow.length == way.left ? way.end : done + flow.length;
   }
+  flow.exhausted = std::max(0, flow.exhausted + (steps > most ? 1 : -1));
   return done;
 }
 

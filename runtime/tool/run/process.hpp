@@ -2,17 +2,11 @@
 #pragma once
 
 #include <chrono>
-#include <functional>
 #include <string>
-#include <vector>
 
 namespace cdot {
 
 double cpu_now();  // CPU time of this thread [s]
-
-// f() in a process of its own, which ends at the latest after `cpu` seconds of CPU time: no step can be
-// interrupted otherwise. Empty if it did not return.
-std::vector<double> in_child(double cpu, const std::function<std::vector<double>()>& f);
 
 // While an Interrupt lives, the first Ctrl-C only sets asked(). Do not nest them.
 class Interrupt {

@@ -14,7 +14,7 @@
 namespace cdot {
 
 std::string in_words(const TriedFix& advice) {
-  if (advice.tried.empty()) return "Nothing could be tried within the time";
+  if (advice.tried.empty()) return "Nothing could be tried within the bounds of work";
   if (advice.options.empty()) return fmt::format("Tried in vain: `{}`", fmt::join(advice.tried, "`, `"));
   return fmt::format("Tried: `{}` keeps energy and momentum to {:.1e}{} at {} times the cost{}", advice.options,
                      advice.share,

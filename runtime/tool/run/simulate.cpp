@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "runtime/state/world_data.hpp"
 #include "runtime/tool/run/balance_report.hpp"
 #include "runtime/tool/run/error_estimate.hpp"
 #include "runtime/tool/run/process.hpp"
@@ -132,6 +133,7 @@ template <class S>
 RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string& warnings) {
   RunResult result;
   BasicWorld<S> world = world_of_run<S>(scene, options, warnings);
+  world.data().most_evaluations = options.most_evaluations;
   const Steps steps(scene, options);
   result.start = steps.time(0);
   RequestedFrames<S> requested(scene);
@@ -169,7 +171,8 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
         std::upper_bound(next_diagnosis, options.diagnose_times.end(), after.time + same_time * scene.duration);
     if (due != next_diagnosis) look(scene, world, result);
     next_diagnosis = due;
-    result.stopped = options.look && !options.look(after, world.step_counts());
+    result.stopped = (options.look && !options.look(after, world.step_counts())) ||
+                     static_cast<double>(world.step_counts().evaluations) > options.most_evaluations;
     if (result.stopped && !options.diagnose_times.empty()) look(scene, world, result);
     if (Interrupt::asked() && options.save_at && result.state.empty()) result.state = world.snapshot();
     if (k == steps.count() || result.stopped || Interrupt::asked()) break;

@@ -30,9 +30,10 @@ struct RunOptions {
   std::string doing;                   // before the progress: "dop853, local error 1e-06: "
   // Called at the start and after every step with the work so far; false ends the run there.
   std::function<bool(const Frame&, const StepCounts&)> look;
-  double search_cpu = 60;       // [s] after which the search for a method ends with the best run so far
-  double (*clock)() = cpu_now;  // of the search
-  Snapshot from;                // to continue from; empty: the scene's start
+  // Beyond so many the run is stopped; within a step, an implicit method finishes it then.
+  double most_evaluations = std::numeric_limits<double>::infinity();
+  double search_work = 1e8;  // after which the search for a method ends with the best run so far; in units of search/work.hpp
+  Snapshot from;             // to continue from; empty: the scene's start
   // When to save RunResult::state: at the first step that ends then or later.
   std::optional<double> save_at;
 };
@@ -42,7 +43,7 @@ struct TriedFix {
   std::string options;             // of `cdot-run simulate`; empty: nothing that was tried is a cure
   double share = 0;                // the method's own share of energies and momenta with these options
   double off = 0;                  // the trajectory's estimated error with them, in shares; 0: no estimate
-  double cost = 0;                 // CPU time in units of the run's
+  double cost = 0;                 // work (search/work.hpp) in units of the run's
   long long steps = 0;             // and their price in counts: of steps, or of the intervals of those that a method
   long long evaluations = 0;       // chooses, and of accelerations
   double until = 0;                // [s] up to which the trials ran; 0: like the run
@@ -80,7 +81,7 @@ struct RunResult {
   double first_rescue = -1;  // [s] end of the step that an implicit method first had to finish; below 0: none
   LargestForce at_rescue;    // of a joint, there
   bool finite = true, interrupted = false;
-  bool stopped = false;                   // by RunOptions::look
+  bool stopped = false;                   // by RunOptions::look or most_evaluations
   std::optional<StepResult> failed_step;  // the run ended before it
   std::vector<WorstOfIsland> diagnosis;
   int diagnoses = 0;  // number of times diagnosed

@@ -2,7 +2,7 @@
 #include "runtime/tool/search/advice.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <exception>
 #include <fmt/format.h>
 #include <functional>
 #include <limits>
@@ -11,17 +11,17 @@
 
 #include "runtime/tool/run/balance_report.hpp"
 #include "runtime/tool/run/error_report.hpp"
-#include "runtime/tool/run/process.hpp"
 #include "runtime/tool/search/simulate.hpp"
+#include "runtime/tool/search/work.hpp"
 #include "runtime/tool/search/yardstick.hpp"
 
 namespace cdot {
 namespace {
 
-constexpr double most_cpu = 2;  // [s] of all trials
-constexpr double most_cpu_of_a_trial = 0.5;
-constexpr int compared_times = 40;       // of a trial's trajectory with a finer one
-constexpr double cpu_of_a_trial = 0.25;  // [s] by the run's own method; a longer run is tried up to an earlier time
+// Work (search/work.hpp): of all trials, about two seconds; of one; and of one by the run's own method, so that a
+// longer run is tried up to an earlier time.
+constexpr double most_work = 16e6, most_work_of_a_trial = 4e6, own_work_of_a_trial = 1e6;
+constexpr int compared_times = 40;  // of a trial's trajectory with a finer one
 
 // Options of `cdot-run simulate`, and the same change of a scene.
 struct Candidate {
@@ -105,17 +105,19 @@ namespace {
 
 // Of a run by a candidate.
 struct Trial {
-  bool done = false, cures = false;  // done: it ended within its time
-  double share = 0, off = 0, cpu = 0;
+  bool cures = false, interrupted = false;
+  double share = 0, off = 0, work = 0;
   long long steps = 0, evaluations = 0;
 };
 
 // The share by which a run is off whose method chooses its steps, since it estimates none: its distance from a run with
 // a hundredth of the local error, at equal times.
-double distance_from_finer(Scene scene, const RunOptions& options, const RunResult& run) {
+double distance_from_finer(Scene scene, RunOptions options, const RunResult& run, Trial& trial) {
   scene.settings.local_error /= 100;
+  options.most_evaluations -= static_cast<double>(run.counts.evaluations);
   std::string warnings;
   const RunResult finer = simulate(scene, options, warnings);
+  trial.work += work_of(scene, finer);
   if (finer.film.size() != run.film.size()) return std::numeric_limits<double>::infinity();
   scene.accuracy = 0;  // by sizes of mechanisms
   Yardstick yardstick(scene);
@@ -125,27 +127,26 @@ double distance_from_finer(Scene scene, const RunOptions& options, const RunResu
   return most;
 }
 
-// `off`: the trajectory was, so a cure has to be near the true one.
+// Takes `most` work. `off`: the trajectory was, so a cure has to be near the true one.
 Trial try_out(const Scene& scene, RunOptions options, double most, bool off) {
   const bool own_steps = off && scene.settings.local_error > 0 && !chooses_method(scene);
   if (own_steps) options.film_times = equal_times(scene.duration, compared_times, 1);
-  const std::vector<double> numbers = in_child(most, [&]() -> std::vector<double> {
+  options.most_evaluations = most / work_of_evaluation(scene);
+  Trial trial;
+  try {
     std::string warnings;
-    try {
-      const RunResult result = simulate(scene, options, warnings);
-      const double share = own_steps ? distance_from_finer(scene, options, result) : result.error.share;
-      const bool near =
-          !off || (own_steps ? share <= warned_trajectory_share(scene) : result.choice || result.error.samples > 0);
-      const bool cures = near && !result.interrupted && !needs_advice(scene, result);
-      return {cures ? 1.0 : 0.0, worst_share(result.balance),       share,
-              result.cpu,        static_cast<double>(result.steps), static_cast<double>(result.counts.evaluations)};
-    } catch (const std::exception&) {
-      return {};  // for example a state of another method
-    }
-  });
-  if (numbers.size() != 6) return {};
-  return {
-      true, numbers[0] != 0, numbers[1], numbers[2], numbers[3], std::llround(numbers[4]), std::llround(numbers[5])};
+    const RunResult result = simulate(scene, options, warnings);
+    trial.work = work_of(scene, result);
+    trial.steps = result.steps, trial.evaluations = result.counts.evaluations;
+    trial.interrupted = result.interrupted;
+    if (result.stopped || result.interrupted || needs_advice(scene, result)) return trial;
+    trial.share = worst_share(result.balance);
+    trial.off = own_steps ? distance_from_finer(scene, options, result, trial) : result.error.share;
+    trial.cures =
+        !off || (own_steps ? trial.off <= warned_trajectory_share(scene) : result.choice || result.error.samples > 0);
+  } catch (const std::exception&) {  // for example a state of another method
+  }
+  return trial;
 }
 
 // A picked integrator is named with other options: with these another one might be picked.
@@ -158,9 +159,9 @@ std::string named_with(const Scene& scene, const Candidate& candidate) {
 }  // namespace
 
 TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunResult& result) {
-  const Interrupt interrupt;
   TriedFix advice;
-  const double share = result.cpu > cpu_of_a_trial ? cpu_of_a_trial / result.cpu : 1;
+  const double own_work = work_of(scene, result);
+  const double share = own_work > own_work_of_a_trial ? own_work_of_a_trial / own_work : 1;
   RunOptions trial_options;
   trial_options.from = options.from;
   if (share < 1) {
@@ -168,11 +169,10 @@ TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunRes
     // A cure of what is not yet ill is none.
     Scene begun = scene;
     begun.duration = advice.until;
-    const Trial same = try_out(begun, trial_options, most_cpu_of_a_trial, false);
-    if (!same.done || same.cures) return advice;
+    if (try_out(begun, trial_options, most_work_of_a_trial, false).cures) return advice;
   }
   const bool off = !trajectory_warning(scene, result).empty() || !trajectory_failure(scene, result).empty();
-  double left = most_cpu;
+  double left = most_work;
   for (const Candidate& candidate :
        chooses_method(scene) ? finer_accuracies(scene) : candidates_for(scene, result.failed_step.has_value())) {
     Scene changed = scene;
@@ -181,16 +181,18 @@ TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunRes
     if (advice.until > 0) changed.duration = advice.until;
     const bool changes_step = scene.settings.local_error == 0 && changed.settings.local_error > 0;
     if (changes_step && scene.step_by_options) changed.step = usual_step(changed.duration, true);
-    const double most = std::min(left, most_cpu_of_a_trial);
-    if (!(most > 0) || Interrupt::asked()) break;
+    const double most = std::min(left, most_work_of_a_trial);
+    if (!chooses_method(changed) && work_of_steps(changed) > most) continue;
+    if (!(most > 0)) break;
     const Trial trial = try_out(changed, trial_options, most, off);
-    left -= trial.done ? trial.cpu : most;
+    if (trial.interrupted) break;
+    left -= trial.work;
     advice.tried.push_back(candidate.options + named_with(scene, candidate));
     if (!trial.cures) continue;
     advice.options = advice.tried.back();
     advice.share = trial.share, advice.off = trial.off;
     advice.steps = trial.steps, advice.evaluations = trial.evaluations;
-    advice.cost = trial.cpu / std::max(share * result.cpu, 1e-9);
+    advice.cost = trial.work / (share * own_work);
     break;
   }
   return advice;

@@ -10,8 +10,8 @@ namespace cdot {
 bool needs_advice(const Scene& scene, const RunResult& result);
 
 // Searches the candidates in a fixed order for the first whose run over the same time passes without a failure and
-// without such a warning. The trials have a bounded CPU time; a candidate that does not end within it is
-// none.
+// without such a warning. The trials have a bounded work (work.hpp); a candidate that does not end within
+// it is none.
 TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunResult& result);
 
 }  // namespace cdot

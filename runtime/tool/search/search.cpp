@@ -13,6 +13,7 @@
 #include "runtime/tool/search/knobs.hpp"
 #include "runtime/tool/search/simulate.hpp"
 #include "runtime/tool/search/stiffness.hpp"
+#include "runtime/tool/search/work.hpp"
 
 namespace cdot {
 namespace {
@@ -41,11 +42,8 @@ constexpr double converges = 1.5;  // the distances of runs must fall by this, o
 constexpr double surely = 1e-3;    // the first must be below this share of the accuracy
 constexpr int most_idle = 3;       // refinements in a row without that
 
-// --- Prices, in evaluations of an island's accelerations; measured for steps with fixed length.
-constexpr double price_of_step(const IntegratorRow& row) { return row.stiffens ? 4 : row.projects ? 3 : 2; }
-// All runs of a search together: about half a minute. RunOptions::search_cpu ends it where prices deceive.
-constexpr double most_work = 1e8;  // evaluations times bodies
-// Or so many times the price of steps of a millisecond, if
+// --- Prices, in evaluations of an island's accelerations. All runs of a search together may take
+// RunOptions::search_work, or so many times the price of steps of a millisecond, if
 constexpr double most_millisecond_runs = 20;
 // that is more than so many times the price of the first run that has ended with steps of its own: 1e-12 of its local
 // error costs 32 times as much.
@@ -64,10 +62,9 @@ class Search {
  public:
   Search(const Scene& scene, const RunOptions& options, std::string& warnings)
       : scene_(scene), options_(options), warnings_(warnings), yardstick_(scene) {
-    const double bodies = std::max<double>(1, static_cast<double>(scene.bodies.size()));
     const double steps = scene.duration / default_step * yardstick_.mechanisms();
     least_left_ = most_millisecond_runs * price_of_step(row_of(Integrator::euler)) * steps;
-    left_ = most_work / bodies;
+    left_ = options.search_work / work_of_evaluation(scene);
     least_left_ = std::min(left_, least_left_);
   }
 
@@ -89,8 +86,10 @@ class Search {
   bool balanced(const Attempt& attempt) const {
     return attempt.result.balance.energy.share() <= scene_.energy_tolerance;
   }
-  bool out_of_budget() const { return spent_ > options_.search_cpu || left_ <= 0; }
-  bool done() const { return stopped_ || best_.reached || out_of_budget(); }
+  bool out_of_budget() const { return left_ <= 0; }
+  // RunOptions::most_evaluations are those of all runs.
+  double left_for_all() const { return options_.most_evaluations - price_; }
+  bool done() const { return stopped_ || given_up_ || best_.reached || out_of_budget(); }
   bool in_reach(const Attempt& now, double most) const;
   double price_of(const Try& knob) const { return price_of_step(knob.row()) * knob.steps() * yardstick_.mechanisms(); }
   Choice choice_of(const Attempt& attempt) const;
@@ -111,11 +110,10 @@ class Search {
   double stiff_at_start_ = 0;
   double first_price_ = 0;  // foreseen, of explicit steps that became dear; while stiff candidates run
   double stiff_price_ = 0;  // the part of it that stiffness explains
-  bool may_be_dear_ = true, stopped_ = false;
+  bool may_be_dear_ = true, stopped_ = false, given_up_ = false;
   bool sensitive_ = false;  // refined in vain: the motion itself forbids more
   int runs_ = 0;
   double price_ = 0, cpu_ = 0;  // of all runs
-  double spent_ = 0;            // by RunOptions::clock [s]
 };
 
 // Ends early, by Attempt::foreseen, where it will not agree with `judged_by`.
@@ -134,11 +132,11 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt* judged_by) 
   if (may_be_dear_) options.diagnose_times = {2 * solved.duration};  // only if the run is stopped
   options.progress = options_.progress;
   options.doing = name_of(knob) + ": ";
-  const double interval = solved.duration / knob.intervals, began = options_.clock();
+  options.most_evaluations = std::min(left_for_all(), knob.adaptive() ? most : infinity);
+  const double interval = solved.duration / knob.intervals;
   options.look = [&](const Frame& frame, const StepCounts& counts) {
     if (std::abs(frame.time - static_cast<double>(attempt.frames.size()) * interval) < 1e-6 * interval)
       attempt.frames.push_back(frame);
-    if (spent_ + options_.clock() - began > options_.search_cpu) return false;
     if (!knob.adaptive()) return true;
     if (judged_by && (attempt.foreseen = foreseen_distance(yardstick_, solved.duration, *judged_by, attempt)) > 0)
       return false;
@@ -160,7 +158,7 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt* judged_by) 
   ++runs_;
   may_be_dear_ = false;
   price_ += attempt.price, left_ -= attempt.price, cpu_ += result.cpu;
-  spent_ += options_.clock() - began;
+  given_up_ = left_for_all() < 0;
   return attempt;
 }
 
@@ -256,6 +254,8 @@ void Search::try_candidate(Integrator integrator, double most) {
     knob = begun_.next, last = std::move(begun_.last), idle = begun_.idle;
   while (knob && !done() && !sensitive_) {
     if (!knob->adaptive() && spent + price_of(*knob) > most) break;
+    given_up_ = !knob->adaptive() && price_of(*knob) > left_for_all();
+    if (given_up_) break;
     const bool judged = may_end_early && last.whole && last.result.counts.rescued == 0;
     Attempt now = attempt(*knob, most - spent, judged ? &last : nullptr);
     spent += now.price;
@@ -318,12 +318,13 @@ RunResult Search::run() {
   const Choice choice = choice_of(best_);
   if (!best_.full || !options_.from.empty()) {
     std::string ignored;
-    if (!stopped_) result = run_once(solved_by(choice, scene_), options_, ignored);
+    if (!stopped_ && !given_up_) result = run_once(solved_by(choice, scene_), options_, ignored);
   } else if (options_.row) {
     for (const Frame& row : best_.rows) options_.row(row);
   }
   result.choice = choice;
   result.interrupted |= stopped_;
+  result.stopped |= given_up_;
   return result;
 }
 

@@ -259,27 +259,44 @@ TEST(SearchedAccuracy, OfEvenMotionsComesByEqualSteps) {
   EXPECT_EQ(other.choice->integrator, Integrator::dop853);
 }
 
-// A clock that ticks when it is read. The search reads it at every interval: the second run is ended before its end.
+// Two runs reach the accuracy. With the work of one and a half, the second ends early and the first is delivered.
 TEST(SearchedAccuracy, EndsAtItsBudgetAndSaysSo) {
-  static int ticks;
-  constexpr int budget = intervals_of_own_steps;  // the first run is looked at less often
   const Scene scene = scene_named("double_pendulum");
   std::string warnings;
-  const auto with_budget = [&](double search_cpu) {
+  const auto with_budget = [&](double work) {
     RunOptions options;
-    ticks = 0;
-    options.clock = [] { return static_cast<double>(++ticks); };
-    options.search_cpu = search_cpu;
+    options.search_work = work;
     return simulate(scene, options, warnings);
   };
-  EXPECT_TRUE(with_budget(3 * budget).choice->reached);
-  EXPECT_LE(ticks, intervals_of_own_steps * 5 / 4 + 6);  // at 16 and at 64 looks, and at their ends
-  const RunResult result = with_budget(budget);
+  const RunResult whole = with_budget(1e8);
+  const double each = 4 + 2;  // work of an evaluation of two bodies
+  const double first = each * static_cast<double>(whole.choice->evaluations_before),
+               second = each * static_cast<double>(whole.choice->evaluations);
+  EXPECT_TRUE(whole.choice->reached);
+  EXPECT_EQ(whole.choice->runs_before, 1);
+  const RunResult result = with_budget(first + second / 2);
   EXPECT_FALSE(result.choice->reached);
-  EXPECT_LE(ticks, budget + 4);                    // two runs also read it at their ends
+  EXPECT_EQ(static_cast<double>(result.choice->evaluations) * each, first);
+  EXPECT_LE(static_cast<double>(result.choice->evaluations_before) * each, 0.6 * second);
   EXPECT_NEAR(result.time, scene.duration, 1e-9);  // a run that has ended is delivered
   const std::string text = summary_text(scene, result);
   EXPECT_NE(text.find("the search ended at its budget, after "), std::string::npos) << text;
+}
+
+// One step as long as the run takes hundreds of evaluations by the method's own steps. The bound ends it inside.
+TEST(Simulate, ABoundOfEvaluationsHoldsWithinAStep) {
+  Scene scene = scene_named("double_pendulum");
+  scene.settings.integrator = Integrator::dop853, scene.settings.local_error = 1e-10, scene.step = scene.duration;
+  std::string warnings;
+  RunOptions options;
+  const RunResult whole = simulate(scene, options, warnings);
+  EXPECT_FALSE(whole.stopped);
+  ASSERT_GT(whole.counts.evaluations, 650);
+  options.most_evaluations = 300;
+  const RunResult bounded = simulate(scene, options, warnings);
+  EXPECT_TRUE(bounded.stopped);
+  EXPECT_EQ(bounded.counts.rescued, 1);
+  EXPECT_LE(bounded.counts.evaluations, 300 + 50);  // a step of dop853 and the midpoint rule
 }
 
 // A turn about a fixed axis at 1 rad/s has no acceleration: the local error bounds no step of it.
