@@ -164,6 +164,32 @@ void solve_accelerations(WorldData<S>& world, Island<S>& island) {
   refine(world, island, system, rate);
 }
 
+// The error that contradicting joints share in the last solve.
+template <class S>
+double largest_unmet(const System<S>& system) {
+  double largest = 0;
+  for (int r = 0; r < system.rows(); ++r) largest = std::max(largest, std::abs(double(system.unmet(r))));
+  return largest;
+}
+
+// Selected rows are equations, but an end only has to be reached. Where equations contradict each other, as those of
+// two ends of one coordinate, rows leave the selection that are at their end or get beyond it. True if there were some.
+template <class S>
+bool let_go_of_reached_ends(System<S>& system) {
+  constexpr double plain = 1e-3;
+  const double least = plain * largest_unmet(system);
+  if (least == 0) return false;
+  bool any = false;
+  system.each_row([&](int row, const Batch<S>& batch, int i) {
+    const double unmet = double(system.unmet(row));
+    if (system.fixed[row] || is_held(batch, i) || !(std::abs(unmet) > least) || unmet * double(system.b[row]) > 0)
+      return;
+    system.fixed[row] = System<S>::at_lower, system.lambda[row] = 0;
+    any = true;
+  });
+  return any;
+}
+
 // K lambda = -C, q += M^-1 J^T lambda.
 template <class S>
 void move_by_newton(WorldData<S>& world, Island<S>& island, System<S>& system) {
@@ -171,20 +197,16 @@ void move_by_newton(WorldData<S>& world, Island<S>& island, System<S>& system) {
   Bodies<S>& all = world.bodies;
   load_errors(system, T(-1));
   system.solve();
+  if (let_go_of_reached_ends(system)) {
+    system.factor();
+    system.solve();
+  }
   exert_correction(world, island, system, all.increment.data());
   for (int i : island.bodies) {
     all.pose[i] = S::moved(all.pose[i], all.increment[i]);
     all.displacement[i] = S::sum(all.displacement[i], all.increment[i], T(1));
     all.increment[i] = {};
   }
-}
-
-// The error that contradicting joints share in the last solve.
-template <class S>
-double largest_unmet(const System<S>& system) {
-  double largest = 0;
-  for (int r = 0; r < system.rows(); ++r) largest = std::max(largest, std::abs(double(system.unmet(r))));
-  return largest;
 }
 
 // A start may miss joints that nearly contradict each other. Where a round would move bodies too far, the rows that ask

@@ -63,8 +63,10 @@ typename S::Scalar round_off_of(const WorldData<S>& world, const Island<S>& isla
 template <class S>
 bool stays_misfit(const WorldData<S>& world, const Island<S>& island, typename S::Scalar error) {
   using T = typename S::Scalar;
-  // Round-off of floats leaves errors that are to be corrected, or a slack bridge sags: larger ones are misfits.
-  constexpr T unchanged = T(1e-9), of_round_off = T(1) / 16, above_round_off = T(by_precision<T>(4, 0));
+  // Round-off of floats leaves errors that are to be corrected, or a slack bridge sags: larger ones are misfits. Where
+  // rows are redundant, so are those of its own size.
+  constexpr T unchanged = T(1e-9), of_round_off = T(1) / 16;
+  const T above_round_off = T(island.redundant_rows > 0 ? by_precision<T>(0.25, 0) : by_precision<T>(4, 0));
   const T left = island.residual;
   if (!(left > converged<T> * island.scale)) return false;
   const T round_off = round_off_of(world, island);

@@ -97,5 +97,19 @@ TEST(Contradiction, OfADoorOnCrookedHingesIsLeast) {
   }
 }
 
+// A bob flies past two ends of one coordinate in a step: at 1.4 m a rope ends, at 1.3 m a limit of its length. As
+// equations they contradict each other, as ends they do not: the nearer one holds.
+TEST(Contradiction, OfTwoEndsOfOneLengthIsNone) {
+  Settings s = settings(Solver::direct);
+  s.integrator = Integrator::euler;
+  World<double> world(s);
+  const int bob = world.add_body({.x = 1.25, .vy = 30, .mass = 1, .inertia = 0.1});
+  const int rope = world.add_joint({"rope", {world.ground(), bob}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {1.4}}}, {}});
+  add_limit(world, rope, "length", {.lower = 0.2, .upper = 1.3});
+  ASSERT_TRUE(world.step(0.03));
+  EXPECT_LE(std::hypot(world.pose(bob).x, world.pose(bob).y), 1.3 + 1e-12);
+  EXPECT_LE(world.worst_passed_end().by, 1e-12);
+}
+
 }  // namespace
 }  // namespace cdot::test
