@@ -2,52 +2,16 @@
 
 #include <atomic>
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
 #include <mutex>
 #include <sstream>
-#include <sys/wait.h>
 #include <thread>
-#include <unistd.h>
+
+#include "runtime/tool/compiled/compiler.hpp"
 
 namespace cdot::compile {
 namespace {
-
-namespace fs = std::filesystem;
-
-struct Ran {
-  bool well = false;
-  std::string output;  // of both streams
-};
-
-Ran shell(const std::string& command) {
-  Ran ran;
-  FILE* const pipe = popen((command + " 2>&1").c_str(), "r");
-  if (!pipe) return ran;
-  char part[4096];
-  for (std::size_t n; (n = fread(part, 1, sizeof part, pipe)) > 0;) ran.output.append(part, n);
-  ran.well = pclose(pipe) == 0;
-  return ran;
-}
-
-// A folder that is removed at the end.
-class Folder {
- public:
-  Folder() : path_(fs::temp_directory_path() / fmt::format("cdot_bill_{}", getpid())) { fs::create_directories(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  fs::path path_;
-};
 
 // The states of the whole scene, one after the other.
 constexpr const char* whole_program = R"(#include "{0}"
@@ -84,10 +48,7 @@ int main() {{
 
 class Bench {
  public:
-  Bench() : compiler_(std::getenv("CXX") ? std::getenv("CXX") : "c++") {
-    compiles_ = shell("command -v " + compiler_).well && shell("command -v size").well;
-    counts_ = compiles_ && shell("command -v valgrind").well;
-  }
+  Bench() : compiles_(has_program(compiler_) && has_program("size")), counts_(compiles_ && has_program("valgrind")) {}
   bool compiles() const { return compiles_; }
   bool counts() const { return counts_; }
   const std::string& compiler() const { return compiler_; }
@@ -121,7 +82,7 @@ class Bench {
     std::ofstream(name + ".cpp") << fmt::format(fmt::runtime(text), name + ".hpp", source.struct_name, measured_steps);
     const Ran built = shell(
         fmt::format("{0} {1} {3} -ffunction-sections -c {2}.cpp -o {2}.o", compiler_, measured_options, name, option));
-    if (!built.well) error = built.output.substr(0, built.output.find('\n'));
+    if (!built.well) error = first_line(built.output);
     return built.well;
   }
 
@@ -141,9 +102,9 @@ class Bench {
     return bytes;
   }
 
-  std::string compiler_;
-  bool compiles_ = false, counts_ = false;
-  Folder folder_;
+  std::string compiler_ = compiler_name();
+  bool compiles_, counts_;
+  ScratchFolder folder_;
 };
 
 }  // namespace
@@ -152,9 +113,7 @@ std::vector<Measured> measure(const std::vector<Source>& sources, double seconds
   const Bench bench;
   std::vector<Measured> all(sources.size());
   if (!bench.compiles()) {
-    notes.push_back(fmt::format(
-        "bytes of code and instructions are not measured: there is no compiler {}. Fix: install g++, or set CXX",
-        bench.compiler()));
+    notes.push_back("bytes of code and instructions are not measured: " + no_compiler());
     return all;
   }
   if (!bench.counts()) notes.push_back("instructions are not counted: there is no valgrind. Fix: install valgrind");

@@ -74,6 +74,7 @@ const std::vector<std::string> rooms = {
     "runtime/tool/scene",
     "runtime/tool/watch",  // ranks and concerns along a run
     "runtime/tool/run",
+    "runtime/tool/compiled",  // scenes by the machine's compiler
     "runtime/tool/search", // many runs of a scene: for an accuracy, for advice
     "runtime/tool/viewer", "runtime/tool/accuracy",
     "runtime/tool/import", // robot descriptions to scenes

@@ -16,6 +16,7 @@
 namespace cdot {
 namespace {
 
+constexpr double compiler_share = 1.0 / 3;   // of the budget, at most, for each method that is compiled
 constexpr double reference_share = 1.0 / 9;  // of the budget, at most, for each of three methods of a reference
 
 Fingerprint fingerprint_of(const Scene& scene, const AccuracyOptions& options) {
@@ -73,6 +74,17 @@ std::vector<Searched> searched(const AccuracyReport& report, double budget, cons
   return all;
 }
 
+// The frontier of some ways, with indices into all answers.
+std::vector<std::size_t> frontier_in(const AccuracyReport& report, bool (*chosen)(const Way& way)) {
+  std::vector<CostedError> costs;
+  std::vector<std::size_t> numbers;
+  for (std::size_t k = 0; k < report.answers.size(); ++k)
+    if (chosen(report.answers[k].way)) costs.push_back(report.costs[k]), numbers.push_back(k);
+  std::vector<std::size_t> frontier = frontier_of(costs, report.reference.resolution(), noticeable);
+  for (std::size_t& k : frontier) k = numbers[k];
+  return frontier;
+}
+
 // Warnings about the start of a scene. All ways share them.
 std::string warnings_of(const Scene& scene) {
   std::string warnings;
@@ -83,18 +95,25 @@ std::string warnings_of(const Scene& scene) {
 }  // namespace
 
 AccuracyReport report_of(const Scene& scene, const SweepOptions& options, const SweepState& state) {
-  AccuracyReport report{
-      scene, state.reference, static_cast<int>(options.ways.size()), options.rounds, {}, {}, {}, {}, {}, {}};
+  AccuracyReport report;
+  report.scene = scene;
+  report.reference = state.reference;
+  report.ways = static_cast<int>(options.ways.size());
+  report.rounds = options.rounds;
   report.answers = answers_of(state, options.ways);
   report.failures = failures_of(state, options.ways);
   report.costs = costs_of(report.answers, state.reference);
-  report.frontier = frontier_of(report.costs, state.reference.resolution(), noticeable);
-  report.advice = advice_from(report.costs, report.frontier);
+  report.frontier = frontier_in(report, [](const Way&) { return true; });
+  report.frontier_of_world = frontier_in(report, [](const Way& way) { return way.lanes == 0; });
+  report.advice = advice_from(report.costs, report.frontier_of_world);
+  report.compiled = advice_from(report.costs, frontier_in(report, [](const Way& way) { return way.lanes == 1; }));
+  report.in_lanes = advice_from(report.costs, frontier_in(report, [](const Way& way) { return way.lanes > 1; }));
+  if (options.compiled) report.left_out = options.compiled->left_out();
   return report;
 }
 
 AccuracyOutcome measure_accuracy(const Scene& scene, const AccuracyOptions& options) {
-  const SweepOptions ways = chosen(options);
+  SweepOptions ways = chosen(options);
   const std::string output = output_of(scene, options), state_path = output + ".state.json";
   const Fingerprint fingerprint = fingerprint_of(scene, options);
   SweepState state;
@@ -109,6 +128,14 @@ AccuracyOutcome measure_accuracy(const Scene& scene, const AccuracyOptions& opti
     state.reference = options.reference.empty() ? make_reference_run(scene, effort_of(options), stop)
                                                 : read_reference_run(options.reference, scene);
     if (stop()) state.reference = {};  // half of one is none
+  }
+  std::optional<CompiledScenes> compiled;
+  if (!stop()) {
+    SceneCompiler compiler = scene_compiler_beside_program();
+    compiler.cpu = compiler_share * ways.budget;
+    compiled.emplace(scene, ways.ways, compiler, [&](const std::string& what) { line.show(what); });
+    ways.compiled = &*compiled;
+    if (ways.ways.empty()) throw Error("no way is left: " + fmt::format("{}", fmt::join(compiled->left_out(), "; ")));
   }
   std::optional<double> first_used;
   const auto grown = [&](double used, double planned, const std::string& doing) {

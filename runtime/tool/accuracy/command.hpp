@@ -31,9 +31,12 @@ struct AccuracyReport {
   ReferenceRun reference;
   int ways = 0, rounds = 0;
   std::vector<Point> answers, failures;
-  std::vector<CostedError> costs;     // of the answers
-  std::vector<std::size_t> frontier;  // indices into the answers, ascending by cost
-  std::vector<Advice> advice;
+  std::vector<CostedError> costs;  // of the answers
+  // Indices into the answers, ascending by cost: of all ways, and of those of a World.
+  std::vector<std::size_t> frontier, frontier_of_world;
+  std::vector<Advice> advice;              // from the ways of a World
+  std::vector<Advice> compiled, in_lanes;  // from those of a compiled scene, alone and eight at a time
+  std::vector<std::string> left_out;       // reasons why ways were not compiled
   std::vector<Searched> searched;
 };
 AccuracyReport report_of(const Scene& scene, const SweepOptions& options, const SweepState& state);

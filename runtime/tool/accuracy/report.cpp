@@ -1,6 +1,7 @@
 // The results of a sweep -> text, CSV, JSON and a picture.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 
 #include <cdot/methods.hpp>
@@ -24,7 +25,7 @@ double step_of(const AccuracyReport& report, const Point& point) {
 std::string frontier_text(const AccuracyReport& report) {
   std::string text = fmt::format("\n  {:>8}  {:>9} {:>6}  {:>8} {:>8} {:>10}  {}\n", "error", "us CPU/s", "+-", "|C|",
                                  "|Cdot|", "energy [J]", "the frontier: nothing is cheaper and more accurate");
-  for (const std::size_t k : report.frontier) {
+  for (const std::size_t k : report.frontier_of_world) {
     const Point& point = report.answers[k];
     text += fmt::format("  {:8.1e}  {:9.4g} {:4.0f} %  {:8.1e} {:8.1e} {:10.1e}  {}\n", report.costs[k].error,
                         1e6 * point.cost(), 100 * point.spread(), point.errors.C, point.errors.Cdot,
@@ -54,7 +55,43 @@ std::string advice_text(const AccuracyReport& report) {
     text += "\n";
     k = last + 1;
   }
-  if (advice.empty()) text += "  no run is accurate to 1e-1\n";
+  if (advice.empty() && report.compiled.empty()) text += "  no run is accurate to 1e-1\n";
+  return text;
+}
+
+const Advice* of_decade(const std::vector<Advice>& all, int decade) {
+  const auto found = std::ranges::find(all, decade, &Advice::decade);
+  return found == all.end() ? nullptr : &*found;
+}
+
+// "3.1 us, 7.2 times less"
+std::string beside_world(const AccuracyReport& report, const Advice& advice) {
+  const double cost = report.answers[advice.point].cost();
+  const Advice* const world = of_decade(report.advice, advice.decade);
+  if (!world) return time_text(cost);
+  const double ratio = report.answers[world->point].cost() / cost;
+  return fmt::format("{}, {:.2g} times {}", time_text(cost), ratio < 1 ? 1 / ratio : ratio,
+                     ratio < 1 ? "more" : "less");
+}
+
+// The gain of compilation at every accuracy, and the ways that could not be compiled.
+std::string compiled_text(const AccuracyReport& report) {
+  std::string text;
+  for (const Advice& advice : report.compiled) {
+    text += fmt::format("    1e{:<4} {}: {}", advice.decade, knob_text(report, report.answers[advice.point]),
+                        beside_world(report, advice));
+    if (const Advice* const lanes = of_decade(report.in_lanes, advice.decade))
+      text +=
+          fmt::format("; each of {} lanes: {}", report.answers[lanes->point].way.lanes, beside_world(report, *lanes));
+    text += "\n";
+  }
+  if (!text.empty())
+    text = fmt::format(
+               "\n  compiled: `cdot compile {} --integrator … --step …`, then {}; per simulated second and mechanism\n",
+               std::filesystem::path(report.scene.file).filename().string(), compiled_by()) +
+           text;
+  if (!report.left_out.empty()) text += "\n  not compiled\n";
+  for (const std::string& reason : report.left_out) text += "    " + reason + "\n";
   return text;
 }
 
@@ -94,6 +131,7 @@ constexpr Column columns_of_way[] = {
     {"drift",       [](auto&, auto& p) { return Json(name_of(drifts, p.way.drift)); }},
     {"iterations",  [](auto&, auto& p) { return Json(sweeps(p.way.solver) ? p.way.iterations : 0); }},
     {"precision",   [](auto&, auto& p) { return Json(name_of(precisions, p.way.single)); }},
+    {"lanes",       [](auto&, auto& p) { return Json(p.way.lanes); }},
     {"step",        [](auto& report, auto& p) { return Json(p.way.adaptive ? 0 : step_of(report, p)); }},
     {"local_error", [](auto&, auto& p) { return Json(knob_at(p.way, p.level).local_error); }},
 };
@@ -191,11 +229,19 @@ std::string accuracy_text(const AccuracyReport& report) {
                   report.reference.times.size(), until(report));
   text += fmt::format("  measured        {} ways: {} runs succeeded, {} failed; medians of {} interleaved rounds\n",
                       report.ways, report.answers.size(), report.failures.size(), report.rounds);
-  return text + frontier_text(report) + advice_text(report) + pasted_text(report) + searched_text(report);
+  return text + frontier_text(report) + advice_text(report) + pasted_text(report) + compiled_text(report) +
+         searched_text(report);
 }
 
 std::string accuracy_json(const AccuracyReport& report) {
-  Json points = Json::array(), failures = points, advice = points;
+  Json points = Json::array(), failures = points, advice = points, compiled = points, left_out = points;
+  for (const auto* const all : {&report.compiled, &report.in_lanes})
+    for (const Advice& a : *all)
+      compiled.push_back({{"error", std::pow(10.0, a.decade)},
+                          {"point", a.point},
+                          {"lanes", report.answers[a.point].way.lanes},
+                          {"cpu_per_second", report.answers[a.point].cost()}});
+  for (const std::string& reason : report.left_out) left_out.push_back(Json(reason));
   for (const Point& point : report.answers) points.push_back(json_of(report, point));
   for (const Point& point : report.failures) failures.push_back(json_of(report, point));
   for (const Advice& a : report.advice) {
@@ -227,6 +273,8 @@ std::string accuracy_json(const AccuracyReport& report) {
       {"frontier", report.frontier},
       {"advice", advice},
       {"searched", searched},
+      {"compiled", compiled},
+      {"not_compiled", left_out},
   };
   return json.dump(2) + "\n";
 }

@@ -54,15 +54,23 @@ Progress progress_of(const Way& way, const SweepState& state, const SweepOptions
   return result;
 }
 
-Point explored(const Scene& scene, const Way& way, int level, const ReferenceRun& reference, double limit,
-               const Stop& stop, bool& stopped) {
-  Point point{way, level, {}, {}, 0, 0, {}};
+struct Next {
+  Way way;
+  Progress progress;
+};
+
+Point explored(const Scene& scene, const Next& next, const ReferenceRun& reference, const SweepOptions& options,
+               double limit, const Stop& stop, bool& stopped) {
+  const Way& way = next.way;
+  Point point{way, next.progress.next_level, {}, {}, 0, 0, {}};
   const double start = cpu_now();
   const Stop too_long = [&] {
     stopped = stop && stop();
     return stopped || cpu_now() - start > limit;
   };
-  const Trajectory trajectory = trajectory_of(scene, way, knob_at(way, level), reference.times, too_long, {}, true);
+  const Knob knob = knob_at(way, point.level);
+  const Trajectory trajectory = way.lanes > 0 ? options.compiled->trajectory(way, knob, reference.times, too_long)
+                                              : trajectory_of(scene, way, knob, reference.times, too_long, {}, true);
   point.explored = trajectory.cpu;
   point.looking = trajectory.looking;
   const bool whole = trajectory.frames.size() == reference.times.size();
@@ -81,11 +89,6 @@ double spent(const SweepState& state, const SweepOptions& options) {
   return sum;
 }
 
-struct Next {
-  Way way;
-  Progress progress;
-};
-
 // The cheapest level left that fits the budget.
 std::optional<Next> next_of(const SweepState& state, const SweepOptions& options) {
   std::optional<Next> next;
@@ -103,7 +106,7 @@ bool explore(const Scene& scene, const SweepOptions& options, SweepState& state,
   while (const auto next = next_of(state, options)) {
     const double left = options.budget - spent(state, options);
     bool stopped = false;
-    Point point = explored(scene, next->way, next->progress.next_level, state.reference, left, hooks.stop, stopped);
+    Point point = explored(scene, *next, state.reference, options, left, hooks.stop, stopped);
     if (stopped) return false;
     state.points.push_back(std::move(point));
     if (hooks.grown) hooks.grown(spent(state, options) / (1 + options.rounds), options.budget, name_of(next->way));
@@ -124,8 +127,10 @@ bool time_in_turns(const Scene& scene, const SweepOptions& options, SweepState& 
       if (!point.failure.empty() || static_cast<int>(point.rounds.size()) > round) continue;
       if (hooks.stop && hooks.stop()) return false;
       bool stopped = false;
-      const double cpu = cpu_of(scene, point.way, knob_at(point.way, point.level), state.reference.times,
-                                [&] { return stopped = hooks.stop && hooks.stop(); });
+      const Stop stop = [&] { return stopped = hooks.stop && hooks.stop(); };
+      const Knob knob = knob_at(point.way, point.level);
+      const double cpu = point.way.lanes > 0 ? options.compiled->cpu(point.way, knob, state.reference.times, stop)
+                                             : cpu_of(scene, point.way, knob, state.reference.times, stop);
       if (stopped) return false;
       point.rounds.push_back(cpu / until);
       done += timed(point, 1);
@@ -182,7 +187,7 @@ std::vector<CostedError> costs_of(const std::vector<Point>& answers, const Refer
 // --- The file of an interrupted sweep.
 
 // The file has these members; a sweep resumes without the others.
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Way, integrator, solver, drift, iterations, single, adaptive)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Way, integrator, solver, drift, iterations, single, adaptive, lanes)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Errors, position, angle, C, Cdot, energy)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Point, way, level, failure, errors, explored, looking, rounds)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BodyState, x, y, angle, vx, vy, w, z, vz, e0, e1, e2, e3, wx, wy, wz)

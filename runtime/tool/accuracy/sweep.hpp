@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/tool/compiled/compiled_scenes.hpp"
 #include "runtime/tool/accuracy/frontier.hpp"
 #include "runtime/tool/accuracy/reference.hpp"
 
@@ -27,7 +28,8 @@ struct SweepOptions {
   std::vector<Way> ways = all_ways();
   double budget = 60;  // of CPU time [s]
   int rounds = 5;
-  int levels = most_levels;  // at most, per way
+  int levels = most_levels;                  // at most, per way
+  const CompiledScenes* compiled = nullptr;  // of the ways with lanes
 };
 
 struct SweepState {

@@ -21,7 +21,7 @@ void add_options(Line& line, Options& options) {
       .shows_default();
   line.add("--rounds", &accuracy.sweep.rounds, "timings per run, interleaved").positive().shows_default();
   line.add("--levels", &accuracy.sweep.levels, "largest number of steps or local errors per way").positive();
-  line.add("--only", &accuracy.only, "only ways with this in their name: direct, rk4, float");
+  line.add("--only", &accuracy.only, "only ways with this in their name: direct, rk4, float, compiled");
   line.add("--reference", &accuracy.reference,
            "a reference trajectory from `simulate -o`; without it, two methods compute one");
   line.add("-o,--output", &accuracy.output,
@@ -34,6 +34,8 @@ void add_options(Line& line, Options& options) {
 int run(const Options& options) {
   AccuracyOptions accuracy = options.accuracy;
   accuracy.progress = progress_shown(options.scene);
+  const std::vector<Way>& compiled = compiled_ways();
+  accuracy.sweep.ways.insert(accuracy.sweep.ways.end(), compiled.begin(), compiled.end());
   const AccuracyOutcome outcome = measure_accuracy(scene_of(options.scene), accuracy);
   if (!outcome.finished) return stopped;
   fmt::print("{}", outcome.out);

@@ -67,6 +67,8 @@ std::string name_of(const Way& way) {
   if (way.adaptive) name += ", adaptive";
   if (way.single) name += ", float";
   if (way.extended) name += ", extended precision";
+  if (way.lanes > 0) name += ", compiled";
+  if (way.lanes > 1) name += fmt::format(", {} lanes", way.lanes);
   return name;
 }
 

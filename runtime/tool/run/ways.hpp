@@ -16,6 +16,7 @@ struct Way {
   bool single = false;    // in float
   bool adaptive = false;  // its knob is the local error instead of the step
   bool extended = false;  // in extended precision: for references only
+  int lanes = 0;          // compiled (`cdot compile`), so many mechanisms at once; 0: a World
   bool operator==(const Way&) const = default;
 };
 
