@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <limits>
-#include <memory>
 #include <set>
 
 #include <cdot/methods.hpp>
@@ -137,11 +136,6 @@ std::string build(const Scene& scene, Integrator integrator, const ScratchFolder
   return fmt::format("{} failed: {}", compiler_name(), first_line(built.output));
 }
 
-using StatePtr = std::unique_ptr<void, void (*)(void*)>;
-StatePtr state_of(const CompiledStep& step) { return {step.make(), step.destroy}; }
-
-std::size_t numbers_of(Dimension dimension) { return state_columns(dimension).size(); }
-
 }  // namespace
 
 const std::vector<Way>& compiled_ways() {
@@ -202,41 +196,47 @@ void CompiledScenes::load(const std::string& library, Integrator integrator) {
   for (const int lanes : {1, most_lanes}) steps_[{integrator, lanes}] = *static_cast<const CompiledStep*>(step(lanes));
 }
 
-Frame CompiledScenes::frame_of(double time, const std::vector<double>& numbers) const {
-  Frame frame = start_;
+CompiledRun::CompiledRun(const CompiledScenes& scenes, const Way& way)
+    : scenes_(scenes),
+      step_(scenes.steps_.at({way.integrator, way.lanes})),
+      state_(step_.make(), step_.destroy),
+      numbers_(scenes.moving_.size() * state_columns(scenes.dimension_).size() + 3) {}
+
+void CompiledRun::look() { step_.look(state_.get(), numbers_.data()); }
+
+Frame CompiledRun::frame(double time) {
+  look();
+  Frame frame = scenes_.start_;
   frame.time = time;
-  std::size_t next = 0;
-  for (const std::size_t body : moving_)
-    for (const StateColumn& column : state_columns(dimension_)) frame.bodies[body].*column.number = numbers[next++];
-  frame.energy = numbers[next];
+  auto number = numbers_.begin();
+  for (const std::size_t body : scenes_.moving_)
+    for (const StateColumn& column : state_columns(scenes_.dimension_)) frame.bodies[body].*column.number = *number++;
+  frame.energy = energy();
   return frame;
 }
 
 Trajectory CompiledScenes::trajectory(const Way& way, const Knob& knob, const std::vector<double>& times,
                                       const Stop& stop) const {
-  const CompiledStep& step = step_of(way);
-  const StatePtr state = state_of(step);
+  CompiledRun run(*this, way);
   Trajectory trajectory;
-  std::vector<double> numbers(moving_.size() * numbers_of(dimension_) + 3);
-  const double* const checked = numbers.data() + numbers.size() - 3;  // energy, |C|, |dC/dt|
   trajectory.least_energy = std::numeric_limits<double>::infinity();
   trajectory.most_energy = -trajectory.least_energy;
   double from = 0;
   for (const double to : times) {
     for (int k = 0; k < knob.steps; ++k) {
       const double start = cpu_now();
-      step.advance(state.get(), (to - from) / knob.steps, 1);
+      run.advance((to - from) / knob.steps);
       const double stepped = cpu_now();
-      step.look(state.get(), numbers.data());
-      trajectory.least_energy = std::min(trajectory.least_energy, checked[0]);
-      trajectory.most_energy = std::max(trajectory.most_energy, checked[0]);
-      trajectory.C = std::max(trajectory.C, checked[1]);
-      trajectory.Cdot = std::max(trajectory.Cdot, checked[2]);
+      run.look();
+      trajectory.least_energy = std::min(trajectory.least_energy, run.energy());
+      trajectory.most_energy = std::max(trajectory.most_energy, run.energy());
+      trajectory.C = std::max(trajectory.C, run.C());
+      trajectory.Cdot = std::max(trajectory.Cdot, run.Cdot());
       trajectory.cpu += stepped - start;
       trajectory.looking += cpu_now() - stepped;
     }
     from = to;
-    const Frame frame = frame_of(to, numbers);
+    const Frame frame = run.frame(to);
     trajectory.finite = finite(frame);
     if (!trajectory.finite) break;
     trajectory.frames.push_back(frame);
@@ -247,15 +247,14 @@ Trajectory CompiledScenes::trajectory(const Way& way, const Knob& knob, const st
 }
 
 double CompiledScenes::cpu(const Way& way, const Knob& knob, const std::vector<double>& times, const Stop& stop) const {
-  const CompiledStep& step = step_of(way);
   double total = 0;
   int runs = 0;
   for (bool stopped = false; !stopped && total < least_measured && runs < most_repeats; ++runs) {
-    const StatePtr state = state_of(step);
+    CompiledRun run(*this, way);
     double from = 0;
     const double start = cpu_now();
     for (const double to : times) {
-      step.advance(state.get(), (to - from) / knob.steps, knob.steps);
+      run.advance((to - from) / knob.steps, knob.steps);
       from = to;
       if ((stopped = stop && stop())) break;
     }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,14 +46,32 @@ class CompiledScenes {
 
  private:
   void load(const std::string& library, Integrator integrator);
-  const CompiledStep& step_of(const Way& way) const { return steps_.at({way.integrator, way.lanes}); }
-  Frame frame_of(double time, const std::vector<double>& numbers) const;
 
+  friend class CompiledRun;
   Dimension dimension_;
   Frame start_;                      // of a World: bodies that do not move stay there
   std::vector<std::size_t> moving_;  // numbers of bodies
   std::map<std::pair<Integrator, int>, CompiledStep> steps_;
   std::vector<std::string> left_out_;
+};
+
+// A run of a compiled scene, which outlives it.
+class CompiledRun {
+ public:
+  CompiledRun(const CompiledScenes& scenes, const Way& way);
+  void advance(double h, int steps = 1) { step_.advance(state_.get(), h, steps); }
+  // Of the first lane; reads energy, C and Cdot anew.
+  Frame frame(double time);
+  void look();
+  double energy() const { return *(numbers_.end() - 3); }  // as these: of the last look [J]
+  double C() const { return *(numbers_.end() - 2); }       // the largest |C| [m], [rad]
+  double Cdot() const { return numbers_.back(); }
+
+ private:
+  const CompiledScenes& scenes_;
+  const CompiledStep& step_;
+  std::unique_ptr<void, void (*)(void*)> state_;
+  std::vector<double> numbers_;
 };
 
 // By each method that `cdot compile` writes: alone, and eight at a time.

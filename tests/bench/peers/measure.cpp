@@ -114,7 +114,9 @@ double quantile(std::vector<double> values, double q) {
   return values[k] + (at - below) * (values[k + 1] - values[k]);
 }
 
-double cost(const Point& point) { return point.seconds.empty() ? point.probe : median(point.seconds); }
+double cost(const Point& point) {
+  return (point.seconds.empty() ? point.probe : median(point.seconds)) / point.engine->lanes;
+}
 
 double spread(const Point& point) {
   if (point.seconds.size() < 2) return 0;

@@ -32,7 +32,7 @@ struct Point {
   std::vector<double> seconds;  // CPU seconds of a whole run, per round; empty if not timed
 };
 
-// CPU seconds of a whole run: the median of the rounds, or the probe's time without rounds.
+// CPU seconds of a whole run of one mechanism: the median of the rounds, or the probe's time without rounds.
 double cost(const Point& point);
 // Half the middle half of the rounds, relative to the median.
 double spread(const Point& point);
