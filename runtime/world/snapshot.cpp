@@ -37,10 +37,12 @@ std::uint64_t hash_of_joints(const WorldData<S>& world) {
   return hash.value;
 }
 
-// Hashes the order of rows. Rows of broken joints have changed slots, so it hashes the joint of each block.
+// Hashes the method and the order of rows. Rows of broken joints have changed slots, so it hashes the joint of each
+// block.
 template <class S>
 std::uint64_t hash_of_order(WorldData<S>& world) {
   Hash hash;
+  hash.add(S::dimension), hash.add(sizeof(typename S::Scalar));
   hash.add(world.settings.solver), hash.add(world.settings.integrator), hash.add(world.settings.kernels);
   hash.add(world.island_of);
   for (Island<S>& island : world.islands) {
@@ -69,6 +71,7 @@ Snapshot::Origin origin_of(WorldData<S>& world) {
           hash_of_order(world)};
 }
 
+// Then methods and numbers of bodies and joints are the same as well.
 bool same_hashes(const Snapshot::Origin& a, const Snapshot::Origin& b) {
   return a.bodies == b.bodies && a.joints == b.joints && a.order == b.order;
 }
@@ -118,8 +121,8 @@ struct SnapshotAccess {
   }
 
   template <class S>
-  static bool load(WorldData<S>& world, const Snapshot& from) {
-    if (origin_of(world).order != from.origin_.order || world.block.items != from.items_) return false;
+  static bool load(WorldData<S>& world, const Snapshot& from, std::uint64_t order) {
+    if (order != from.origin_.order || world.block.items != from.items_) return false;
     adopt_state(world, from.bytes_);
     return true;
   }
@@ -128,15 +131,17 @@ struct SnapshotAccess {
   static void restore(WorldData<S>& world, const Snapshot& from) {
     if (from.empty()) throw Error("the snapshot is empty");
     Snapshot::Origin origin = origin_of(world);
-    origin.method = method_of<S>(world.settings);
-    check_origin(from.origin_, origin);
-    if (load(world, from)) return;
+    if (!same_hashes(origin, from.origin_)) {
+      origin.method = method_of<S>(world.settings);
+      check_origin(from.origin_, origin);
+    }
+    if (load(world, from, origin.order)) return;
     Snapshot before;
     save(world, before);
     prepare_as(world, from);
-    if (load(world, from)) return;
+    if (load(world, from, hash_of_order(world))) return;
     prepare_as(world, before);
-    load(world, before);
+    load(world, before, hash_of_order(world));
     throw Error("this is a state of a World whose bodies and joints were added in another order");
   }
 };
