@@ -76,7 +76,7 @@ void book_work(WorldData<S>& world, Island<S>& island);
 enum class Impulses : char {
   euler,         // `lambda` over h; springs and dampers act with the rate at the end of the kick
   dampers,       // `lambda` of springs, which holds their dampers alone
-  rattle_start,  // `correction` over h, without dampers
+  rattle_start,  // `correction` over h, without dampers; forces act at Flow::velocity, as the dampers have left it
   rattle_end,    // `lambda` over h but that of springs, from Flow::velocity on; drag with the rate at begin_kick()
   middle,        // `correction` over h, without dampers and drag; the velocities are the mean of the kick
   end,           // `lambda` of a projection; that of springs holds their dampers

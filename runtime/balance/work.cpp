@@ -262,6 +262,7 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
     const int i = island.bodies[k];
     const auto& from = impulses == Impulses::rattle_end ? island.flow.velocity[k] : start[i];
     mean[i] = impulses == Impulses::middle ? v[i] : S::damped(S::sum(from, v[i], T(1)), T(0.5), T(0.5));
+    if (impulses == Impulses::rattle_start) start[i] = island.flow.velocity[k];
   }
   const bool at_end = impulses == Impulses::euler || impulses == Impulses::soft;
   const auto* const acted = at_end ? v.data() : start.data();

@@ -144,7 +144,8 @@ void drift_with_renewed_directions(WorldData<S>& world, Island<S>& island, typen
   add_corrections(world, island, kept / h);
 }
 
-// Books the first half: at the poses of its start, to which J belongs.
+// Books the first half: at the poses of its start, to which J belongs. Dampers act before the other impulses, but
+// joints work against them: only along the mean of the whole half kick do joints do no work.
 template <class S>
 void book_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
@@ -155,29 +156,19 @@ void book_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   };
   swap_poses();
   look_at_effects(world, island, T(world.time));
+  book_kick(world, island, Impulses::dampers, T(2) * h);
   book_kick(world, island, Impulses::rattle_start, h);
   swap_poses();
 }
 
-// Books the second half, the dampers as if they acted last: the mirror image of the start, where they act first. So the
-// other impulses act from and to velocities without theirs.
+// Books the second half, its mirror image.
 template <class S>
 void book_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   if (!works_now(world, island)) return;
-  Bodies<S>& all = world.bodies;
-  for (int i : island.bodies) all.displacement[i] = all.velocity[i];
-  for (const auto& [batch, begin, end, whole] : island.segments) {
-    if (!batch->law || !batch->law->spring) continue;
-    for (int i = begin * batch->ops->rows; i < end * batch->ops->rows; ++i) batch->rate[i] = -batch->lambda[i];
-    batch->ops->apply(*batch, begin, end, all, batch->rate.data(), all.displacement.data());
-  }
-  const auto swap_velocities = [&] {
-    for (int i : island.bodies) std::swap(all.velocity[i], all.displacement[i]);
-  };
-  swap_velocities();
   book_kick(world, island, Impulses::rattle_end, h);
-  swap_velocities();
-  begin_kick(world, island, all.displacement.data());
+  auto& half = world.bodies.displacement;
+  for (size_t k = 0; k < island.bodies.size(); ++k) half[island.bodies[k]] = island.flow.velocity[k];
+  begin_kick(world, island, half.data());
   book_kick(world, island, Impulses::dampers, h);
 }
 
@@ -192,10 +183,8 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   weigh_springs(world, island);
   begin_kick(world, island);
   push_dampers(world, island, h);
-  book_kick(world, island, Impulses::dampers, h);
   note_start(world, island);
   keep_turns(island);
-  begin_kick(world, island);
   start_half(world, island, h, share);
   const bool by_sweeps = !island.solver->exact;
   if (by_sweeps || !drift_onto_joints(world, island, h)) {
