@@ -67,18 +67,24 @@ class Candidates {
     if (name.size() <= longest_name && std::ranges::none_of(all_, same)) all_.push_back({e, name});
   }
 
-  // No spec has the names of gradients, so they come last.
+  // No spec has the names of gradients and axes, so they come last.
   bool by_gradients(Expr e) const {
     const std::vector<Expr> parts = topological(std::span(&e, 1));
-    return std::ranges::any_of(
-        rows_, [&](const ScalarRow& row) { return std::ranges::find_first_of(parts, row.gradients) != parts.end(); });
+    return std::ranges::any_of(rows_, [&](const ScalarRow& row) {
+      return std::ranges::find_first_of(parts, row.gradients) != parts.end() ||
+             std::ranges::find_first_of(parts, row.axes) != parts.end();
+    });
   }
 
   std::string gradients_in(Expr e) const {
     std::string words;
-    for (const ScalarRow& row : rows_)
-      for (const Expr n : row.gradients)
-        if (shows(e, n)) words += (words.empty() ? "" : ", ") + n->name + " the gradient of " + row.name;
+    const auto add = [&](Expr n, const std::string& meaning) {
+      if (shows(e, n)) words += (words.empty() ? "" : ", ") + n->name + meaning;
+    };
+    for (const ScalarRow& row : rows_) {
+      for (const Expr n : row.gradients) add(n, " the gradient of " + row.name);
+      for (const Expr axis : row.axes) add(axis, " the axis of " + row.name);
+    }
     return words.empty() ? "" : " (" + words + ")";
   }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "derive/expression/functions.hpp"
 #include "derive/language/joint.hpp"
 
 namespace cdot::derive {
@@ -44,6 +45,7 @@ struct ScalarRow {
   Expr gamma_by_entries;          // the same, entry of J by entry
   std::vector<JacobianEntry> J;   // one per body
   std::vector<Expr> gradients{};  // vectors that J repeats, by names of their own (gradient.hpp)
+  std::vector<Expr> axes{};       // those of angular velocities
 };
 
 std::vector<std::vector<Expr>> columns_of(std::span<const ScalarRow> rows);  // row by row
@@ -114,6 +116,11 @@ struct AngleBetween {
   Expr from, to;
 };
 std::optional<AngleBetween> angle_between(Expr e);
+// An arc tangent that is the twist of a frame against another about their x, y or z axes, as such; empty for others.
+Expr twist_of(Expr e);
+// True if y^2 + x^2 = 1 in e = atan2(y, x), whatever the pose.
+bool is_on_unit_circle(Expr e);
+inline bool is_root(Expr e) { return e->kind == Kind::norm || (e->kind == Kind::function && e->fn == Fn::sqrt); }
 
 // Terms r x t + s x t as (r + s) x t, and likewise for dot: shorter, and how people write.
 Expr collected(Expr e);

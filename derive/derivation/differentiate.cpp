@@ -91,6 +91,7 @@ ScalarRow derive_row(const Joint& joint, ScalarRow row, Expr expression, int imm
   for (JacobianEntry& entry : row.J) entry.w = collected(entry.w);
   if (!at_velocity_level && has_long_lever(row))
     shorten_lever_of_carrier(joint, row, whole_jacobian(joint, row, immovable));
+  name_axes(joint, row);
   if (immovable < 0) {
     row.gamma = -time_derivative(row.Cdot, joint);
     row.gamma_by_entries = gamma_by_entries(joint, row);

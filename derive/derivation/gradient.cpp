@@ -77,15 +77,6 @@ std::string free_name(const Joint& joint, const std::string& wish) {
   return name;
 }
 
-// n, n_track, n_1 of an unnamed row C1, grad_slide of a coordinate; with the body where a row has several.
-std::string wished_name(const Joint& joint, const ScalarRow& row, std::size_t body, bool several) {
-  const bool unnamed = row.name.size() > 1 && row.name[0] == 'C' && row.name[1] >= '0' && row.name[1] <= '9';
-  const bool alone = row.row != nullptr && joint.rows.size() == 1 && row.component < 0;
-  const std::string letter = row.row == nullptr ? "grad_" : "n_";  // n_x is a component of n
-  std::string name = alone ? "n" : letter + (unnamed ? row.name.substr(1) : row.name);
-  return several ? name + "_" + joint.bodies[body] : name;
-}
-
 class Gradients {
  public:
   Gradients(const Joint& joint, ScalarRow& row) : joint_(joint), row_(row) {}
@@ -97,7 +88,8 @@ class Gradients {
     for (const auto& [e, body] : found_) {
       if (e->name.empty()) {
         const Expr negative = -e;
-        e->pool->name(e, free_name(joint_, wished_name(joint_, row_, body, found_.size() > 1)), true);
+        const std::string suffix = found_.size() > 1 ? "_" + joint_.bodies[body] : "";
+        e->pool->name(e, free_name_of_row(joint_, row_, {"n", "n_", "grad_", suffix}), true);
         named_.emplace(&*negative, -e);
       }
       row_.gradients.push_back(e);
@@ -207,6 +199,14 @@ class Gradients {
 };
 
 }  // namespace
+
+std::string free_name_of_row(const Joint& joint, const ScalarRow& row, NamesOfRow names) {
+  const bool unnamed = row.name.size() > 1 && row.name[0] == 'C' && row.name[1] >= '0' && row.name[1] <= '9';
+  const bool alone = row.row != nullptr && joint.rows.size() == 1 && row.component < 0;
+  const std::string prefix = row.row == nullptr ? names.of_coordinate : names.of_row;  // n_x is a component of n
+  const std::string name = alone ? names.alone : prefix + (unnamed ? row.name.substr(1) : row.name);
+  return free_name(joint, name + names.suffix);
+}
 
 void name_gradients(const Joint& joint, ScalarRow& row) { Gradients(joint, row).name(); }
 

@@ -11,6 +11,17 @@ namespace cdot::derive {
 // `row.gradients` lists them. The name is n if the joint has one row, else n_<row>; of a coordinate grad_<coordinate>.
 void name_gradients(const Joint& joint, ScalarRow& row);
 
+// Names the factor that the angular velocities of two bodies in space share up to its sign and a number, in
+//   J = [0 | axis' | 0 | -axis'],
+// unless it is short. `row.axes` lists it. The name is axis if the joint has one row, else axis_<row>.
+void name_axes(const Joint& joint, ScalarRow& row);
+
+// A name for a quantity of the row, which no other of the joint has: `alone` if the joint has one row.
+struct NamesOfRow {
+  std::string alone, of_row, of_coordinate, suffix{};
+};
+std::string free_name_of_row(const Joint& joint, const ScalarRow& row, NamesOfRow names);
+
 // True if the factor of an angular velocity is a sum, but not of levers u × n with the n of the velocity.
 bool has_long_lever(const ScalarRow& row);
 // Of a row between two bodies: a turn of both about the centre of one changes no C of their relative pose. From the J

@@ -172,7 +172,10 @@ class RateRules {
 
   // The rate about the axis halfway between the two x axes.
   Value twist_rule(Expr e) {
-    algebra_.rule("rate of a twist of g against f: (f.x + g.x) · (w_g - w_f)/(1 + f.x · g.x)");
+    const char* rules[] = {"rate of a twist of g against f: (f.x + g.x) · (w_g - w_f)/(1 + f.x · g.x)",
+                           "rate of a twist of g against f about y: (f.y + g.y) · (w_g - w_f)/(1 + f.y · g.y)",
+                           "rate of a twist of g against f about z: (f.z + g.z) · (w_g - w_f)/(1 + f.z · g.z)"};
+    algebra_.rule(rules[e->pool->axis_of(e->args[0]).index]);
     const auto spin = [this](Expr axis) { return moves(axis) ? body_of(axis).w : zero_vector(*axis->pool); };
     const Expr f = e->args[0], g = e->args[3];
     return operand(dot(f + g, spin(g) - spin(f)) / (e->pool->number(1) + dot(f, g)));
@@ -189,10 +192,22 @@ class RateRules {
 
   Value atan2_rule(Expr e) {
     if (const std::optional<AngleBetween> angle = angle_between(e)) return angle_rule(*angle);
-    algebra_.rule("chain rule: atan2(y, x)_dot = (x y_dot - y x_dot)/(x^2 + y^2)");
+    if (const Expr twist = twist_of(e)) return rate(twist);
+    const bool on_unit_circle = !stretches() && is_on_unit_circle(e);
+    if (on_unit_circle && is_root(e->args[1])) {
+      algebra_.rule("chain rule: atan2(y, x)_dot = y_dot/x, since x^2 + y^2 = 1");
+      return rate(e->args[0]) / operand(e->args[1]);
+    }
+    if (on_unit_circle && is_root(e->args[0])) {
+      algebra_.rule("chain rule: atan2(y, x)_dot = -x_dot/y, since x^2 + y^2 = 1");
+      return -(rate(e->args[1]) / operand(e->args[0]));
+    }
+    algebra_.rule("chain rule: atan2(y, x)_dot = ",
+                  on_unit_circle ? "x y_dot - y x_dot, since x^2 + y^2 = 1" : "(x y_dot - y x_dot)/(x^2 + y^2)");
     const Value y = operand(e->args[0]), x = operand(e->args[1]);
     const Value y_dot = rate(e->args[0]), x_dot = rate(e->args[1]);
-    return (x * y_dot - y * x_dot) / (pow(x, 2) + pow(y, 2));
+    const Value turned = x * y_dot - y * x_dot;
+    return on_unit_circle ? turned : turned / operand(pow(e->args[1], 2) + pow(e->args[0], 2));
   }
 
   // The angle from u to v grows as v turns and falls as u turns; in space by what turns v against u about their common

@@ -2,6 +2,7 @@
 #include <map>
 
 #include "derive/derivation/rate_rules.hpp"
+#include "derive/numbers/modular.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -62,6 +63,32 @@ std::optional<AngleBetween> angle_between(Expr e) {
   if (!fits) return {};
   const Expr u = y.e->args[0], v = y.e->args[1];
   return y.coef == Rational(1) ? AngleBetween{u, v} : AngleBetween{v, u};
+}
+
+Expr twist_of(Expr e) {
+  if (e->kind != Kind::function || e->fn != Fn::atan2) return {};
+  const Expr product = terms_of(e->args[1]).front().e;
+  if (product->kind != Kind::dot) return {};
+  const Pool& pool = *e->pool;
+  for (const bool swapped : {false, true}) {
+    const Triad* f = pool.axis_of(product->args[swapped ? 1 : 0]).triad;
+    const Triad* g = pool.axis_of(product->args[swapped ? 0 : 1]).triad;
+    if (f == nullptr || g == nullptr || f == g) return {};
+    const auto rotated = [](const Triad& t, std::size_t k) { return Triad{t[k], t[(k + 1) % 3], t[(k + 2) % 3]}; };
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Expr about = twist(rotated(*f, k), rotated(*g, k));
+      if (twist_as_atan2(about) == e) return about;
+    }
+  }
+  return {};
+}
+
+bool is_on_unit_circle(Expr e) {
+  const auto square = [](Expr x) {
+    if (!is_root(x)) return pow(x, 2);
+    return x->kind == Kind::norm ? dot(x->args[0], x->args[0]) : x->args[0];
+  };
+  return difference_modulo_prime(square(e->args[0]) + square(e->args[1]), e->pool->number(1)) == Nullity::zero;
 }
 
 Expr time_derivative(Expr e, const Joint& joint, const Moving& motion) { return Simplifying(joint, motion).rate(e); }

@@ -79,6 +79,17 @@ PairTerm pair_term(const Term& term) {
   return out;
 }
 
+// c1 r1 x t + c2 r2 x t = (c1 r1 + c2 r2) x t, vectors with factors that differ.
+bool merge_weighted(const PairTerm& a, const PairTerm& b, Term& merged) {
+  const Expr p = a.coef * a.rest, q = b.coef * b.rest;
+  if (a.v == b.v) merged = {1, cross(p * a.u + q * b.u, a.v)};
+  else if (a.u == b.u) merged = {1, cross(a.u, p * a.v + q * b.v)};
+  else if (a.v == b.u) merged = {1, cross(p * a.u - q * b.v, a.v)};
+  else if (a.u == b.v) merged = {1, cross(a.u, p * a.v - q * b.u)};
+  else return false;
+  return true;
+}
+
 // r1 x t + r2 x t = (r1 + r2) x t: two products fewer, and the form that people write. Likewise for dot.
 bool merge_pair(std::vector<Term>& terms) {
   for (std::size_t i = 0; i < terms.size(); ++i) {
@@ -86,7 +97,12 @@ bool merge_pair(std::vector<Term>& terms) {
     if (a.kind == Kind::number) continue;
     for (std::size_t j = i + 1; j < terms.size(); ++j) {
       const PairTerm b = pair_term(terms[j]);
-      if (b.kind != a.kind || b.rest != a.rest || abs(b.coef) != abs(a.coef)) continue;
+      if (b.kind != a.kind) continue;
+      if (b.rest != a.rest || abs(b.coef) != abs(a.coef)) {
+        if (!terms[i].e->vector || !merge_weighted(a, b, terms[i])) continue;
+        terms.erase(terms.begin() + static_cast<std::ptrdiff_t>(j));
+        return true;
+      }
       const Rational swap = a.kind == Kind::cross ? Rational(-1) : Rational(1);
       const Rational sign = b.coef / a.coef;
       Expr left, right;

@@ -179,6 +179,7 @@ struct Quantity {
     });
     tell_slip(entry, &part, item, before, sides,
               [&](int r, int c) { return confirm(r, c, generated.at(r, c), published.at(r, c)); });
+    if (item.what == "K") merge_diagonal(entry, before);
   }
 
   Expr scale(int r) const { return part.scale[static_cast<std::size_t>(r)]; }

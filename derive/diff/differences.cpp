@@ -224,6 +224,22 @@ std::vector<Difference> differences_of(Entry& entry, const Sides& sides,
   return all;
 }
 
+void merge_diagonal(Entry& entry, std::size_t from) {
+  std::vector<Difference>& all = entry.verdict.differences;
+  for (std::size_t i = from; i < all.size(); ++i) {
+    std::vector<std::string> rows = {all[i].row};
+    const std::string reason = reason_of(all[i]);
+    if (all[i].row != all[i].column) continue;
+    for (std::size_t j = all.size(); --j > i;) {
+      if (all[j].row != all[j].column || reason_of(all[j]) != reason) continue;
+      rows.insert(rows.begin() + 1, all[j].row);
+      all.erase(all.begin() + static_cast<std::ptrdiff_t>(j));
+    }
+    if (rows.size() > 1)
+      all[i].sentence = fmt::format("{}, rows {} of the diagonal: {}", all[i].what, listed(rows), reason);
+  }
+}
+
 void compare(Entry& entry, const Sides& sides, const std::function<Difference(int, int)>& difference) {
   std::vector<bool> wrong(sides.generated.entries.size());
   for (Difference& d : differences_of(entry, sides, difference, wrong))

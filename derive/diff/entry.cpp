@@ -286,6 +286,24 @@ Entry read_entry(const HandEntryAst& ast, const HandFile& file, const ReadResult
   return entry;
 }
 
+namespace {
+
+// Axes have names that no spec has.
+void tell_axes(Entry& entry, const std::vector<Part>& parts) {
+  for (const Part& part : parts)
+    for (const ScalarRow& row : part.rows)
+      for (const Expr axis : row.axes) {
+        const bool shown = std::ranges::any_of(entry.verdict.differences, [&](const Difference& d) {
+          return (d.sentence + d.generated).find(axis->name) != std::string::npos;
+        });
+        if (shown)
+          entry.verdict.remarks.push_back(fmt::format("{} is the axis about which {} turns: see `cdot explain {}`",
+                                                      axis->name, row.name, entry.joint.name));
+      }
+}
+
+}  // namespace
+
 Judgement judge(Entry entry) {
   Judgement& verdict = entry.verdict;
   if (!entry.hand.listed.empty()) {
@@ -307,6 +325,7 @@ Judgement judge(Entry entry) {
   }
   for (std::string& remark : remarks_on_signs(parts)) verdict.remarks.push_back(std::move(remark));
   if (entry.only_by_numbers) verdict.remarks.push_back("equal at 12 random poses; exact arithmetic did not decide");
+  tell_axes(entry, parts);
   conclude(entry);
   return verdict;
 }

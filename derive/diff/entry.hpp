@@ -100,6 +100,8 @@ struct Sides {
   bool opposites = false;
 };
 void compare(Entry& entry, const Sides& sides, const std::function<Difference(int row, int column)>& difference);
+// Of K, from this difference on: one slip that several entries of the diagonal have in common is told once.
+void merge_diagonal(Entry& entry, std::size_t from);
 // The additions of compare() to the verdict; `wrong` is set for each entry that differs.
 std::vector<Difference> differences_of(Entry& entry, const Sides& sides,
                                        const std::function<Difference(int row, int column)>& difference,

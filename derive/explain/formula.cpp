@@ -178,6 +178,7 @@ bool Notation::has_name(Expr e) { return !e->name.empty() && (e->named_by_let ||
 
 void Notation::share(std::span<const Expr> roots) {
   shared_ = shared_parts(roots, &has_name);
+  if (shared_.empty()) shared_ = recurring_parts(roots, &has_name);
   int number = 0;
   for (const Expr e : shared_) {
     std::string name;
@@ -244,7 +245,27 @@ Notation::PointTerms Notation::points_among(Expr sum) const {
   return found;
 }
 
+// The divisor d of (c u - s v)/d, if all terms have the same; empty for others.
+Expr shared_divisor(Expr sum) {
+  Expr shared;
+  for (const Expr arg : sum->args) {
+    const Expr factor = arg->kind == Kind::scale ? arg->args[0] : arg;
+    if (Notation::has_name(arg) || Notation::has_name(factor) || factor->kind != Kind::product) return {};
+    Expr divisor = sum->pool->number(1);
+    for (std::size_t i = 0; i < factor->args.size(); ++i)
+      if (factor->exponents[i] < 0) divisor = divisor * pow(factor->args[i], -factor->exponents[i]);
+    if (is_one(divisor) || (shared && divisor != shared)) return {};
+    shared = divisor;
+  }
+  return sum->args.size() > 1 ? shared : Expr();
+}
+
 Formula Notation::sum_of(Expr e) const {
+  if (const Expr divisor = shared_divisor(e)) {
+    std::vector<Term> above;
+    for (const Term& term : terms_of(e)) above.push_back({term.coef, divisor * term.e});
+    return quotient(written(derive::sum(*e->pool, above, e->vector)), of(divisor));
+  }
   const PointTerms points = points_among(e);
   std::vector<SignedFormula> terms;
   for (std::size_t i = 0; i < e->args.size(); ++i) {

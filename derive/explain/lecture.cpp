@@ -103,10 +103,13 @@ void introduce_shared(Lecture& lecture) {
   }
 }
 
-std::vector<Chain> shared_chains(const Lecture& lecture) {
+std::vector<Chain> shared_in(const Lecture& lecture, const std::vector<Chain>& shown) {
+  Introduction introduction(lecture.notation);
   std::vector<Chain> chains;
-  for (const Expr e : lecture.notation.shared())
-    chains.push_back({lecture.notation.of(e), {{lecture.notation.definition(e), ""}}});
+  for (const Chain& chain : shown) {
+    introduction.introduce(chain.left, chains);
+    for (const Link& link : chain.links) introduction.introduce(link.formula, chains);
+  }
   return chains;
 }
 

@@ -62,7 +62,7 @@ void explain_law(Lecture& lecture);
 void state_limits(Lecture& lecture, const std::vector<const Part*>& parts);
 // Names for what recurs, before the first step that contains them.
 void introduce_shared(Lecture& lecture);
-// The same as chains, for a summary.
-std::vector<Chain> shared_chains(const Lecture& lecture);
+// The same for a summary: those that it shows, as chains.
+std::vector<Chain> shared_in(const Lecture& lecture, const std::vector<Chain>& shown);
 
 }  // namespace cdot::derive

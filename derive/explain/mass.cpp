@@ -176,9 +176,11 @@ Formula simplified(const Lecture& lecture, const Part& part, const Statement& s,
 
 Formula J_M_J(const Formula& J) { return product({J, power(leaf({}, "M"), -1), shaped(Shape::transpose, J)}); }
 
-// In space the blocks say more than nine numbers with six components of each tensor.
-bool stays_in_blocks(const Lecture& lecture, const Statement& s, const Statement& t) {
-  return lecture.joint.dimension == 3 && (s.vector() || t.vector());
+// In space the blocks say more than nine numbers with six components of each tensor, and a named axis more than the
+// vectors that it is made of.
+bool stays_in_blocks(const Lecture& lecture, const Part& part, const Statement& s, const Statement& t) {
+  const bool axes = !part.block.rows[s.first].axes.empty() || !part.block.rows[t.first].axes.empty();
+  return lecture.joint.dimension == 3 && (s.vector() || t.vector() || axes);
 }
 
 }  // namespace
@@ -188,7 +190,7 @@ void summarise_mass(const Lecture& lecture, const Part& part, std::vector<Chain>
   for (const Statement& s : part.statements) {
     for (const Statement& t : part.statements) {
       if (&t < &s) continue;
-      const bool blocks = s.vector() || t.vector();
+      const bool blocks = s.vector() || t.vector() || stays_in_blocks(lecture, part, s, t);
       chains.push_back(
           {name_of_K(part, s.name, t.name), {{blocks ? product.of(s, t) : simplified(lecture, part, s, t), ""}}});
     }
@@ -207,7 +209,7 @@ void multiply_mass(Lecture& lecture, const Part& part, Step& step) {
       if (!above) continue;
       const Formula full = mass_product.of(s, t), result = simplified(lecture, part, s, t);
       const bool as_it_stands =
-          stays_in_blocks(lecture, s, t) || same_terms(result, full) || same_terms(result, mass_product.of(t, s));
+          stays_in_blocks(lecture, part, s, t) || same_terms(result, full) || same_terms(result, mass_product.of(t, s));
       Chain chain{name, {}};
       if (part.statements.size() == 1) chain.links.push_back({J_M_J(label("J", s)), ""});
       chain.links.push_back({full, "body by body"});

@@ -70,6 +70,10 @@ void isolate_scalar(Lecture& lecture, const Part& part, const Statement& s, Step
         at_velocity_level ? "the vector that several terms share" : "the gradient of C, which several terms share";
     step.show({leaf(n), {{lecture.notation.definition(n), rule}}});
   }
+  for (const Expr axis : row.axes) {
+    step.show(
+        {leaf(axis), {{lecture.notation.definition(axis), "the axis about which the bodies turn against each other"}}});
+  }
   for (std::size_t b = 0; b < row.J.size(); ++b) {
     collect(lecture, terms, row.J[b].v, static_cast<int>(b), false, step);
     collect(lecture, terms, row.J[b].w, static_cast<int>(b), true, step);
@@ -188,6 +192,18 @@ void explain_kept(const Lecture& lecture, Expr product, Step& step) {
       {notation.of(m), leaf(n), cross(leaf(y), notation.of(m)), cross(leaf(z), notation.of(m)), notation.of(m)});
 }
 
+// Cdot of a row with named axes, by these: their rates are fewer terms than those of all that they are made of.
+Expr through_axes(const Joint& joint, const ScalarRow& row, Expr Cdot) {
+  const bool kept = std::ranges::none_of(row.axes, [](Expr axis) { return axis->kind == Kind::scale; });
+  if (row.axes.empty() || !kept) return Cdot;  // a product with a scaled vector opens it
+  Expr total = row.C_t;
+  for (std::size_t b = 0; b < row.J.size(); ++b) {
+    const BodySymbols body = body_symbols(joint, static_cast<int>(b));
+    total = total + dot(row.J[b].v, body.v) + dot(row.J[b].w, body.w);
+  }
+  return total;
+}
+
 }  // namespace
 
 Formula row_of_J(const Statement& s) {
@@ -272,7 +288,8 @@ void read_jacobian(Lecture& lecture, const Part& part, Step& step) {
 void differentiate_again(Lecture& lecture, const Part& part, Step& step) {
   for (const Statement& s : part.statements) {
     head(step, part, s);
-    const Expr gamma = -time_derivative(s.Cdot, lecture.joint);
+    const Expr Cdot = through_axes(lecture.joint, part.block.rows[s.first], s.Cdot);
+    const Expr gamma = -time_derivative(Cdot, lecture.joint);
     const Formula name = label("gamma", s, gamma);
     const Formula simplified =
         lecture.notation.definition(terms_if_expanded(gamma) < most_terms ? expanded(gamma) : gamma);
@@ -280,7 +297,7 @@ void differentiate_again(Lecture& lecture, const Part& part, Step& step) {
       step.show({name, {{simplified, "J does not change"}}});
       continue;
     }
-    for (Chain& chain : lecture.rates.differentiate(s.Cdot, negative(name))) {
+    for (Chain& chain : lecture.rates.differentiate(Cdot, negative(name))) {
       chain.links.resize(1);  // with its names, not with all of them inserted
       const bool shorter = lecture.joint.dimension == 2 && turns_twice(chain.links[0].formula);
       if (chain.left != negative(name) && shorter) {

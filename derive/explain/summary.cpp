@@ -44,8 +44,9 @@ std::vector<Chain> summarise(const Lecture& lecture, const Part& part) {
     const Formula left =
         part.block.name.empty() ? label(velocity ? "Cdot" : "C", s, s.C) : leaf(s.C, "coordinate " + s.name);
     summary.push_back(equation(left, lecture.notation.definition(s.C), note_of(s.kind)));
-    for (const Expr n : part.block.rows[s.first].gradients) {
-      summary.push_back(equation(leaf(n), lecture.notation.definition(n)));
+    const ScalarRow& first = part.block.rows[s.first];
+    for (const std::vector<Expr>* names : {&first.gradients, &first.axes}) {
+      for (const Expr n : *names) summary.push_back(equation(leaf(n), lecture.notation.definition(n)));
     }
     const Formula row = row_of_J(s);
     J.insert(J.end(), row.args.begin(), row.args.end());
@@ -70,10 +71,12 @@ std::vector<std::vector<Chain>> summarise(const Derivation& derivation) {
   for (const Let& let : derivation.joint.lets) {
     names.push_back(equation(leaf(let.value, let.name), lecture.notation.definition(let.value)));
   }
-  for (Chain& chain : shared_chains(lecture)) names.push_back(std::move(chain));
-  all[0].insert(all[0].begin(), names.begin(), names.end());
   for (Chain& chain : law_chains(lecture)) all[0].push_back(std::move(chain));
   for (const Block& block : derivation.coordinates) all.push_back(summarise(lecture, coordinate_part(lecture, block)));
+  std::vector<Chain> shown = names;
+  for (const std::vector<Chain>& chains : all) shown.insert(shown.end(), chains.begin(), chains.end());
+  for (Chain& chain : shared_in(lecture, shown)) names.push_back(std::move(chain));
+  all[0].insert(all[0].begin(), names.begin(), names.end());
   return all;
 }
 

@@ -167,6 +167,21 @@ Expr operator/(Expr a, Expr b) { return a * pow(b, -1); }
 
 namespace {
 
+// n · (t × v) = (n × t) · v, n and t being axes of one triad: n × t is its third one. Empty for other operands.
+Expr known_triple_product(Expr n, Expr product) {
+  if (product->named_by_let) return {};
+  const Pool::Axis axis = n->pool->axis_of(n);
+  for (const std::size_t i : {0U, 1U}) {
+    const Expr t = product->args[i], v = product->args[1 - i];
+    const Pool::Axis other = n->pool->axis_of(t);
+    if (!axis.triad || axis.triad != other.triad || axis.index == other.index) continue;
+    const Expr third = (*axis.triad)[static_cast<std::size_t>(3 - axis.index - other.index)];
+    const bool turns_on = ((axis.index + 1) % 3 == other.index) == (i == 0);
+    return turns_on ? dot(third, v) : -dot(third, v);
+  }
+  return {};
+}
+
 // Products within one triad, and of a cross product with one of its factors, are constants. Empty for other operands.
 Expr known_dot(Expr u, Expr v) {
   Pool& pool = *u->pool;
@@ -174,6 +189,7 @@ Expr known_dot(Expr u, Expr v) {
   if (a.triad && a.triad == b.triad && a.index != b.index) return pool.number(0);
   for (const auto& [product, factor] : {std::pair{u, v}, std::pair{v, u}}) {
     if (product->kind != Kind::cross) continue;
+    if (const Expr triple = known_triple_product(factor, product)) return triple;
     if (product->args[0] == factor || product->args[1] == factor) return pool.number(0);
     if (is_unit_of(factor, product->args[0]) || is_unit_of(factor, product->args[1])) {
       return pool.number(0);

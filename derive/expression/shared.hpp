@@ -10,6 +10,9 @@ namespace cdot::derive {
 // roots together are short. `named`: has a name already.
 std::vector<Expr> shared_parts(std::span<const Expr> roots, bool (*named)(Expr));
 
+// Parts of poses that stand in several places of short formulas and are long enough to read once, likewise: a divisor.
+std::vector<Expr> recurring_parts(std::span<const Expr> roots, bool (*named)(Expr));
+
 // The nodes of e as it is written out, where a part with a name of its own is one.
 double written_size(Expr e, bool (*named)(Expr));
 

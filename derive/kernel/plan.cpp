@@ -90,12 +90,41 @@ class BlockPlanner {
         std::all_of(term.e->args.begin(), term.e->args.end(), [](Expr f) { return simple(f); }) &&
         std::all_of(term.e->exponents.begin(), term.e->exponents.end(), [](int k) { return k == 1; });
     if (!plain_factors) {
-      stored.fields.push_back(field(term.e, column, (Rational(1) / term.coef) * entry));
+      Term part = term;
+      const auto is_field = [&](Expr e) {
+        return std::ranges::find(out_.fields, e, &Field::value) != out_.fields.end();
+      };
+      const Term opposite{-term.coef, -term.e};
+      if (is_field(opposite.e) || (term.coef.sign() < 0 && free_to_turn(term.e) && !is_field(term.e))) part = opposite;
+      else if (term.coef.sign() < 0 && has_both_signs(term.e) && is_lonely_axis(entry))
+        part = {-term.coef, turned(term.e)};
+      stored.coef = part.coef;
+      stored.fields.push_back(field(part.e, column, (Rational(1) / part.coef) * entry));
       return stored;
     }
     for (const Expr factor : term.e->args) stored.fields.push_back(field(factor, column));
     return stored;
   }
+
+  // An entry of the only row on the only body that moves, which no other entry repeats with the other sign.
+  bool is_lonely_axis(Expr entry) const {
+    if (rows() > 1 || block_.immovable < 0 || bodies() > 2) return false;
+    const std::vector<Expr> parts = topological(std::span(&entry, 1));
+    return std::ranges::find_first_of(parts, block_.rows[0].axes) != parts.end();
+  }
+
+  // z - x y for the opposite of a name for x y - z.
+  Expr turned(Expr e) const {
+    std::vector<Term> terms;
+    for (std::size_t i = 0; i < e->args.size(); ++i) terms.push_back({-e->coefs[i], e->args[i]});
+    return sum(pool_, terms, false);
+  }
+
+  // The opposite of x y - z costs no more.
+  static bool has_both_signs(Expr e) {
+    return e->kind == Kind::sum && std::ranges::any_of(e->coefs, [](Rational c) { return c.sign() < 0; });
+  }
+  static bool free_to_turn(Expr e) { return has_both_signs(e) && e->name.empty(); }
 
   static bool simple(Expr e) { return e->kind == Kind::symbol || !e->name.empty(); }
 
@@ -119,14 +148,16 @@ class BlockPlanner {
   }
 
   void add_position_and_jacobian() {
-    add("position", "C", position(pose_));
-    add("jacobian", "C and J", position_and_jacobian(pose_));
+    add_from_pose("position", "C", [&](PoseInputs& pose) { return position(pose); });
+    const auto outputs = [&](PoseInputs& pose) { return position_and_jacobian(pose, &Field::value); };
+    add_from_pose("jacobian", "C and J", outputs);
+    add_from_pose_opened(outputs);
     const bool of_surface = std::any_of(block_.rows.begin(), block_.rows.end(),
                                         [](const ScalarRow& row) { return !row.gradients.empty(); });
     for (std::size_t b = 0; of_surface && b < bodies(); ++b) {
       PoseInputs carried(joint_, static_cast<int>(b));
       function("position").other.push_back(assemble(position(carried)));
-      function("jacobian").other.push_back(assemble(position_and_jacobian(carried)));
+      function("jacobian").other.push_back(assemble(position_and_jacobian(carried, &Field::entry)));
     }
   }
 
@@ -136,9 +167,9 @@ class BlockPlanner {
     return outputs;
   }
 
-  std::vector<NamedExpr> position_and_jacobian(PoseInputs& pose) const {
+  std::vector<NamedExpr> position_and_jacobian(PoseInputs& pose, Expr Field::*number) const {
     std::vector<NamedExpr> outputs = position(pose);
-    for (const Field& f : out_.fields) outputs.push_back({"J." + f.name, pose.of(&pose == &pose_ ? f.value : f.entry)});
+    for (const Field& f : out_.fields) outputs.push_back({"J." + f.name, pose.of(f.*number)});
     return outputs;
   }
 
@@ -293,7 +324,7 @@ class BlockPlanner {
   // Functions outside the inner loops of solvers: a variant inherits them from the general block.
   void add_what_variants_inherit() {
     if (joint_.dimension == 3) add_other_forms();
-    add_from_pose();
+    add_rates_and_stiffness();
   }
 
   // The other two velocity forms in space.
@@ -317,31 +348,81 @@ class BlockPlanner {
     add(name, summary, J);
   }
 
-  void add_from_pose() {
-    std::vector<NamedExpr> C_t, H;
-    for (std::size_t i = 0; i < rows(); ++i) {
-      C_t.push_back({element("C_t", i), pose_.of(block_.rows[i].C_t)});
+  // A function of the pose, with the z axes of whole frames turned into the world or as cross products.
+  template <class Outputs>
+  void add_from_pose(const std::string& name, const std::string& summary, Outputs outputs) {
+    const std::vector<NamedExpr> turned = outputs(pose_);
+    add(name, summary, turned);
+    add_with_cross_products(turned, outputs);
+  }
+
+  template <class Outputs>
+  void add_with_cross_products(const std::vector<NamedExpr>& turned, Outputs outputs) {
+    const std::vector<std::string> frames = whole_frames(joint_, turned);
+    if (frames.empty()) return;
+    PoseInputs crossed(joint_, -1, frames);
+    add_other_way(outputs(crossed));
+  }
+
+  // C and J share products term by term: the products of u × v + s × t in C stand alone in J.
+  template <class Outputs>
+  void add_from_pose_opened(Outputs outputs) {
+    const auto opened = [&](PoseInputs& pose) {
+      std::vector<NamedExpr> all = outputs(pose);
+      for (NamedExpr& output : all) output.e = with_open_sums(output.e);
+      return all;
+    };
+    const std::vector<NamedExpr> turned = outputs(pose_), open = opened(pose_);
+    if (std::ranges::equal(turned, open, {}, &NamedExpr::e, &NamedExpr::e)) return;
+    add_other_way(open);
+    add_with_cross_products(open, opened);
+  }
+
+  // a + (b + c) as a + b + c, unless a let names b + c.
+  Expr with_open_sums(Expr e) const {
+    if (e->kind != Kind::sum || e->named_by_let) return e;
+    std::vector<Term> terms;
+    for (const Term& term : terms_of(e)) {
+      const Expr open = with_open_sums(term.e);
+      if (open->kind != Kind::sum || open->named_by_let) terms.push_back(term);
+      else
+        for (const Term& inner : terms_of(open)) terms.push_back({term.coef * inner.coef, inner.e});
     }
-    for (std::size_t r = 0; r < block_.stiffness.size(); ++r) {
-      for (std::size_t c = 0; c < block_.stiffness[r].size(); ++c) {
-        H.push_back({element(element("H", r), c), pose_.of(block_.stiffness[r][c])});
-      }
-    }
+    return sum(pool_, terms, false);
+  }
+
+  void add_rates_and_stiffness() {
     add_gamma();
-    add("time_derivative", "dC/dt at fixed q", C_t);
-    add("stiffness",
+    add_from_pose("time_derivative", "dC/dt at fixed q", [&](PoseInputs& pose) {
+      std::vector<NamedExpr> C_t;
+      for (std::size_t i = 0; i < rows(); ++i) C_t.push_back({element("C_t", i), pose.of(block_.rows[i].C_t)});
+      return C_t;
+    });
+    add_from_pose(
+        "stiffness",
         std::string("d(J^T lambda)/dq: ") + (width_ == 3 ? "x, y, angle" : "x, y, z and small turns") + " of each body",
-        H);
+        [&](PoseInputs& pose) {
+          std::vector<NamedExpr> H;
+          for (std::size_t r = 0; r < block_.stiffness.size(); ++r) {
+            for (std::size_t c = 0; c < block_.stiffness[r].size(); ++c)
+              H.push_back({element(element("H", r), c), pose.of(block_.stiffness[r][c])});
+          }
+          return H;
+        });
   }
 
   // The cheaper of two forms. At equal cost that by J's entries: it loses fewer digits if the bodies move nearly alike.
   void add_gamma() {
-    std::vector<NamedExpr> whole, by_entries;
-    for (std::size_t i = 0; i < rows(); ++i) {
-      whole.push_back({element("g", i), pose_.of(block_.rows[i].gamma)});
-      by_entries.push_back({element("g", i), pose_.of(block_.rows[i].gamma_by_entries)});
-    }
-    add("gamma", "-Jdot v - d/dt(dC/dt)", whole);
+    const auto outputs = [&](Expr ScalarRow::*form) {
+      return [this, form](PoseInputs& pose) {
+        std::vector<NamedExpr> gamma;
+        for (std::size_t i = 0; i < rows(); ++i) gamma.push_back({element("g", i), pose.of(block_.rows[i].*form)});
+        return gamma;
+      };
+    };
+    add_from_pose("gamma", "-Jdot v - d/dt(dC/dt)", outputs(&ScalarRow::gamma));
+    const std::vector<NamedExpr> by_entries = outputs(&ScalarRow::gamma_by_entries)(pose_);
+    add_with_cross_products(by_entries, outputs(&ScalarRow::gamma_by_entries));
     add_other_way(by_entries);
   }
 

@@ -104,13 +104,13 @@ Kernel simplified(Kernel kernel, std::vector<CutShort>* cut_short = nullptr, Sea
 class PoseInputs {
  public:
   // Products with vectors that are fixed in `in_axes_of` are taken in the axes of this body
-  // (expression/components.hpp).
-  explicit PoseInputs(const Joint& joint, int in_axes_of = -1);
+  // (expression/components.hpp). The z axes of the frames `crossed` are x × y: 9 operations, 15 turned into the world.
+  explicit PoseInputs(const Joint& joint, int in_axes_of = -1, const std::vector<std::string>& crossed = {});
   PoseInputs(const PoseInputs&) = delete;  // a member knows another by its address
   Expr of(Expr scalar);                    // any scalar expression of the joint
 
  private:
-  void rotate(const Joint& joint, const Parameter& parameter);
+  void rotate(const Joint& joint, const Parameter& parameter, bool crossed);
   void fix(const Joint& joint, int body);
 
   std::map<const Node*, Expr> rotated_;
@@ -118,6 +118,9 @@ class PoseInputs {
   std::optional<Components> components_;
   std::optional<Substitution> rotation_;
 };
+
+// The frames on bodies of which these outputs, in components of poses and parameters, read all three axes.
+std::vector<std::string> whole_frames(const Joint& joint, const std::vector<NamedExpr>& outputs);
 
 // Adds energy, force, unstored and slopes.
 void plan_law(const Joint& joint, const DerivedLaw& law, std::vector<KernelFunction>& functions);

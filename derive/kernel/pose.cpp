@@ -25,9 +25,10 @@ std::vector<Expr> local_symbols(const Joint& joint, const Parameter& parameter) 
   return symbols;
 }
 
-PoseInputs::PoseInputs(const Joint& joint, int in_axes_of) {
+PoseInputs::PoseInputs(const Joint& joint, int in_axes_of, const std::vector<std::string>& crossed) {
   for (const Parameter& parameter : joint.parameters) {
-    if (parameter.kind != ParameterKind::scalar && parameter.symbol) rotate(joint, parameter);
+    if (parameter.kind == ParameterKind::scalar || !parameter.symbol) continue;
+    rotate(joint, parameter, std::ranges::find(crossed, parameter.name) != crossed.end());
   }
   Components components;
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
@@ -64,16 +65,23 @@ void PoseInputs::fix(const Joint& joint, int body) {
   }
 }
 
-// r = R l for each vector leaf behind the parameter.
-void PoseInputs::rotate(const Joint& joint, const Parameter& parameter) {
+// r = R l for each vector leaf behind the parameter; the third axis of a frame as x × y, if it is `crossed`.
+void PoseInputs::rotate(const Joint& joint, const Parameter& parameter, bool crossed) {
   Components components;
   const std::vector<Expr> local = local_symbols(joint, parameter);
   const std::vector<Expr> leaves = parameter.axes.empty() ? std::vector{parameter.symbol} : parameter.axes;
   for (std::size_t n = 0; n < leaves.size(); ++n) {
     const std::vector<Expr> world = components.of_vector(leaves[n]);
+    const auto turned = [&](std::size_t axis, std::size_t i) {
+      return rotated_.at(&*components.of_vector(leaves[axis])[i]);
+    };
     for (std::size_t i = 0; i < world.size(); ++i) {
       Expr component = local[n * world.size() + i];
-      if (parameter.body >= 0) {
+      if (crossed && n == 2) {
+        const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+        component = turned(0, j) * turned(1, k) - turned(0, k) * turned(1, j);
+        joint.pool->name(component, world[i]->symbol, true);
+      } else if (parameter.body >= 0) {
         const std::vector<Expr> row = rotation_matrix(joint, parameter.body)[i];
         component = joint.pool->number(0);
         for (std::size_t k = 0; k < row.size(); ++k) component = component + row[k] * local[n * row.size() + k];
@@ -82,6 +90,22 @@ void PoseInputs::rotate(const Joint& joint, const Parameter& parameter) {
       rotated_.emplace(&*world[i], component);
     }
   }
+}
+
+std::vector<std::string> whole_frames(const Joint& joint, const std::vector<NamedExpr>& outputs) {
+  std::vector<Expr> roots;
+  for (const NamedExpr& output : outputs) roots.push_back(output.e);
+  const std::vector<Expr> leaves = leaves_of(roots);
+  std::vector<std::string> frames;
+  for (const Parameter& parameter : joint.parameters) {
+    if (parameter.axes.empty() || parameter.body < 0) continue;
+    const auto is_read = [&](char axis) {
+      const std::string start = "p." + parameter.name + "_" + axis + "_";
+      return std::ranges::any_of(leaves, [&](Expr leaf) { return leaf->symbol.starts_with(start); });
+    };
+    if (is_read('x') && is_read('y') && is_read('z')) frames.push_back(parameter.name);
+  }
+  return frames;
 }
 
 Expr PoseInputs::of(Expr scalar) { return rotation_->of(components_->of(scalar)); }

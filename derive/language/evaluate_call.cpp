@@ -98,8 +98,9 @@ std::optional<Unit> unit_given(UnitGiven given, const std::vector<Value>& a) {
 
 }  // namespace
 
-// A column of two is a vector to an operator, a matrix of one entry a number.
-Value Evaluator::hand_argument(Value v) { return v.type == Type::matrix ? simplest(*v.matrix, true) : v; }
+// A column of two is a vector to an operator, a matrix of one entry a number. An inertia stays what it is: its numbers
+// are those of its inverse.
+Value Evaluator::hand_argument(Value v) { return v.type == Type::matrix && !v.tensor ? simplest(*v.matrix, true) : v; }
 
 std::vector<const Operator*> Evaluator::operators_here(const std::string& name) const {
   std::vector<const Operator*> here;

@@ -51,6 +51,27 @@ void spell_lets(Expr root, const Joint& joint, Spelled& spelled) {
   }
 }
 
+struct AngleAbout {
+  Expr from, to, axis;
+};
+
+// atan2(p · v, r · v), p and r being axes of one frame, as the angle from r to v about the third one.
+std::optional<AngleAbout> angle_about_axis(Expr e) {
+  const Term sine = split_coefficient(e->args[0]), cosine = split_coefficient(e->args[1]);
+  if (cosine.e->kind != Kind::dot || cosine.coef != Rational(1) || abs(sine.coef) != Rational(1)) return {};
+  const Pool& pool = *e->pool;
+  for (const Expr p : sine.e->args) {
+    for (const Expr r : cosine.e->args) {
+      if (pool.axis_of(p).triad == nullptr || pool.axis_of(p).triad != pool.axis_of(r).triad || p == r) continue;
+      const Expr v = cosine.e->args[cosine.e->args[0] == r ? 1 : 0];
+      if (sine.e != dot(p, v)) continue;
+      const Term axis = split_coefficient(cross(r, p));
+      return axis.coef == sine.coef ? AngleAbout{r, v, axis.e} : AngleAbout{v, r, axis.e};
+    }
+  }
+  return {};
+}
+
 // An arc tangent that is the angle between directions, as a person writes it; empty for others.
 std::string angle_text(Expr e, const Joint& joint) {
   const auto of = [&](std::initializer_list<Expr> args) {
@@ -61,6 +82,7 @@ std::string angle_text(Expr e, const Joint& joint) {
   if (const auto angle = angle_between(e)) return of({angle->from, angle->to});
   const Expr sine = split_coefficient(e->args[0]).e;
   if (sine->kind != Kind::dot) return "";
+  if (const std::optional<AngleAbout> angle = angle_about_axis(e)) return of({angle->from, angle->to, angle->axis});
   for (const bool first : {true, false}) {
     const Expr turn = sine->args[first ? 0 : 1], n = sine->args[first ? 1 : 0];
     if (turn->kind != Kind::cross) continue;

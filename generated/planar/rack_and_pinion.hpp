@@ -74,8 +74,7 @@ struct rack_and_pinion {
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
     const T ub_x = b.x - p.g_x + rb_x;
     const T ub_y = b.y - p.g_y + rb_y;
-    const T dot_ub_e = p.e_x * ub_x + p.e_y * ub_y;
-    C[0] = dot_ub_e - p.offset - a.angle * p.radius;
+    C[0] = p.e_x * ub_x - p.offset - a.angle * p.radius + p.e_y * ub_y;
     J.radius = p.radius;
     J.e_x = p.e_x;
     J.e_y = p.e_y;
@@ -382,8 +381,7 @@ struct rack_and_pinion::a_immovable : rack_and_pinion {
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
     const T ub_x = b.x - p.g_x + rb_x;
     const T ub_y = b.y - p.g_y + rb_y;
-    const T dot_ub_e = p.e_x * ub_x + p.e_y * ub_y;
-    C[0] = dot_ub_e - p.offset - a.angle * p.radius;
+    C[0] = p.e_x * ub_x - p.offset - a.angle * p.radius + p.e_y * ub_y;
     J.e_x = p.e_x;
     J.e_y = p.e_y;
     J.rb_x_e = p.e_y * rb_x - p.e_x * rb_y;
@@ -459,8 +457,7 @@ struct rack_and_pinion::b_immovable : rack_and_pinion {
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
     const T ub_x = b.x - p.g_x + rb_x;
     const T ub_y = b.y - p.g_y + rb_y;
-    const T dot_ub_e = p.e_x * ub_x + p.e_y * ub_y;
-    C[0] = dot_ub_e - p.offset - a.angle * p.radius;
+    C[0] = p.e_x * ub_x - p.offset - a.angle * p.radius + p.e_y * ub_y;
     J.radius = p.radius;
   }
 

@@ -88,18 +88,16 @@ struct rolling {
     const T u_y = rb_u_y - rb_y;
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T dot_u_n = u_x * n_x + u_y * n_y;
     const T s = u_x * n_y - u_y * n_x;
     const T q_2 = a.angle - b.angle;
-    const T dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y;
-    C[0] = dot_u_n - p.radius;
+    C[0] = u_x * n_x - p.radius + u_y * n_y;
     C[1] = s - p.start + p.radius * q_2;
     J.n_x = n_x;
     J.n_y = n_y;
     J.rb_u_x_n = rb_u_x * n_y - rb_u_y * n_x;
     J.radius = p.radius;
     J.e_y = -n_x;
-    J.wb_2 = dot_rb_u_n - p.radius;
+    J.wb_2 = rb_u_x * n_x - p.radius + rb_u_y * n_y;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 7 *
@@ -511,17 +509,15 @@ struct rolling::a_immovable : rolling {
     const T u_y = rb_u_y - rb_y;
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T dot_u_n = u_x * n_x + u_y * n_y;
     const T s = u_x * n_y - u_y * n_x;
     const T q_2 = a.angle - b.angle;
-    const T dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y;
-    C[0] = dot_u_n - p.radius;
+    C[0] = u_x * n_x - p.radius + u_y * n_y;
     C[1] = s - p.start + p.radius * q_2;
     J.n_x = n_x;
     J.n_y = n_y;
     J.rb_u_x_n = rb_u_x * n_y - rb_u_y * n_x;
     J.e_y = -n_x;
-    J.wb_2 = dot_rb_u_n - p.radius;
+    J.wb_2 = rb_u_x * n_x - p.radius + rb_u_y * n_y;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 3 +, 5 *
@@ -605,10 +601,9 @@ struct rolling::b_immovable : rolling {
     const T u_y = a.y - b.y - rb_y;
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T dot_u_n = u_x * n_x + u_y * n_y;
     const T s = u_x * n_y - u_y * n_x;
     const T q_2 = a.angle - b.angle;
-    C[0] = dot_u_n - p.radius;
+    C[0] = u_x * n_x - p.radius + u_y * n_y;
     C[1] = s - p.start + p.radius * q_2;
     J.n_x = n_x;
     J.n_y = n_y;

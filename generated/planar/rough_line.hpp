@@ -116,8 +116,7 @@ struct rough_line {
       const T u_y = rb_u_y - rb_y;
       const T n_x = b.c * p.n_x - b.s * p.n_y;
       const T n_y = b.c * p.n_y + b.s * p.n_x;
-      const T dot_u_n = u_x * n_x + u_y * n_y;
-      C[0] = dot_u_n - p.radius;
+      C[0] = u_x * n_x - p.radius + u_y * n_y;
       J.n_x = n_x;
       J.n_y = n_y;
       J.ra_x_n = ra_x * n_y - ra_y * n_x;
@@ -315,14 +314,11 @@ struct rough_line {
       const T u_y = rb_u_y - rb_y;
       const T n_x = b.c * p.n_x - b.s * p.n_y;
       const T n_y = b.c * p.n_y + b.s * p.n_x;
-      const T u_x_n = u_x * n_y - u_y * n_x;
-      const T dot_ra_n = ra_x * n_x + ra_y * n_y;
-      const T dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y;
-      C[0] = u_x_n + p.radius * (a.angle - b.angle);
+      C[0] = p.radius * (a.angle - b.angle) + u_x * n_y - u_y * n_x;
       J.n_y = n_y;
       J.n_x = n_x;
-      J.wa = p.radius - dot_ra_n;
-      J.wb = dot_rb_u_n - p.radius;
+      J.wa = p.radius - ra_x * n_x - ra_y * n_y;
+      J.wb = rb_u_x * n_x - p.radius + rb_u_y * n_y;
     }
 
     // K = J M^-1 J^T, lower triangle, from J: 3 +, 4 *
@@ -534,8 +530,7 @@ struct rough_line::gap::a_immovable : rough_line::gap {
     const T u_y = rb_u_y - rb_y;
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T dot_u_n = u_x * n_x + u_y * n_y;
-    C[0] = dot_u_n - p.radius;
+    C[0] = u_x * n_x - p.radius + u_y * n_y;
     J.n_x = n_x;
     J.n_y = n_y;
     J.rb_u_x_n = rb_u_x * n_y - rb_u_y * n_x;
@@ -615,8 +610,7 @@ struct rough_line::gap::b_immovable : rough_line::gap {
     const T u_y = a.y - b.y + ra_y - rb_y;
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T dot_u_n = u_x * n_x + u_y * n_y;
-    C[0] = dot_u_n - p.radius;
+    C[0] = u_x * n_x - p.radius + u_y * n_y;
     J.n_x = n_x;
     J.n_y = n_y;
     J.ra_x_n = ra_x * n_y - ra_y * n_x;
@@ -698,12 +692,10 @@ struct rough_line::slip::a_immovable : rough_line::slip {
     const T u_y = rb_u_y - rb_y;
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T u_x_n = u_x * n_y - u_y * n_x;
-    const T dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y;
-    C[0] = u_x_n + p.radius * (a.angle - b.angle);
+    C[0] = p.radius * (a.angle - b.angle) + u_x * n_y - u_y * n_x;
     J.n_y = n_y;
     J.n_x = n_x;
-    J.wb = dot_rb_u_n - p.radius;
+    J.wb = rb_u_x * n_x - p.radius + rb_u_y * n_y;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 1 +, 2 *
@@ -780,12 +772,10 @@ struct rough_line::slip::b_immovable : rough_line::slip {
     const T u_y = a.y - b.y + ra_y - rb_y;
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T u_x_n = u_x * n_y - u_y * n_x;
-    const T dot_ra_n = ra_x * n_x + ra_y * n_y;
-    C[0] = u_x_n + p.radius * (a.angle - b.angle);
+    C[0] = p.radius * (a.angle - b.angle) + u_x * n_y - u_y * n_x;
     J.n_y = n_y;
     J.n_x = n_x;
-    J.wa = p.radius - dot_ra_n;
+    J.wa = p.radius - ra_x * n_x - ra_y * n_y;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 1 +, 2 *

@@ -356,7 +356,7 @@ struct sine_track {
       C[0] = u_x * f_x_x + u_y * f_x_y;
     }
 
-    // C and J: 18 +, 20 *
+    // C and J: 17 +, 20 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -371,12 +371,11 @@ struct sine_track {
       const T f_x_x = b.c * p.f_x - b.s * p.f_y;
       const T f_x_y = b.c * p.f_y + b.s * p.f_x;
       const T u_x_f_x = u_x * f_x_y - u_y * f_x_x;
-      const T rb_x_f_x = f_x_y * rb_x - f_x_x * rb_y;
       C[0] = u_x * f_x_x + u_y * f_x_y;
       J.f_x_x = f_x_x;
       J.f_x_y = f_x_y;
       J.ra_x_f_x = ra_x * f_x_y - ra_y * f_x_x;
-      J.wb = -u_x_f_x - rb_x_f_x;
+      J.wb = f_x_x * rb_y - u_x_f_x - f_x_y * rb_x;
     }
 
     // K = J M^-1 J^T, lower triangle, from J: 3 +, 4 *
@@ -722,7 +721,7 @@ struct sine_track::slide::a_immovable : sine_track::slide {
     T f_x_x, f_x_y, wb;
   };
 
-  // C and J: 17 +, 18 *
+  // C and J: 16 +, 18 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -737,11 +736,10 @@ struct sine_track::slide::a_immovable : sine_track::slide {
     const T f_x_x = b.c * p.f_x - b.s * p.f_y;
     const T f_x_y = b.c * p.f_y + b.s * p.f_x;
     const T u_x_f_x = u_x * f_x_y - u_y * f_x_x;
-    const T rb_x_f_x = f_x_y * rb_x - f_x_x * rb_y;
     C[0] = u_x * f_x_x + u_y * f_x_y;
     J.f_x_x = f_x_x;
     J.f_x_y = f_x_y;
-    J.wb = -u_x_f_x - rb_x_f_x;
+    J.wb = f_x_x * rb_y - u_x_f_x - f_x_y * rb_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 1 +, 2 *

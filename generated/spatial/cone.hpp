@@ -70,8 +70,7 @@ struct cone {
     const T nb_y = b.yx * p.nb_x + b.yy * p.nb_y + b.yz * p.nb_z;
     const T na_z = a.zx * p.na_x + a.zy * p.na_y + a.zz * p.na_z;
     const T nb_z = b.zx * p.nb_x + b.zy * p.nb_y + b.zz * p.nb_z;
-    const T dot_na_nb = na_x * nb_x + na_y * nb_y + na_z * nb_z;
-    C[0] = dot_na_nb - cos(p.half);
+    C[0] = na_x * nb_x + na_y * nb_y + na_z * nb_z - cos(p.half);
     J.na_x_nb_x = na_y * nb_z - na_z * nb_y;
     J.na_x_nb_y = na_z * nb_x - na_x * nb_z;
     J.na_x_nb_z = na_x * nb_y - na_y * nb_x;

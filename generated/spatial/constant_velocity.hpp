@@ -4,51 +4,27 @@
 //     as far about itself as the shaft fa.x of a.
 // Source: Own derivation: no twist between the shafts, whose homokinetic plane then halves the bend
 //
+// s1 = (fa_x · fb_x)^2 + (fa_z · fb_x)^2
+// s2 = (fa_x · fb_x)^2 + (fa_y · fb_x)^2
 // C_pin = pa - pb
 // C_shafts = fa_z · fb_y - fa_y · fb_z
-// J = [ E | -S(ra)                       | -E | S(rb)
-//       0 | (fa_z × fb_y - fa_y × fb_z)' | 0  | (fa_y × fb_z - fa_z × fb_y)' ]  (columns v_a | w_a
-//           | v_b | w_b)
+// axis_shafts = fa_z × fb_y - fa_y × fb_z
+// J = [ E | -S(ra)       | -E | S(rb)
+//       0 | axis_shafts' | 0  | -axis_shafts' ]                   (columns v_a | w_a | v_b | w_b)
 // S(r) u = r × u
 // K[pin, pin] = inv_m_a E + S(ra) inv_I_a S(ra)' + inv_m_b E + S(rb) inv_I_b S(rb)'
-// K[pin, shafts] = -S(ra) inv_I_a (fa_z × fb_y - fa_y × fb_z)
-//                  + S(rb) inv_I_b (fa_y × fb_z - fa_z × fb_y)
-// K[shafts, shafts] = (fa_z × fb_y - fa_y × fb_z)' inv_I_a (fa_z × fb_y - fa_y × fb_z)
-//                     + (fa_y × fb_z - fa_z × fb_y)' inv_I_b (fa_y × fb_z - fa_z × fb_y)
+// K[pin, shafts] = -S(ra) inv_I_a axis_shafts - S(rb) inv_I_b axis_shafts
+// K[shafts, shafts] = axis_shafts' inv_I_a axis_shafts + axis_shafts' inv_I_b axis_shafts
 //
 // coordinate bend_y = atan2(-fa_z · fb_x, fa_x · fb_x)
-// J_bend_y = [ 0
-//            | (((fa_z · fb_x)/((fa_x · fb_x)^2 + (fa_z · fb_x)^2)) (fa_x × fb_x) - ((fa_x ·
-//                fb_x)/((fa_x · fb_x)^2 + (fa_z · fb_x)^2)) (fa_z × fb_x))'
-//            | 0
-//            | -((((fa_z · fb_x)/((fa_x · fb_x)^2 + (fa_z · fb_x)^2)) fa_x - ((fa_x · fb_x)/((fa_x
-//                · fb_x)^2 + (fa_z · fb_x)^2)) fa_z) × fb_x)' ]
-//              (columns v_a | w_a | v_b | w_b)
-// K_bend_y = (((fa_z · fb_x)/((fa_x · fb_x)^2 + (fa_z · fb_x)^2)) (fa_x × fb_x) - ((fa_x ·
-//     fb_x)/((fa_x · fb_x)^2 + (fa_z · fb_x)^2)) (fa_z × fb_x))' inv_I_a (((fa_z · fb_x)/((fa_x ·
-//     fb_x)^2 + (fa_z · fb_x)^2)) (fa_x × fb_x) - ((fa_x · fb_x)/((fa_x · fb_x)^2 + (fa_z ·
-//     fb_x)^2)) (fa_z × fb_x))
-//            + ((((fa_z · fb_x)/((fa_x · fb_x)^2 + (fa_z · fb_x)^2)) fa_x - ((fa_x · fb_x)/((fa_x
-//                · fb_x)^2 + (fa_z · fb_x)^2)) fa_z) × fb_x)' inv_I_b ((((fa_z · fb_x)/((fa_x ·
-//                fb_x)^2 + (fa_z · fb_x)^2)) fa_x - ((fa_x · fb_x)/((fa_x · fb_x)^2 + (fa_z ·
-//                fb_x)^2)) fa_z) × fb_x)
+// axis_bend_y = (((fa_z · fb_x) fa_x - (fa_x · fb_x) fa_z)/s1) × fb_x
+// J_bend_y = [ 0 | axis_bend_y' | 0 | -axis_bend_y' ]             (columns v_a | w_a | v_b | w_b)
+// K_bend_y = axis_bend_y' inv_I_a axis_bend_y + axis_bend_y' inv_I_b axis_bend_y
 //
 // coordinate bend_z = atan2(fa_y · fb_x, fa_x · fb_x)
-// J_bend_z = [ 0
-//            | (((fa_x · fb_x)/((fa_x · fb_x)^2 + (fa_y · fb_x)^2)) (fa_y × fb_x) - ((fa_y ·
-//                fb_x)/((fa_x · fb_x)^2 + (fa_y · fb_x)^2)) (fa_x × fb_x))'
-//            | 0
-//            | -((((fa_x · fb_x)/((fa_x · fb_x)^2 + (fa_y · fb_x)^2)) fa_y - ((fa_y · fb_x)/((fa_x
-//                · fb_x)^2 + (fa_y · fb_x)^2)) fa_x) × fb_x)' ]
-//              (columns v_a | w_a | v_b | w_b)
-// K_bend_z = (((fa_x · fb_x)/((fa_x · fb_x)^2 + (fa_y · fb_x)^2)) (fa_y × fb_x) - ((fa_y ·
-//     fb_x)/((fa_x · fb_x)^2 + (fa_y · fb_x)^2)) (fa_x × fb_x))' inv_I_a (((fa_x · fb_x)/((fa_x ·
-//     fb_x)^2 + (fa_y · fb_x)^2)) (fa_y × fb_x) - ((fa_y · fb_x)/((fa_x · fb_x)^2 + (fa_y ·
-//     fb_x)^2)) (fa_x × fb_x))
-//            + ((((fa_x · fb_x)/((fa_x · fb_x)^2 + (fa_y · fb_x)^2)) fa_y - ((fa_y · fb_x)/((fa_x
-//                · fb_x)^2 + (fa_y · fb_x)^2)) fa_x) × fb_x)' inv_I_b ((((fa_x · fb_x)/((fa_x ·
-//                fb_x)^2 + (fa_y · fb_x)^2)) fa_y - ((fa_y · fb_x)/((fa_x · fb_x)^2 + (fa_y ·
-//                fb_x)^2)) fa_x) × fb_x)
+// axis_bend_z = (((fa_x · fb_x) fa_y - (fa_y · fb_x) fa_x)/s2) × fb_x
+// J_bend_z = [ 0 | axis_bend_z' | 0 | -axis_bend_z' ]             (columns v_a | w_a | v_b | w_b)
+// K_bend_z = axis_bend_z' inv_I_a axis_bend_z + axis_bend_z' inv_I_b axis_bend_z
 #pragma once
 
 #include <cdot/kernel.hpp>
@@ -86,7 +62,7 @@ struct constant_velocity {
 
   template <class T>
   struct Jacobian {
-    T ra_z, ra_y, rb_z, rb_y, ra_x, rb_x, wa_4_x, wa_4_y, wa_4_z, wb_4_x, wb_4_y, wb_4_z;
+    T ra_z, ra_y, rb_z, rb_y, ra_x, rb_x, axis_shafts_x, axis_shafts_y, axis_shafts_z;
   };
 
   // C: 50 +, 60 *
@@ -120,7 +96,7 @@ struct constant_velocity {
     C[3] = dot_fa_z_fb_y - dot_fa_y_fb_z;
   }
 
-  // C and J: 62 +, 72 *
+  // C and J: 59 +, 72 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[4],
       Jacobian<T>& J) {
@@ -136,41 +112,34 @@ struct constant_velocity {
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
     const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T dot_fa_y_fb_z = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
     const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
     const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
     const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
     const T fa_z_x_fb_y_x = fa_z_y * fb_y_z - fa_z_z * fb_y_y;
     const T fa_z_x_fb_y_y = fa_z_z * fb_y_x - fa_z_x * fb_y_z;
-    const T wa_4_x_1 = fa_z_x_fb_y_x - fa_y_x_fb_z_x;
-    const T wa_4_y_1 = fa_z_x_fb_y_y - fa_y_x_fb_z_y;
     const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
     const T fa_z_x_fb_y_z = fa_z_x * fb_y_y - fa_z_y * fb_y_x;
-    const T wa_4_z_1 = fa_z_x_fb_y_z - fa_y_x_fb_z_z;
     C[0] = a.x - b.x + ra_x - rb_x;
     C[1] = a.y - b.y + ra_y - rb_y;
     C[2] = a.z - b.z + ra_z - rb_z;
-    C[3] = dot_fa_z_fb_y - dot_fa_y_fb_z;
+    C[3] = fa_z_x * fb_y_x - fa_y_x * fb_z_x - fa_y_y * fb_z_y + fa_z_y * fb_y_y - fa_y_z *
+        fb_z_z + fa_z_z * fb_y_z;
     J.ra_z = ra_z;
     J.ra_y = ra_y;
     J.rb_z = rb_z;
     J.rb_y = rb_y;
     J.ra_x = ra_x;
     J.rb_x = rb_x;
-    J.wa_4_x = wa_4_x_1;
-    J.wa_4_y = wa_4_y_1;
-    J.wa_4_z = wa_4_z_1;
-    J.wb_4_x = -wa_4_x_1;
-    J.wb_4_y = -wa_4_y_1;
-    J.wb_4_z = -wa_4_z_1;
+    J.axis_shafts_x = fa_z_x_fb_y_x - fa_y_x_fb_z_x;
+    J.axis_shafts_y = fa_z_x_fb_y_y - fa_y_x_fb_z_y;
+    J.axis_shafts_z = fa_z_x_fb_y_z - fa_y_x_fb_z_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 69 +, 75 *
@@ -210,13 +179,17 @@ struct constant_velocity {
     K[3] = J.ra_y * K21_3 - J.ra_x * K11_3 - J.rb_x * K11_5 + J.rb_y * K21_6;
     K[4] = J.ra_y * K22_2 - J.ra_x * K32_2 - J.rb_x * K32_4 + J.rb_y * K22_4;
     K[5] = K11_1 - J.ra_x * K33_1 + J.ra_y * K33_2 - J.rb_x * K33_3 + J.rb_y * K33_4;
-    K[6] = J.wa_4_x * (K21_3 + K21_6) + J.wa_4_y * (K11_3 + K11_5) + J.wa_4_z * (K11_2 + K11_4);
-    K[7] = J.wa_4_x * (K22_2 + K22_4) + J.wa_4_y * (K32_2 + K32_4) + J.wa_4_z * (K22_1 + K22_3);
-    K[8] = J.wa_4_x * (K33_2 + K33_4) + J.wa_4_y * (K33_1 + K33_3) + J.wa_4_z *
-        (K21_2 - K32_1 + K21_5 - K32_3);
-    K[9] = J.wa_4_x * (J.wa_4_x * (ma.Ixx + mb.Ixx) + J.wa_4_y * K44_1 + J.wa_4_z * K44_2) +
-        J.wa_4_y * (J.wa_4_x * K44_1 + J.wa_4_y * (ma.Iyy + mb.Iyy) + J.wa_4_z * K44_3) +
-        J.wa_4_z * (J.wa_4_x * K44_2 + J.wa_4_y * K44_3 + J.wa_4_z * (ma.Izz + mb.Izz));
+    K[6] = J.axis_shafts_x * (K21_3 + K21_6) + J.axis_shafts_y * (K11_3 + K11_5) +
+        J.axis_shafts_z * (K11_2 + K11_4);
+    K[7] = J.axis_shafts_x * (K22_2 + K22_4) + J.axis_shafts_y * (K32_2 + K32_4) +
+        J.axis_shafts_z * (K22_1 + K22_3);
+    K[8] = J.axis_shafts_x * (K33_2 + K33_4) + J.axis_shafts_y * (K33_1 + K33_3) +
+        J.axis_shafts_z * (K21_2 - K32_1 + K21_5 - K32_3);
+    K[9] = J.axis_shafts_x * (J.axis_shafts_x * (ma.Ixx + mb.Ixx) + J.axis_shafts_y * K44_1 +
+        J.axis_shafts_z * K44_2) + J.axis_shafts_y *
+        (J.axis_shafts_x * K44_1 + J.axis_shafts_y * (ma.Iyy + mb.Iyy) + J.axis_shafts_z * K44_3) +
+        J.axis_shafts_z * (J.axis_shafts_x * K44_2 + J.axis_shafts_y * K44_3 + J.axis_shafts_z *
+        (ma.Izz + mb.Izz));
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 10 +, 26 *, 4 /, 4 <
@@ -264,7 +237,7 @@ struct constant_velocity {
     lambda[3] = x4;
   }
 
-  // J v: 20 +, 18 *
+  // J v: 20 +, 15 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[4]) {
     const Velocity<T>& va = v[0];
@@ -272,11 +245,11 @@ struct constant_velocity {
     Jv[0] = va.x - vb.x - J.ra_y * va.wz + J.ra_z * va.wy + J.rb_y * vb.wz - J.rb_z * vb.wy;
     Jv[1] = va.y - vb.y + J.ra_x * va.wz - J.ra_z * va.wx - J.rb_x * vb.wz + J.rb_z * vb.wx;
     Jv[2] = va.z - vb.z - J.ra_x * va.wy + J.ra_y * va.wx + J.rb_x * vb.wy - J.rb_y * vb.wx;
-    Jv[3] = J.wa_4_x * va.wx + J.wa_4_y * va.wy + J.wa_4_z * va.wz + J.wb_4_x * vb.wx + J.wb_4_y *
-        vb.wy + J.wb_4_z * vb.wz;
+    Jv[3] = J.axis_shafts_x * (va.wx - vb.wx) + J.axis_shafts_y * (va.wy - vb.wy) +
+        J.axis_shafts_z * (va.wz - vb.wz);
   }
 
-  // v += M^-1 J^T lambda: 36 +, 42 *
+  // v += M^-1 J^T lambda: 36 +, 39 *
   template <class T>
   static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[4],
       Velocity<T> (&v)[2]) {
@@ -284,18 +257,21 @@ struct constant_velocity {
     const InverseMass<T>& ma = m[0];
     const Velocity<T> vb = v[1];
     const InverseMass<T>& mb = m[1];
-    const T v1_1 = J.ra_y * lambda[2] - J.ra_z * lambda[1] + J.wa_4_x * lambda[3];
-    const T v1_2 = J.ra_z * lambda[0] - J.ra_x * lambda[2] + J.wa_4_y * lambda[3];
-    const T v1_3 = J.ra_x * lambda[1] - J.ra_y * lambda[0] + J.wa_4_z * lambda[3];
-    const T v2_1 = J.rb_z * lambda[1] - J.rb_y * lambda[2] + J.wb_4_x * lambda[3];
-    const T v2_2 = J.rb_x * lambda[2] - J.rb_z * lambda[0] + J.wb_4_y * lambda[3];
-    const T v2_3 = J.rb_y * lambda[0] - J.rb_x * lambda[1] + J.wb_4_z * lambda[3];
+    const T v1_1 = J.axis_shafts_x * lambda[3];
+    const T v1_2 = v1_1 + J.ra_y * lambda[2] - J.ra_z * lambda[1];
+    const T v1_3 = J.axis_shafts_y * lambda[3];
+    const T v1_4 = v1_3 - J.ra_x * lambda[2] + J.ra_z * lambda[0];
+    const T v1_5 = J.axis_shafts_z * lambda[3];
+    const T v1_6 = v1_5 + J.ra_x * lambda[1] - J.ra_y * lambda[0];
+    const T v2_1 = J.rb_z * lambda[1] - v1_1 - J.rb_y * lambda[2];
+    const T v2_2 = J.rb_x * lambda[2] - v1_3 - J.rb_z * lambda[0];
+    const T v2_3 = J.rb_y * lambda[0] - v1_5 - J.rb_x * lambda[1];
     v[0].x = va.x + ma.m * lambda[0];
     v[0].y = va.y + ma.m * lambda[1];
     v[0].z = va.z + ma.m * lambda[2];
-    v[0].wx = va.wx + ma.Ixx * v1_1 + ma.Ixy * v1_2 + ma.Ixz * v1_3;
-    v[0].wy = va.wy + ma.Ixy * v1_1 + ma.Iyy * v1_2 + ma.Iyz * v1_3;
-    v[0].wz = va.wz + ma.Ixz * v1_1 + ma.Iyz * v1_2 + ma.Izz * v1_3;
+    v[0].wx = va.wx + ma.Ixx * v1_2 + ma.Ixy * v1_4 + ma.Ixz * v1_6;
+    v[0].wy = va.wy + ma.Ixy * v1_2 + ma.Iyy * v1_4 + ma.Iyz * v1_6;
+    v[0].wz = va.wz + ma.Ixz * v1_2 + ma.Iyz * v1_4 + ma.Izz * v1_6;
     v[1].x = vb.x - mb.m * lambda[0];
     v[1].y = vb.y - mb.m * lambda[1];
     v[1].z = vb.z - mb.m * lambda[2];
@@ -304,7 +280,7 @@ struct constant_velocity {
     v[1].wz = vb.wz + mb.Ixz * v2_1 + mb.Iyz * v2_2 + mb.Izz * v2_3;
   }
 
-  // J with its zeros: v, w of each body: 6 +
+  // J with its zeros: v, w of each body: 9 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[4][12]) {
     for (auto& row : D) {
@@ -328,15 +304,15 @@ struct constant_velocity {
     D[2][8] = T(-1);
     D[2][9] = -J.rb_y;
     D[2][10] = J.rb_x;
-    D[3][3] = J.wa_4_x;
-    D[3][4] = J.wa_4_y;
-    D[3][5] = J.wa_4_z;
-    D[3][9] = J.wb_4_x;
-    D[3][10] = J.wb_4_y;
-    D[3][11] = J.wb_4_z;
+    D[3][3] = J.axis_shafts_x;
+    D[3][4] = J.axis_shafts_y;
+    D[3][5] = J.axis_shafts_z;
+    D[3][9] = -J.axis_shafts_x;
+    D[3][10] = -J.axis_shafts_y;
+    D[3][11] = -J.axis_shafts_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 31 +, 48 *
+  // (M^-1 J^T)^T, laid out like dense: 34 +, 48 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[4][12]) {
@@ -375,15 +351,15 @@ struct constant_velocity {
     D[2][9] = mb.Ixy * J.rb_x - mb.Ixx * J.rb_y;
     D[2][10] = mb.Iyy * J.rb_x - mb.Ixy * J.rb_y;
     D[2][11] = D2_1_2 - D1_2_2;
-    D[3][3] = ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z;
-    D[3][4] = ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z;
-    D[3][5] = ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z;
-    D[3][9] = mb.Ixx * J.wb_4_x + mb.Ixy * J.wb_4_y + mb.Ixz * J.wb_4_z;
-    D[3][10] = mb.Ixy * J.wb_4_x + mb.Iyy * J.wb_4_y + mb.Iyz * J.wb_4_z;
-    D[3][11] = mb.Ixz * J.wb_4_x + mb.Iyz * J.wb_4_y + mb.Izz * J.wb_4_z;
+    D[3][3] = ma.Ixx * J.axis_shafts_x + ma.Ixy * J.axis_shafts_y + ma.Ixz * J.axis_shafts_z;
+    D[3][4] = ma.Ixy * J.axis_shafts_x + ma.Iyy * J.axis_shafts_y + ma.Iyz * J.axis_shafts_z;
+    D[3][5] = ma.Ixz * J.axis_shafts_x + ma.Iyz * J.axis_shafts_y + ma.Izz * J.axis_shafts_z;
+    D[3][9] = -mb.Ixx * J.axis_shafts_x - mb.Ixy * J.axis_shafts_y - mb.Ixz * J.axis_shafts_z;
+    D[3][10] = -mb.Ixy * J.axis_shafts_x - mb.Iyy * J.axis_shafts_y - mb.Iyz * J.axis_shafts_z;
+    D[3][11] = -mb.Ixz * J.axis_shafts_x - mb.Iyz * J.axis_shafts_y - mb.Izz * J.axis_shafts_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 29 +, 38 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 24 +, 28 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[10]) {
@@ -399,20 +375,23 @@ struct constant_velocity {
     const T ia_ra_x = ma.I * J.ra_x;
     const T ib_rb_x = mb.I * J.rb_x;
     const T K22_1 = ia_ra_x * J.ra_x + ib_rb_x * J.rb_x;
+    const T K41_1 = ia_ra_z + ib_rb_z;
+    const T K41_2 = ia_ra_y + ib_rb_y;
+    const T K42_1 = ia_ra_x + ib_rb_x;
     K[0] = K11_1 + K11_3;
-    K[1] = -ia_ra_x * J.ra_y - ib_rb_x * J.rb_y;
+    K[1] = -ia_ra_y * J.ra_x - ib_rb_y * J.rb_x;
     K[2] = K22_1 + K11_3;
     K[3] = -ia_ra_z * J.ra_x - ib_rb_z * J.rb_x;
     K[4] = -ia_ra_z * J.ra_y - ib_rb_z * J.rb_y;
     K[5] = K11_1 + K22_1 + K11_2;
-    K[6] = ia_ra_z * J.wa_4_y - ia_ra_y * J.wa_4_z + ib_rb_y * J.wb_4_z - ib_rb_z * J.wb_4_y;
-    K[7] = ia_ra_x * J.wa_4_z - ia_ra_z * J.wa_4_x - ib_rb_x * J.wb_4_z + ib_rb_z * J.wb_4_x;
-    K[8] = ia_ra_y * J.wa_4_x - ia_ra_x * J.wa_4_y + ib_rb_x * J.wb_4_y - ib_rb_y * J.wb_4_x;
-    K[9] = ma.I * (J.wa_4_x * J.wa_4_x + J.wa_4_y * J.wa_4_y + J.wa_4_z * J.wa_4_z) + mb.I *
-        (J.wb_4_x * J.wb_4_x + J.wb_4_y * J.wb_4_y + J.wb_4_z * J.wb_4_z);
+    K[6] = J.axis_shafts_y * K41_1 - J.axis_shafts_z * K41_2;
+    K[7] = J.axis_shafts_z * K42_1 - J.axis_shafts_x * K41_1;
+    K[8] = J.axis_shafts_x * K41_2 - J.axis_shafts_y * K42_1;
+    K[9] = (J.axis_shafts_x * J.axis_shafts_x + J.axis_shafts_y * J.axis_shafts_y +
+        J.axis_shafts_z * J.axis_shafts_z) * (ma.I + mb.I);
   }
 
-  // v += M^-1 J^T lambda, for sphere-like bodies: 24 +, 30 *
+  // v += M^-1 J^T lambda, for sphere-like bodies: 24 +, 27 *
   template <class T>
   static void apply(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       const T (&lambda)[4], Velocity<T> (&v)[2]) {
@@ -420,21 +399,24 @@ struct constant_velocity {
     const IsotropicInverseMass<T>& ma = m[0];
     const Velocity<T> vb = v[1];
     const IsotropicInverseMass<T>& mb = m[1];
+    const T v1_1 = J.axis_shafts_x * lambda[3];
+    const T v1_1_2 = J.axis_shafts_y * lambda[3];
+    const T v1_1_3 = J.axis_shafts_z * lambda[3];
     v[0].x = va.x + ma.m * lambda[0];
     v[0].y = va.y + ma.m * lambda[1];
     v[0].z = va.z + ma.m * lambda[2];
-    v[0].wx = va.wx + ma.I * (J.ra_y * lambda[2] - J.ra_z * lambda[1] + J.wa_4_x * lambda[3]);
-    v[0].wy = va.wy + ma.I * (J.ra_z * lambda[0] - J.ra_x * lambda[2] + J.wa_4_y * lambda[3]);
-    v[0].wz = va.wz + ma.I * (J.ra_x * lambda[1] - J.ra_y * lambda[0] + J.wa_4_z * lambda[3]);
+    v[0].wx = va.wx + ma.I * (v1_1 + J.ra_y * lambda[2] - J.ra_z * lambda[1]);
+    v[0].wy = va.wy + ma.I * (v1_1_2 - J.ra_x * lambda[2] + J.ra_z * lambda[0]);
+    v[0].wz = va.wz + ma.I * (v1_1_3 + J.ra_x * lambda[1] - J.ra_y * lambda[0]);
     v[1].x = vb.x - mb.m * lambda[0];
     v[1].y = vb.y - mb.m * lambda[1];
     v[1].z = vb.z - mb.m * lambda[2];
-    v[1].wx = vb.wx + mb.I * (J.rb_z * lambda[1] - J.rb_y * lambda[2] + J.wb_4_x * lambda[3]);
-    v[1].wy = vb.wy + mb.I * (J.rb_x * lambda[2] - J.rb_z * lambda[0] + J.wb_4_y * lambda[3]);
-    v[1].wz = vb.wz + mb.I * (J.rb_y * lambda[0] - J.rb_x * lambda[1] + J.wb_4_z * lambda[3]);
+    v[1].wx = vb.wx + mb.I * (J.rb_z * lambda[1] - v1_1 - J.rb_y * lambda[2]);
+    v[1].wy = vb.wy + mb.I * (J.rb_x * lambda[2] - v1_1_2 - J.rb_z * lambda[0]);
+    v[1].wz = vb.wz + mb.I * (J.rb_y * lambda[0] - v1_1_3 - J.rb_x * lambda[1]);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 7 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 10 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[4][12]) {
@@ -467,15 +449,15 @@ struct constant_velocity {
     D[2][8] = D[0][6];
     D[2][9] = -ib_rb_y;
     D[2][10] = ib_rb_x;
-    D[3][3] = ma.I * J.wa_4_x;
-    D[3][4] = ma.I * J.wa_4_y;
-    D[3][5] = ma.I * J.wa_4_z;
-    D[3][9] = mb.I * J.wb_4_x;
-    D[3][10] = mb.I * J.wb_4_y;
-    D[3][11] = mb.I * J.wb_4_z;
+    D[3][3] = ma.I * J.axis_shafts_x;
+    D[3][4] = ma.I * J.axis_shafts_y;
+    D[3][5] = ma.I * J.axis_shafts_z;
+    D[3][9] = -mb.I * J.axis_shafts_x;
+    D[3][10] = -mb.I * J.axis_shafts_y;
+    D[3][11] = -mb.I * J.axis_shafts_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 30 +, 54 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 33 +, 54 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[4][12]) {
     for (auto& row : D) {
@@ -507,15 +489,15 @@ struct constant_velocity {
     D[2][9] = J.rb_x * b.yx - J.rb_y * b.xx;
     D[2][10] = J.rb_x * b.yy - J.rb_y * b.xy;
     D[2][11] = J.rb_x * b.yz - J.rb_y * b.xz;
-    D[3][3] = J.wa_4_x * a.xx + J.wa_4_y * a.yx + J.wa_4_z * a.zx;
-    D[3][4] = J.wa_4_x * a.xy + J.wa_4_y * a.yy + J.wa_4_z * a.zy;
-    D[3][5] = J.wa_4_x * a.xz + J.wa_4_y * a.yz + J.wa_4_z * a.zz;
-    D[3][9] = J.wb_4_x * b.xx + J.wb_4_y * b.yx + J.wb_4_z * b.zx;
-    D[3][10] = J.wb_4_x * b.xy + J.wb_4_y * b.yy + J.wb_4_z * b.zy;
-    D[3][11] = J.wb_4_x * b.xz + J.wb_4_y * b.yz + J.wb_4_z * b.zz;
+    D[3][3] = J.axis_shafts_x * a.xx + J.axis_shafts_y * a.yx + J.axis_shafts_z * a.zx;
+    D[3][4] = J.axis_shafts_x * a.xy + J.axis_shafts_y * a.yy + J.axis_shafts_z * a.zy;
+    D[3][5] = J.axis_shafts_x * a.xz + J.axis_shafts_y * a.yz + J.axis_shafts_z * a.zz;
+    D[3][9] = -J.axis_shafts_x * b.xx - J.axis_shafts_y * b.yx - J.axis_shafts_z * b.zx;
+    D[3][10] = -J.axis_shafts_x * b.xy - J.axis_shafts_y * b.yy - J.axis_shafts_z * b.zy;
+    D[3][11] = -J.axis_shafts_x * b.xz - J.axis_shafts_y * b.yz - J.axis_shafts_z * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 48 +, 56 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 47 +, 57 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[4][14]) {
     for (auto& row : D) {
@@ -523,79 +505,80 @@ struct constant_velocity {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T D1_1 = a.e3 * T(2);
-    const T D1_2 = D1_1 * J.ra_y;
-    const T D1_3 = a.e2 * T(2);
-    const T D1_4 = D1_3 * J.ra_z;
-    const T D1_1_2 = D1_3 * J.ra_y;
-    const T D1_2_2 = D1_1 * J.ra_z;
-    const T D1_1_3 = T(2) * a.e1;
-    const T D1_2_3 = D1_1_3 * J.ra_y;
-    const T D1_3_2 = T(2) * a.e0;
-    const T D1_4_2 = D1_3_2 * J.ra_z;
-    const T D1_1_4 = D1_3_2 * J.ra_y;
-    const T D1_2_4 = D1_1_3 * J.ra_z;
-    const T D1_1_5 = T(2) * b.e3;
-    const T D1_2_5 = D1_1_5 * J.rb_y;
-    const T D1_3_3 = T(2) * b.e2;
-    const T D1_4_3 = D1_3_3 * J.rb_z;
-    const T D1_1_6 = D1_3_3 * J.rb_y;
-    const T D1_2_6 = D1_1_5 * J.rb_z;
-    const T D1_1_7 = T(2) * b.e1;
-    const T D1_2_7 = D1_1_7 * J.rb_y;
-    const T D1_3_4 = T(2) * b.e0;
-    const T D1_4_4 = D1_3_4 * J.rb_z;
-    const T D1_1_8 = D1_3_4 * J.rb_y;
-    const T D1_2_8 = D1_1_7 * J.rb_z;
-    const T D2_1 = D1_1 * J.ra_x;
-    const T D2_1_2 = D1_3 * J.ra_x;
-    const T D2_1_3 = D1_1_3 * J.ra_x;
-    const T D2_1_4 = D1_3_2 * J.ra_x;
-    const T D2_1_5 = D1_1_5 * J.rb_x;
-    const T D2_1_6 = D1_3_3 * J.rb_x;
-    const T D2_1_7 = D1_1_7 * J.rb_x;
-    const T D2_1_8 = D1_3_4 * J.rb_x;
+    const T D1_1 = J.ra_y * T(2);
+    const T D1_2 = D1_1 * a.e3;
+    const T D1_3 = J.ra_z * T(2);
+    const T D1_4 = D1_3 * a.e2;
+    const T D1_1_2 = D1_1 * a.e2;
+    const T D1_2_2 = D1_3 * a.e3;
+    const T D1_1_3 = D1_1 * a.e1;
+    const T D1_2_3 = D1_3 * a.e0;
+    const T D1_1_4 = D1_1 * a.e0;
+    const T D1_2_4 = D1_3 * a.e1;
+    const T D1_1_5 = T(2) * J.rb_y;
+    const T D1_2_5 = D1_1_5 * b.e3;
+    const T D1_3_2 = T(2) * J.rb_z;
+    const T D1_4_2 = D1_3_2 * b.e2;
+    const T D1_1_6 = D1_1_5 * b.e2;
+    const T D1_2_6 = D1_3_2 * b.e3;
+    const T D1_1_7 = D1_1_5 * b.e1;
+    const T D1_2_7 = D1_3_2 * b.e0;
+    const T D1_1_8 = D1_1_5 * b.e0;
+    const T D1_2_8 = D1_3_2 * b.e1;
+    const T D2_1 = T(2) * J.ra_x;
+    const T D2_2 = D2_1 * a.e3;
+    const T D2_1_2 = D2_1 * a.e2;
+    const T D2_1_3 = D2_1 * a.e1;
+    const T D2_1_4 = D2_1 * a.e0;
+    const T D2_1_5 = T(2) * J.rb_x;
+    const T D2_2_2 = D2_1_5 * b.e3;
+    const T D2_1_6 = D2_1_5 * b.e2;
+    const T D2_1_7 = D2_1_5 * b.e1;
+    const T D2_1_8 = D2_1_5 * b.e0;
+    const T D4_1 = T(2) * J.axis_shafts_x;
+    const T D4_2 = T(2) * J.axis_shafts_y;
+    const T D4_3 = T(2) * J.axis_shafts_z;
     D[0][0] = T(1);
     D[0][3] = D1_2 - D1_4;
     D[0][4] = D1_1_2 + D1_2_2;
-    D[0][5] = D1_4_2 - D1_2_3;
+    D[0][5] = D1_2_3 - D1_1_3;
     D[0][6] = -D1_1_4 - D1_2_4;
     D[0][7] = T(-1);
-    D[0][10] = D1_4_3 - D1_2_5;
+    D[0][10] = D1_4_2 - D1_2_5;
     D[0][11] = -D1_1_6 - D1_2_6;
-    D[0][12] = D1_2_7 - D1_4_4;
+    D[0][12] = D1_1_7 - D1_2_7;
     D[0][13] = D1_1_8 + D1_2_8;
     D[1][1] = T(1);
-    D[1][3] = D1_2_4 - D2_1;
-    D[1][4] = -D2_1_2 - D1_4_2;
+    D[1][3] = D1_2_4 - D2_2;
+    D[1][4] = -D2_1_2 - D1_2_3;
     D[1][5] = D2_1_3 + D1_2_2;
     D[1][6] = D2_1_4 - D1_4;
     D[1][8] = T(-1);
-    D[1][10] = D2_1_5 - D1_2_8;
-    D[1][11] = D2_1_6 + D1_4_4;
+    D[1][10] = D2_2_2 - D1_2_8;
+    D[1][11] = D2_1_6 + D1_2_7;
     D[1][12] = -D2_1_7 - D1_2_6;
-    D[1][13] = D1_4_3 - D2_1_8;
+    D[1][13] = D1_4_2 - D2_1_8;
     D[2][2] = T(1);
-    D[2][3] = D2_1_2 - D1_2_3;
-    D[2][4] = D1_1_4 - D2_1;
+    D[2][3] = D2_1_2 - D1_1_3;
+    D[2][4] = D1_1_4 - D2_2;
     D[2][5] = -D2_1_4 - D1_2;
     D[2][6] = D2_1_3 + D1_1_2;
     D[2][9] = T(-1);
-    D[2][10] = D1_2_7 - D2_1_6;
-    D[2][11] = D2_1_5 - D1_1_8;
+    D[2][10] = D1_1_7 - D2_1_6;
+    D[2][11] = D2_2_2 - D1_1_8;
     D[2][12] = D2_1_8 + D1_2_5;
     D[2][13] = -D2_1_7 - D1_1_6;
-    D[3][3] = -D1_1_3 * J.wa_4_x - D1_3 * J.wa_4_y - D1_1 * J.wa_4_z;
-    D[3][4] = D1_3_2 * J.wa_4_x + D1_1 * J.wa_4_y - D1_3 * J.wa_4_z;
-    D[3][5] = D1_3_2 * J.wa_4_y - D1_1 * J.wa_4_x + D1_1_3 * J.wa_4_z;
-    D[3][6] = D1_3 * J.wa_4_x - D1_1_3 * J.wa_4_y + D1_3_2 * J.wa_4_z;
-    D[3][10] = -D1_1_7 * J.wb_4_x - D1_3_3 * J.wb_4_y - D1_1_5 * J.wb_4_z;
-    D[3][11] = D1_3_4 * J.wb_4_x + D1_1_5 * J.wb_4_y - D1_3_3 * J.wb_4_z;
-    D[3][12] = D1_3_4 * J.wb_4_y - D1_1_5 * J.wb_4_x + D1_1_7 * J.wb_4_z;
-    D[3][13] = D1_3_3 * J.wb_4_x - D1_1_7 * J.wb_4_y + D1_3_4 * J.wb_4_z;
+    D[3][3] = -D4_1 * a.e1 - D4_2 * a.e2 - D4_3 * a.e3;
+    D[3][4] = D4_1 * a.e0 + D4_2 * a.e3 - D4_3 * a.e2;
+    D[3][5] = D4_2 * a.e0 - D4_1 * a.e3 + D4_3 * a.e1;
+    D[3][6] = D4_1 * a.e2 - D4_2 * a.e1 + D4_3 * a.e0;
+    D[3][10] = D4_1 * b.e1 + D4_2 * b.e2 + D4_3 * b.e3;
+    D[3][11] = D4_3 * b.e2 - D4_1 * b.e0 - D4_2 * b.e3;
+    D[3][12] = D4_1 * b.e3 - D4_2 * b.e0 - D4_3 * b.e1;
+    D[3][13] = D4_2 * b.e1 - D4_1 * b.e2 - D4_3 * b.e0;
   }
 
-  // -Jdot v - d/dt(dC/dt): 89 +, 129 *
+  // -Jdot v - d/dt(dC/dt): 90 +, 129 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[4]) {
@@ -653,18 +636,21 @@ struct constant_velocity {
     const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
     const T w_a_x_fa_y_x_fb_z_x = fb_z_z * w_a_x_fa_y_y - fb_z_y * w_a_x_fa_y_z;
     const T w_a_x_fa_y_x_fb_z_y = fb_z_x * w_a_x_fa_y_z - fb_z_z * w_a_x_fa_y_x;
+    const T axis_shafts_dot_x = w_b_x_fb_z_x_fa_y_x - w_b_x_fb_y_x_fa_z_x + w_a_x_fa_z_x_fb_y_x -
+        w_a_x_fa_y_x_fb_z_x;
+    const T axis_shafts_dot_y = w_b_x_fb_z_x_fa_y_y - w_b_x_fb_y_x_fa_z_y + w_a_x_fa_z_x_fb_y_y -
+        w_a_x_fa_y_x_fb_z_y;
     const T w_b_x_fb_z_x_fa_y_z = fa_y_y * w_b_x_fb_z_x - fa_y_x * w_b_x_fb_z_y;
     const T w_b_x_fb_y_x_fa_z_z = fa_z_y * w_b_x_fb_y_x - fa_z_x * w_b_x_fb_y_y;
     const T w_a_x_fa_z_x_fb_y_z = fb_y_y * w_a_x_fa_z_x - fb_y_x * w_a_x_fa_z_y;
     const T w_a_x_fa_y_x_fb_z_z = fb_z_y * w_a_x_fa_y_x - fb_z_x * w_a_x_fa_y_y;
+    const T axis_shafts_dot_z = w_b_x_fb_z_x_fa_y_z - w_b_x_fb_y_x_fa_z_z + w_a_x_fa_z_x_fb_y_z -
+        w_a_x_fa_y_x_fb_z_z;
     g[0] = w_a_x_ra_x_w_a_x - w_b_x_rb_x_w_b_x;
     g[1] = w_a_x_ra_x_w_a_y - w_b_x_rb_x_w_b_y;
     g[2] = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
-    g[3] = (w_b_x_fb_z_x_fa_y_x - w_b_x_fb_y_x_fa_z_x + w_a_x_fa_z_x_fb_y_x -
-        w_a_x_fa_y_x_fb_z_x) * (vb.wx - va.wx) +
-        (w_b_x_fb_z_x_fa_y_y - w_b_x_fb_y_x_fa_z_y + w_a_x_fa_z_x_fb_y_y - w_a_x_fa_y_x_fb_z_y) *
-        (vb.wy - va.wy) + (w_b_x_fb_z_x_fa_y_z - w_b_x_fb_y_x_fa_z_z + w_a_x_fa_z_x_fb_y_z -
-        w_a_x_fa_y_x_fb_z_z) * (vb.wz - va.wz);
+    g[3] = -(va.wx - vb.wx) * axis_shafts_dot_x - (va.wy - vb.wy) * axis_shafts_dot_y -
+        (va.wz - vb.wz) * axis_shafts_dot_z;
   }
 
   // dC/dt at fixed q: nothing
@@ -821,7 +807,7 @@ struct constant_velocity {
 
     template <class T>
     struct Jacobian {
-      T wa_x, wa_y, wa_z, wb_x, wb_y, wb_z;
+      T axis_bend_y_x, axis_bend_y_y, axis_bend_y_z;
     };
 
     // C: 23 +, 33 *, 1 call
@@ -844,7 +830,7 @@ struct constant_velocity {
       C[0] = atan2(-dot_fa_z_fb_x, dot_fa_x_fb_x);
     }
 
-    // C and J: 39 +, 67 *, 1 /, 1 <, 1 call
+    // C and J: 30 +, 49 *, 1 /, 1 <, 1 call
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -862,39 +848,29 @@ struct constant_velocity {
       const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
       const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
       const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-      const T wa_x_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_z_fb_x * dot_fa_z_fb_x);
-      const T wa_x_2 = dot_fa_x_fb_x * wa_x_1;
-      const T fa_z_x_fb_x_x = fa_z_y * fb_x_z - fa_z_z * fb_x_y;
-      const T fa_z_x_fb_x_y = fa_z_z * fb_x_x - fa_z_x * fb_x_z;
-      const T wa_x_3 = dot_fa_z_fb_x * wa_x_1;
-      const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
-      const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
-      const T fa_z_x_fb_x_z = fa_z_x * fb_x_y - fa_z_y * fb_x_x;
-      const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
-      const T wb_x_1 = wa_x_3 * fa_x_z - wa_x_2 * fa_z_z;
-      const T wb_x_2 = wa_x_3 * fa_x_y - wa_x_2 * fa_z_y;
-      const T wb_y_1 = wa_x_3 * fa_x_x - wa_x_2 * fa_z_x;
+      const T axis_bend_y_x_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_z_fb_x *
+          dot_fa_z_fb_x);
+      const T axis_bend_y_x_2 = dot_fa_z_fb_x * axis_bend_y_x_1;
+      const T axis_bend_y_x_3 = dot_fa_x_fb_x * axis_bend_y_x_1;
+      const T axis_bend_y_x_4 = axis_bend_y_x_2 * fa_x_z - axis_bend_y_x_3 * fa_z_z;
+      const T axis_bend_y_x_5 = axis_bend_y_x_2 * fa_x_y - axis_bend_y_x_3 * fa_z_y;
+      const T axis_bend_y_y_1 = axis_bend_y_x_2 * fa_x_x - axis_bend_y_x_3 * fa_z_x;
       C[0] = atan2(-dot_fa_z_fb_x, dot_fa_x_fb_x);
-      J.wa_x = wa_x_3 * fa_x_x_fb_x_x - wa_x_2 * fa_z_x_fb_x_x;
-      J.wa_y = wa_x_3 * fa_x_x_fb_x_y - wa_x_2 * fa_z_x_fb_x_y;
-      J.wa_z = wa_x_3 * fa_x_x_fb_x_z - wa_x_2 * fa_z_x_fb_x_z;
-      J.wb_x = fb_x_y * wb_x_1 - fb_x_z * wb_x_2;
-      J.wb_y = fb_x_z * wb_y_1 - fb_x_x * wb_x_1;
-      J.wb_z = fb_x_x * wb_x_2 - fb_x_y * wb_y_1;
+      J.axis_bend_y_x = fb_x_z * axis_bend_y_x_5 - fb_x_y * axis_bend_y_x_4;
+      J.axis_bend_y_y = fb_x_x * axis_bend_y_x_4 - fb_x_z * axis_bend_y_y_1;
+      J.axis_bend_y_z = fb_x_y * axis_bend_y_y_1 - fb_x_x * axis_bend_y_x_5;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 11 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      const T K11_1 = J.wa_z * T(2);
-      const T K11_2 = J.wb_z * T(2);
-      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
-          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
-          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
+      const T K11_1 = J.axis_bend_y_z * T(2);
+      K[0] = J.axis_bend_y_z * J.axis_bend_y_z * (ma.Izz + mb.Izz) + J.axis_bend_y_x *
+          (J.axis_bend_y_x * (ma.Ixx + mb.Ixx) + J.axis_bend_y_y * T(2) * (ma.Ixy + mb.Ixy) +
+          K11_1 * (ma.Ixz + mb.Ixz)) + J.axis_bend_y_y *
+          (J.axis_bend_y_y * (ma.Iyy + mb.Iyy) + K11_1 * (ma.Iyz + mb.Iyz));
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -909,16 +885,16 @@ struct constant_velocity {
       lambda[0] = F[0] * rhs[0];
     }
 
-    // J v: 5 +, 6 *
+    // J v: 5 +, 3 *
     template <class T>
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.wb_x * vb.wx + J.wb_y * vb.wy +
-          J.wb_z * vb.wz;
+      Jv[0] = J.axis_bend_y_x * (va.wx - vb.wx) + J.axis_bend_y_y * (va.wy - vb.wy) +
+          J.axis_bend_y_z * (va.wz - vb.wz);
     }
 
-    // v += M^-1 J^T lambda: 18 +, 24 *
+    // v += M^-1 J^T lambda: 18 +, 21 *
     template <class T>
     static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
         Velocity<T> (&v)[2]) {
@@ -926,35 +902,32 @@ struct constant_velocity {
       const InverseMass<T>& ma = m[0];
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
-      const T v1_1 = J.wa_x * lambda[0];
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
-      const T v2_1 = lambda[0] * J.wb_x;
-      const T v2_2 = lambda[0] * J.wb_y;
-      const T v2_3 = lambda[0] * J.wb_z;
+      const T v1_1 = J.axis_bend_y_x * lambda[0];
+      const T v1_2 = lambda[0] * J.axis_bend_y_y;
+      const T v1_3 = lambda[0] * J.axis_bend_y_z;
       v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
       v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
       v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
-      v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
-      v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
-      v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+      v[1].wx = vb.wx - v1_1 * mb.Ixx - v1_2 * mb.Ixy - v1_3 * mb.Ixz;
+      v[1].wy = vb.wy - v1_1 * mb.Ixy - v1_2 * mb.Iyy - v1_3 * mb.Iyz;
+      v[1].wz = vb.wz - v1_1 * mb.Ixz - v1_2 * mb.Iyz - v1_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: nothing
+    // J with its zeros: v, w of each body: 3 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
         for (T& entry : row) entry = T(0);
       }
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
-      D[0][9] = J.wb_x;
-      D[0][10] = J.wb_y;
-      D[0][11] = J.wb_z;
+      D[0][3] = J.axis_bend_y_x;
+      D[0][4] = J.axis_bend_y_y;
+      D[0][5] = J.axis_bend_y_z;
+      D[0][9] = -J.axis_bend_y_x;
+      D[0][10] = -J.axis_bend_y_y;
+      D[0][11] = -J.axis_bend_y_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 12 +, 18 *
+    // (M^-1 J^T)^T, laid out like dense: 15 +, 18 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -963,22 +936,23 @@ struct constant_velocity {
       }
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
-      D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
-      D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
-      D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+      D[0][3] = ma.Ixx * J.axis_bend_y_x + ma.Ixy * J.axis_bend_y_y + ma.Ixz * J.axis_bend_y_z;
+      D[0][4] = ma.Ixy * J.axis_bend_y_x + ma.Iyy * J.axis_bend_y_y + ma.Iyz * J.axis_bend_y_z;
+      D[0][5] = ma.Ixz * J.axis_bend_y_x + ma.Iyz * J.axis_bend_y_y + ma.Izz * J.axis_bend_y_z;
+      D[0][9] = -mb.Ixx * J.axis_bend_y_x - mb.Ixy * J.axis_bend_y_y - mb.Ixz * J.axis_bend_y_z;
+      D[0][10] = -mb.Ixy * J.axis_bend_y_x - mb.Iyy * J.axis_bend_y_y - mb.Iyz * J.axis_bend_y_z;
+      D[0][11] = -mb.Ixz * J.axis_bend_y_x - mb.Iyz * J.axis_bend_y_y - mb.Izz * J.axis_bend_y_z;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
+    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+      const T dot_axis_bend_y_axis_bend_y = J.axis_bend_y_x * J.axis_bend_y_x + J.axis_bend_y_y *
+          J.axis_bend_y_y + J.axis_bend_y_z * J.axis_bend_y_z;
+      K[0] = dot_axis_bend_y_axis_bend_y * (ma.I + mb.I);
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -991,15 +965,15 @@ struct constant_velocity {
       const IsotropicInverseMass<T>& mb = m[1];
       const T v1_1 = ma.I * lambda[0];
       const T v2_1 = lambda[0] * mb.I;
-      v[0].wx = va.wx + v1_1 * J.wa_x;
-      v[0].wy = va.wy + v1_1 * J.wa_y;
-      v[0].wz = va.wz + v1_1 * J.wa_z;
-      v[1].wx = vb.wx + v2_1 * J.wb_x;
-      v[1].wy = vb.wy + v2_1 * J.wb_y;
-      v[1].wz = vb.wz + v2_1 * J.wb_z;
+      v[0].wx = va.wx + v1_1 * J.axis_bend_y_x;
+      v[0].wy = va.wy + v1_1 * J.axis_bend_y_y;
+      v[0].wz = va.wz + v1_1 * J.axis_bend_y_z;
+      v[1].wx = vb.wx - v2_1 * J.axis_bend_y_x;
+      v[1].wy = vb.wy - v2_1 * J.axis_bend_y_y;
+      v[1].wz = vb.wz - v2_1 * J.axis_bend_y_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1008,15 +982,15 @@ struct constant_velocity {
       }
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
-      D[0][9] = mb.I * J.wb_x;
-      D[0][10] = mb.I * J.wb_y;
-      D[0][11] = mb.I * J.wb_z;
+      D[0][3] = ma.I * J.axis_bend_y_x;
+      D[0][4] = ma.I * J.axis_bend_y_y;
+      D[0][5] = ma.I * J.axis_bend_y_z;
+      D[0][9] = -mb.I * J.axis_bend_y_x;
+      D[0][10] = -mb.I * J.axis_bend_y_y;
+      D[0][11] = -mb.I * J.axis_bend_y_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -1024,15 +998,15 @@ struct constant_velocity {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-      D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-      D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-      D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+      D[0][3] = J.axis_bend_y_x * a.xx + J.axis_bend_y_y * a.yx + J.axis_bend_y_z * a.zx;
+      D[0][4] = J.axis_bend_y_x * a.xy + J.axis_bend_y_y * a.yy + J.axis_bend_y_z * a.zy;
+      D[0][5] = J.axis_bend_y_x * a.xz + J.axis_bend_y_y * a.yz + J.axis_bend_y_z * a.zz;
+      D[0][9] = -J.axis_bend_y_x * b.xx - J.axis_bend_y_y * b.yx - J.axis_bend_y_z * b.zx;
+      D[0][10] = -J.axis_bend_y_x * b.xy - J.axis_bend_y_y * b.yy - J.axis_bend_y_z * b.zy;
+      D[0][11] = -J.axis_bend_y_x * b.xz - J.axis_bend_y_y * b.yz - J.axis_bend_y_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 27 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -1040,17 +1014,20 @@ struct constant_velocity {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-      D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-      D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-      D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+      const T D1_1 = J.axis_bend_y_x * T(2);
+      const T D1_2 = J.axis_bend_y_y * T(2);
+      const T D1_3 = J.axis_bend_y_z * T(2);
+      D[0][3] = -D1_1 * a.e1 - D1_2 * a.e2 - D1_3 * a.e3;
+      D[0][4] = D1_1 * a.e0 + D1_2 * a.e3 - D1_3 * a.e2;
+      D[0][5] = D1_2 * a.e0 - D1_1 * a.e3 + D1_3 * a.e1;
+      D[0][6] = D1_1 * a.e2 - D1_2 * a.e1 + D1_3 * a.e0;
+      D[0][10] = D1_1 * b.e1 + D1_2 * b.e2 + D1_3 * b.e3;
+      D[0][11] = D1_3 * b.e2 - D1_1 * b.e0 - D1_2 * b.e3;
+      D[0][12] = D1_1 * b.e3 - D1_2 * b.e0 - D1_3 * b.e1;
+      D[0][13] = D1_2 * b.e1 - D1_1 * b.e2 - D1_3 * b.e0;
     }
 
-    // -Jdot v - d/dt(dC/dt): 71 +, 112 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 71 +, 108 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1058,41 +1035,16 @@ struct constant_velocity {
       const Velocity<T>& va = v[0];
       const Pose<T>& b = q[1];
       const Velocity<T>& vb = v[1];
-      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
       const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
       const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
       const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
       const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
       const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
-      const T g1_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_z_fb_x * dot_fa_z_fb_x);
-      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
       const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
       const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-      const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-      const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-      const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-      const T dot_w_b_x_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_w_b_x_fb_x_x + fa_x_y *
-          w_b_x_w_b_x_fb_x_y + fa_x_z * w_b_x_w_b_x_fb_x_z;
-      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-      const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-      const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-      const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-      const T dot_w_a_x_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_w_a_x_fa_x_x + fb_x_y *
-          w_a_x_w_a_x_fa_x_y + fb_x_z * w_a_x_w_a_x_fa_x_z;
-      const T dot_w_a_x_fa_x_w_b_x_fb_x = w_a_x_fa_x_z * w_b_x_fb_x_z + w_a_x_fa_x_y *
-          w_b_x_fb_x_y + w_a_x_fa_x_x * w_b_x_fb_x_x;
-      const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
-          w_b_x_fb_x_z;
-      const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
-          w_a_x_fa_x_z;
-      const T g1_2 = dot_w_b_x_fb_x_fa_x + dot_w_a_x_fa_x_fb_x;
+      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
       const T dot_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_fb_x_x + fa_z_y * w_b_x_fb_x_y + fa_z_z *
           w_b_x_fb_x_z;
       const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
@@ -1100,22 +1052,39 @@ struct constant_velocity {
       const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
       const T dot_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_fa_z_x + fb_x_y * w_a_x_fa_z_y + fb_x_z *
           w_a_x_fa_z_z;
-      const T g1_3 = dot_w_b_x_fb_x_fa_z + dot_w_a_x_fa_z_fb_x;
-      const T g1_4 = T(2) * g1_1 * (g1_2 * dot_fa_z_fb_x - g1_3 * dot_fa_x_fb_x);
-      const T dot_w_b_x_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_w_b_x_fb_x_x + fa_z_y *
-          w_b_x_w_b_x_fb_x_y + fa_z_z * w_b_x_w_b_x_fb_x_z;
-      const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-      const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-      const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-      const T dot_w_a_x_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_w_a_x_fa_z_x + fb_x_y *
-          w_a_x_w_a_x_fa_z_y + fb_x_z * w_a_x_w_a_x_fa_z_z;
-      const T dot_w_a_x_fa_z_w_b_x_fb_x = w_a_x_fa_z_z * w_b_x_fb_x_z + w_a_x_fa_z_y *
-          w_b_x_fb_x_y + w_a_x_fa_z_x * w_b_x_fb_x_x;
-      g[0] = g1_1 * (dot_fa_z_fb_x *
-          (g1_4 * g1_3 - dot_w_b_x_w_b_x_fb_x_fa_x - dot_w_a_x_w_a_x_fa_x_fb_x -
-          dot_w_a_x_fa_x_w_b_x_fb_x * T(2)) + dot_fa_x_fb_x *
-          (dot_w_b_x_w_b_x_fb_x_fa_z + dot_w_a_x_w_a_x_fa_z_fb_x + dot_w_a_x_fa_z_w_b_x_fb_x *
-          T(2) + g1_4 * g1_2));
+      const T g1_1 = dot_w_b_x_fb_x_fa_z + dot_w_a_x_fa_z_fb_x;
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+      const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
+      const T g1_2 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_z_fb_x * dot_fa_z_fb_x);
+      const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
+          w_b_x_fb_x_z;
+      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
+      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
+      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
+      const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
+          w_a_x_fa_x_z;
+      const T g1_3 = dot_w_b_x_fb_x_fa_x + dot_w_a_x_fa_x_fb_x;
+      const T g1_4 = g1_2 * T(2) * (g1_3 * dot_fa_x_fb_x + g1_1 * dot_fa_z_fb_x);
+      const T g1_5 = dot_fa_z_fb_x * g1_2;
+      const T g1_6 = g1_1 * g1_2 - g1_4 * g1_5;
+      const T g1_7 = dot_fa_x_fb_x * g1_2;
+      const T g1_8 = g1_3 * g1_2 - g1_4 * g1_7;
+      const T g1_9 = fa_x_z * g1_6 - fa_z_z * g1_8 + g1_5 * w_a_x_fa_x_z - g1_7 * w_a_x_fa_z_z;
+      const T g1_10 = fa_x_y * g1_6 - fa_z_y * g1_8 + g1_5 * w_a_x_fa_x_y - g1_7 * w_a_x_fa_z_y;
+      const T g1_11 = g1_5 * fa_x_y - g1_7 * fa_z_y;
+      const T g1_12 = g1_5 * fa_x_z - g1_7 * fa_z_z;
+      const T axis_bend_y_dot_x = fb_x_z * g1_10 - fb_x_y * g1_9 + w_b_x_fb_x_z * g1_11 -
+          w_b_x_fb_x_y * g1_12;
+      const T g1_13 = fa_x_x * g1_6 - fa_z_x * g1_8 + g1_5 * w_a_x_fa_x_x - g1_7 * w_a_x_fa_z_x;
+      const T g1_14 = g1_5 * fa_x_x - g1_7 * fa_z_x;
+      const T axis_bend_y_dot_y = fb_x_x * g1_9 - fb_x_z * g1_13 - w_b_x_fb_x_z * g1_14 +
+          w_b_x_fb_x_x * g1_12;
+      const T axis_bend_y_dot_z = fb_x_y * g1_13 - fb_x_x * g1_10 + w_b_x_fb_x_y * g1_14 -
+          w_b_x_fb_x_x * g1_11;
+      g[0] = axis_bend_y_dot_x * (vb.wx - va.wx) + axis_bend_y_dot_y * (vb.wy - va.wy) +
+          axis_bend_y_dot_z * (vb.wz - va.wz);
     }
 
     // dC/dt at fixed q: nothing
@@ -1124,7 +1093,7 @@ struct constant_velocity {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 163 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 166 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -1148,107 +1117,107 @@ struct constant_velocity {
       const T H4_2 = lambda[0] * H4_1;
       const T H4_3 = dot_fa_z_fb_x * H4_2;
       const T H4_4 = H4_3 * fb_x_y;
-      const T fa_z_x_fb_x_x = fa_z_y * fb_x_z - fa_z_z * fb_x_y;
-      const T fa_z_x_fb_x_y = fa_z_z * fb_x_x - fa_z_x * fb_x_z;
-      const T H4_5 = T(2) * H4_1 * H4_2;
-      const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
-      const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
-      const T H4_6 = H4_5 * (dot_fa_x_fb_x * fa_z_x_fb_x_x - dot_fa_z_fb_x * fa_x_x_fb_x_x);
-      const T H4_7 = H4_6 * dot_fa_x_fb_x - H4_2 * fa_z_x_fb_x_x;
-      const T H4_8 = fb_x_z * H4_7 - H4_4;
-      const T H4_9 = dot_fa_x_fb_x * H4_2;
-      const T H4_10 = H4_9 * fb_x_y;
-      const T H4_11 = H4_2 * fa_x_x_fb_x_x + H4_6 * dot_fa_z_fb_x;
-      const T H4_12 = H4_10 + fb_x_z * H4_11;
-      const T H4_13 = H4_3 * fb_x_z;
-      const T H4_14 = H4_13 + fb_x_y * H4_7;
-      const T H4_15 = H4_9 * fb_x_z;
-      const T H4_16 = fb_x_y * H4_11 - H4_15;
-      const T H4_17 = fa_x_y * H4_8 + fa_z_y * H4_12 - fa_x_z * H4_14 - fa_z_z * H4_16;
-      const T H4_1_2 = fa_x_z * H4_7 + fa_z_z * H4_11;
-      const T H4_2_2 = fb_x_x * H4_1_2 - fa_x_x * H4_8 - fa_z_x * H4_12;
-      const T H4_1_3 = fa_x_y * H4_7 + fa_z_y * H4_11;
-      const T H4_2_3 = fa_x_x * H4_14 + fa_z_x * H4_16 - fb_x_x * H4_1_3;
-      const T H4_1_4 = H4_3 * fa_x_y - H4_9 * fa_z_y;
-      const T H4_2_4 = H4_1_2 + H4_1_4;
-      const T H4_3_2 = H4_3 * fa_x_z - H4_9 * fa_z_z;
+      const T H4_5 = fa_z_z * fb_x_y - fa_z_y * fb_x_z;
+      const T H4_6 = T(2) * H4_1 * H4_2;
+      const T H4_7 = fa_x_z * fb_x_y - fa_x_y * fb_x_z;
+      const T H4_8 = H4_6 * (dot_fa_z_fb_x * H4_7 - dot_fa_x_fb_x * H4_5);
+      const T H4_9 = H4_2 * H4_5 + H4_8 * dot_fa_x_fb_x;
+      const T H4_10 = fb_x_z * H4_9 - H4_4;
+      const T H4_11 = dot_fa_x_fb_x * H4_2;
+      const T H4_12 = H4_11 * fb_x_y;
+      const T H4_13 = H4_8 * dot_fa_z_fb_x - H4_2 * H4_7;
+      const T H4_14 = H4_12 + fb_x_z * H4_13;
+      const T H4_15 = H4_3 * fb_x_z;
+      const T H4_16 = H4_15 + fb_x_y * H4_9;
+      const T H4_17 = H4_11 * fb_x_z;
+      const T H4_18 = fb_x_y * H4_13 - H4_17;
+      const T H4_19 = fa_x_y * H4_10 + fa_z_y * H4_14 - fa_x_z * H4_16 - fa_z_z * H4_18;
+      const T H4_1_2 = fa_x_z * H4_9 + fa_z_z * H4_13;
+      const T H4_2_2 = fb_x_x * H4_1_2 - fa_x_x * H4_10 - fa_z_x * H4_14;
+      const T H4_1_3 = fa_x_y * H4_9 + fa_z_y * H4_13;
+      const T H4_2_3 = fa_x_x * H4_16 + fa_z_x * H4_18 - fb_x_x * H4_1_3;
+      const T H4_1_4 = H4_2 * (fa_z_y * dot_fa_x_fb_x - fa_x_y * dot_fa_z_fb_x);
+      const T H4_2_4 = H4_1_2 - H4_1_4;
+      const T H4_3_2 = H4_2 * (fa_x_z * dot_fa_z_fb_x - fa_z_z * dot_fa_x_fb_x);
       const T H4_4_2 = H4_1_3 - H4_3_2;
       const T H4_5_2 = fb_x_y * H4_2_4 - fb_x_z * H4_4_2;
-      const T H4_1_5 = fa_x_x * H4_7 + fa_z_x * H4_11;
+      const T H4_1_5 = fa_x_x * H4_9 + fa_z_x * H4_13;
       const T H4_2_5 = fb_x_z * H4_1_5 - fb_x_x * H4_2_4;
       const T H4_1_6 = fb_x_x * H4_4_2 - fb_x_y * H4_1_5;
       const T H5_1 = H4_3 * fb_x_x;
-      const T H5_2 = H4_5 * (dot_fa_x_fb_x * fa_z_x_fb_x_y - fa_x_x_fb_x_y * dot_fa_z_fb_x);
-      const T H5_3 = H5_2 * dot_fa_x_fb_x - H4_2 * fa_z_x_fb_x_y;
-      const T H5_4 = H5_1 + fb_x_z * H5_3;
-      const T H5_5 = H4_9 * fb_x_x;
-      const T H5_6 = H4_2 * fa_x_x_fb_x_y + H5_2 * dot_fa_z_fb_x;
-      const T H5_7 = fb_x_z * H5_6 - H5_5;
-      const T H5_8 = fa_x_z * H5_3 + fa_z_z * H5_6;
-      const T H5_9 = fa_x_y * H5_4 + fa_z_y * H5_7 - fb_x_y * H5_8;
-      const T H5_1_2 = fb_x_x * H5_3 - H4_13;
-      const T H5_2_2 = H4_15 + fb_x_x * H5_6;
-      const T H5_3_2 = fa_x_z * H5_1_2 - fa_x_x * H5_4 - fa_z_x * H5_7 + fa_z_z * H5_2_2;
-      const T H5_1_3 = fa_x_x * H5_3 + fa_z_x * H5_6;
+      const T H5_2 = fa_z_x * fb_x_z - fa_z_z * fb_x_x;
+      const T H5_3 = fa_x_x * fb_x_z - fa_x_z * fb_x_x;
+      const T H5_4 = H4_6 * (H5_3 * dot_fa_z_fb_x - dot_fa_x_fb_x * H5_2);
+      const T H5_5 = H4_2 * H5_2 + H5_4 * dot_fa_x_fb_x;
+      const T H5_6 = H5_1 + fb_x_z * H5_5;
+      const T H5_7 = H4_11 * fb_x_x;
+      const T H5_8 = H5_4 * dot_fa_z_fb_x - H4_2 * H5_3;
+      const T H5_9 = fb_x_z * H5_8 - H5_7;
+      const T H5_10 = fa_x_z * H5_5 + fa_z_z * H5_8;
+      const T H5_11 = fa_x_y * H5_6 + fa_z_y * H5_9 - fb_x_y * H5_10;
+      const T H5_1_2 = fb_x_x * H5_5 - H4_15;
+      const T H5_2_2 = H4_17 + fb_x_x * H5_8;
+      const T H5_3_2 = fa_x_z * H5_1_2 - fa_x_x * H5_6 - fa_z_x * H5_9 + fa_z_z * H5_2_2;
+      const T H5_1_3 = fa_x_x * H5_5 + fa_z_x * H5_8;
       const T H5_2_3 = fb_x_y * H5_1_3 - fa_x_y * H5_1_2 - fa_z_y * H5_2_2;
-      const T H5_1_4 = H4_3 * fa_x_x - H4_9 * fa_z_x;
-      const T H5_2_4 = H5_8 - H5_1_4;
-      const T H5_3_3 = fa_x_y * H5_3 + fa_z_y * H5_6;
+      const T H5_1_4 = H4_2 * (fa_x_x * dot_fa_z_fb_x - fa_z_x * dot_fa_x_fb_x);
+      const T H5_2_4 = H5_10 - H5_1_4;
+      const T H5_3_3 = fa_x_y * H5_5 + fa_z_y * H5_8;
       const T H5_4_2 = fb_x_y * H5_2_4 - fb_x_z * H5_3_3;
       const T H5_1_5 = H5_1_3 + H4_3_2;
       const T H5_2_5 = fb_x_z * H5_1_5 - fb_x_x * H5_2_4;
       const T H5_1_6 = fb_x_x * H5_3_3 - fb_x_y * H5_1_5;
-      const T fa_z_x_fb_x_z = fa_z_x * fb_x_y - fa_z_y * fb_x_x;
-      const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
-      const T H6_1 = H4_5 * (dot_fa_x_fb_x * fa_z_x_fb_x_z - fa_x_x_fb_x_z * dot_fa_z_fb_x);
-      const T H6_2 = H6_1 * dot_fa_x_fb_x - H4_2 * fa_z_x_fb_x_z;
-      const T H6_3 = fb_x_y * H6_2 - H5_1;
-      const T H6_4 = H4_2 * fa_x_x_fb_x_z + H6_1 * dot_fa_z_fb_x;
-      const T H6_5 = H5_5 + fb_x_y * H6_4;
-      const T H6_6 = fa_x_y * H6_2 + fa_z_y * H6_4;
-      const T H6_7 = fb_x_z * H6_6 - fa_x_z * H6_3 - fa_z_z * H6_5;
-      const T H6_1_2 = H4_4 + fb_x_x * H6_2;
-      const T H6_2_2 = fb_x_x * H6_4 - H4_10;
-      const T H6_3_2 = fa_x_x * H6_2 + fa_z_x * H6_4;
+      const T H6_1 = fa_z_y * fb_x_x - fa_z_x * fb_x_y;
+      const T H6_2 = fa_x_y * fb_x_x - fa_x_x * fb_x_y;
+      const T H6_3 = H4_6 * (H6_2 * dot_fa_z_fb_x - dot_fa_x_fb_x * H6_1);
+      const T H6_4 = H4_2 * H6_1 + H6_3 * dot_fa_x_fb_x;
+      const T H6_5 = fb_x_y * H6_4 - H5_1;
+      const T H6_6 = H6_3 * dot_fa_z_fb_x - H4_2 * H6_2;
+      const T H6_7 = H5_7 + fb_x_y * H6_6;
+      const T H6_8 = fa_x_y * H6_4 + fa_z_y * H6_6;
+      const T H6_9 = fb_x_z * H6_8 - fa_x_z * H6_5 - fa_z_z * H6_7;
+      const T H6_1_2 = H4_4 + fb_x_x * H6_4;
+      const T H6_2_2 = fb_x_x * H6_6 - H4_12;
+      const T H6_3_2 = fa_x_x * H6_4 + fa_z_x * H6_6;
       const T H6_4_2 = fa_x_z * H6_1_2 + fa_z_z * H6_2_2 - fb_x_z * H6_3_2;
-      const T H6_1_3 = fa_x_x * H6_3 + fa_z_x * H6_5 - fa_x_y * H6_1_2 - fa_z_y * H6_2_2;
-      const T H6_1_4 = fa_x_z * H6_2 + fa_z_z * H6_4;
-      const T H6_2_3 = H6_6 + H5_1_4;
+      const T H6_1_3 = fa_x_x * H6_5 + fa_z_x * H6_7 - fa_x_y * H6_1_2 - fa_z_y * H6_2_2;
+      const T H6_1_4 = fa_x_z * H6_4 + fa_z_z * H6_6;
+      const T H6_2_3 = H6_8 + H5_1_4;
       const T H6_3_3 = fb_x_y * H6_1_4 - fb_x_z * H6_2_3;
-      const T H6_1_5 = H6_3_2 - H4_1_4;
+      const T H6_1_5 = H6_3_2 + H4_1_4;
       const T H6_2_4 = fb_x_z * H6_1_5 - fb_x_x * H6_1_4;
       const T H6_1_6 = fb_x_x * H6_2_3 - fb_x_y * H6_1_5;
-      H[3][3] = H4_17;
+      H[3][3] = H4_19;
       H[3][4] = H4_2_2;
       H[3][5] = H4_2_3;
       H[3][9] = H4_5_2;
       H[3][10] = H4_2_5;
       H[3][11] = H4_1_6;
-      H[4][3] = H5_9;
+      H[4][3] = H5_11;
       H[4][4] = H5_3_2;
       H[4][5] = H5_2_3;
       H[4][9] = H5_4_2;
       H[4][10] = H5_2_5;
       H[4][11] = H5_1_6;
-      H[5][3] = H6_7;
+      H[5][3] = H6_9;
       H[5][4] = H6_4_2;
       H[5][5] = H6_1_3;
       H[5][9] = H6_3_3;
       H[5][10] = H6_2_4;
       H[5][11] = H6_1_6;
-      H[9][3] = -H4_17;
+      H[9][3] = -H4_19;
       H[9][4] = -H4_2_2;
       H[9][5] = -H4_2_3;
       H[9][9] = -H4_5_2;
       H[9][10] = -H4_2_5;
       H[9][11] = -H4_1_6;
-      H[10][3] = -H5_9;
+      H[10][3] = -H5_11;
       H[10][4] = -H5_3_2;
       H[10][5] = -H5_2_3;
       H[10][9] = -H5_4_2;
       H[10][10] = -H5_2_5;
       H[10][11] = -H5_1_6;
-      H[11][3] = -H6_7;
+      H[11][3] = -H6_9;
       H[11][4] = -H6_4_2;
       H[11][5] = -H6_1_3;
       H[11][9] = -H6_3_3;
@@ -1274,7 +1243,7 @@ struct constant_velocity {
 
     template <class T>
     struct Jacobian {
-      T wa_x, wa_y, wa_z, wb_x, wb_y, wb_z;
+      T axis_bend_z_x, axis_bend_z_y, axis_bend_z_z;
     };
 
     // C: 22 +, 33 *, 1 call
@@ -1297,7 +1266,7 @@ struct constant_velocity {
       C[0] = atan2(dot_fa_y_fb_x, dot_fa_x_fb_x);
     }
 
-    // C and J: 38 +, 67 *, 1 /, 1 <, 1 call
+    // C and J: 29 +, 49 *, 1 /, 1 <, 1 call
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -1315,39 +1284,29 @@ struct constant_velocity {
       const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
       const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
       const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-      const T wa_x_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_y_fb_x * dot_fa_y_fb_x);
-      const T wa_x_2 = dot_fa_x_fb_x * wa_x_1;
-      const T fa_y_x_fb_x_x = fa_y_y * fb_x_z - fa_y_z * fb_x_y;
-      const T fa_y_x_fb_x_y = fa_y_z * fb_x_x - fa_y_x * fb_x_z;
-      const T wa_x_3 = dot_fa_y_fb_x * wa_x_1;
-      const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
-      const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
-      const T fa_y_x_fb_x_z = fa_y_x * fb_x_y - fa_y_y * fb_x_x;
-      const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
-      const T wb_x_1 = wa_x_2 * fa_y_z - wa_x_3 * fa_x_z;
-      const T wb_x_2 = wa_x_2 * fa_y_y - wa_x_3 * fa_x_y;
-      const T wb_y_1 = wa_x_2 * fa_y_x - wa_x_3 * fa_x_x;
+      const T axis_bend_z_x_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_y_fb_x *
+          dot_fa_y_fb_x);
+      const T axis_bend_z_x_2 = dot_fa_y_fb_x * axis_bend_z_x_1;
+      const T axis_bend_z_x_3 = dot_fa_x_fb_x * axis_bend_z_x_1;
+      const T axis_bend_z_x_4 = axis_bend_z_x_3 * fa_y_z - axis_bend_z_x_2 * fa_x_z;
+      const T axis_bend_z_x_5 = axis_bend_z_x_3 * fa_y_y - axis_bend_z_x_2 * fa_x_y;
+      const T axis_bend_z_y_1 = axis_bend_z_x_3 * fa_y_x - axis_bend_z_x_2 * fa_x_x;
       C[0] = atan2(dot_fa_y_fb_x, dot_fa_x_fb_x);
-      J.wa_x = wa_x_2 * fa_y_x_fb_x_x - wa_x_3 * fa_x_x_fb_x_x;
-      J.wa_y = wa_x_2 * fa_y_x_fb_x_y - wa_x_3 * fa_x_x_fb_x_y;
-      J.wa_z = wa_x_2 * fa_y_x_fb_x_z - wa_x_3 * fa_x_x_fb_x_z;
-      J.wb_x = fb_x_y * wb_x_1 - fb_x_z * wb_x_2;
-      J.wb_y = fb_x_z * wb_y_1 - fb_x_x * wb_x_1;
-      J.wb_z = fb_x_x * wb_x_2 - fb_x_y * wb_y_1;
+      J.axis_bend_z_x = fb_x_z * axis_bend_z_x_5 - fb_x_y * axis_bend_z_x_4;
+      J.axis_bend_z_y = fb_x_x * axis_bend_z_x_4 - fb_x_z * axis_bend_z_y_1;
+      J.axis_bend_z_z = fb_x_y * axis_bend_z_y_1 - fb_x_x * axis_bend_z_x_5;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 11 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      const T K11_1 = J.wa_z * T(2);
-      const T K11_2 = J.wb_z * T(2);
-      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
-          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
-          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
+      const T K11_1 = J.axis_bend_z_z * T(2);
+      K[0] = J.axis_bend_z_z * J.axis_bend_z_z * (ma.Izz + mb.Izz) + J.axis_bend_z_x *
+          (J.axis_bend_z_x * (ma.Ixx + mb.Ixx) + J.axis_bend_z_y * T(2) * (ma.Ixy + mb.Ixy) +
+          K11_1 * (ma.Ixz + mb.Ixz)) + J.axis_bend_z_y *
+          (J.axis_bend_z_y * (ma.Iyy + mb.Iyy) + K11_1 * (ma.Iyz + mb.Iyz));
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1362,16 +1321,16 @@ struct constant_velocity {
       lambda[0] = F[0] * rhs[0];
     }
 
-    // J v: 5 +, 6 *
+    // J v: 5 +, 3 *
     template <class T>
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.wb_x * vb.wx + J.wb_y * vb.wy +
-          J.wb_z * vb.wz;
+      Jv[0] = J.axis_bend_z_x * (va.wx - vb.wx) + J.axis_bend_z_y * (va.wy - vb.wy) +
+          J.axis_bend_z_z * (va.wz - vb.wz);
     }
 
-    // v += M^-1 J^T lambda: 18 +, 24 *
+    // v += M^-1 J^T lambda: 18 +, 21 *
     template <class T>
     static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
         Velocity<T> (&v)[2]) {
@@ -1379,35 +1338,32 @@ struct constant_velocity {
       const InverseMass<T>& ma = m[0];
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
-      const T v1_1 = J.wa_x * lambda[0];
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
-      const T v2_1 = lambda[0] * J.wb_x;
-      const T v2_2 = lambda[0] * J.wb_y;
-      const T v2_3 = lambda[0] * J.wb_z;
+      const T v1_1 = J.axis_bend_z_x * lambda[0];
+      const T v1_2 = lambda[0] * J.axis_bend_z_y;
+      const T v1_3 = lambda[0] * J.axis_bend_z_z;
       v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
       v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
       v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
-      v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
-      v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
-      v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+      v[1].wx = vb.wx - v1_1 * mb.Ixx - v1_2 * mb.Ixy - v1_3 * mb.Ixz;
+      v[1].wy = vb.wy - v1_1 * mb.Ixy - v1_2 * mb.Iyy - v1_3 * mb.Iyz;
+      v[1].wz = vb.wz - v1_1 * mb.Ixz - v1_2 * mb.Iyz - v1_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: nothing
+    // J with its zeros: v, w of each body: 3 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
         for (T& entry : row) entry = T(0);
       }
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
-      D[0][9] = J.wb_x;
-      D[0][10] = J.wb_y;
-      D[0][11] = J.wb_z;
+      D[0][3] = J.axis_bend_z_x;
+      D[0][4] = J.axis_bend_z_y;
+      D[0][5] = J.axis_bend_z_z;
+      D[0][9] = -J.axis_bend_z_x;
+      D[0][10] = -J.axis_bend_z_y;
+      D[0][11] = -J.axis_bend_z_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 12 +, 18 *
+    // (M^-1 J^T)^T, laid out like dense: 15 +, 18 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1416,22 +1372,23 @@ struct constant_velocity {
       }
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
-      D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
-      D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
-      D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+      D[0][3] = ma.Ixx * J.axis_bend_z_x + ma.Ixy * J.axis_bend_z_y + ma.Ixz * J.axis_bend_z_z;
+      D[0][4] = ma.Ixy * J.axis_bend_z_x + ma.Iyy * J.axis_bend_z_y + ma.Iyz * J.axis_bend_z_z;
+      D[0][5] = ma.Ixz * J.axis_bend_z_x + ma.Iyz * J.axis_bend_z_y + ma.Izz * J.axis_bend_z_z;
+      D[0][9] = -mb.Ixx * J.axis_bend_z_x - mb.Ixy * J.axis_bend_z_y - mb.Ixz * J.axis_bend_z_z;
+      D[0][10] = -mb.Ixy * J.axis_bend_z_x - mb.Iyy * J.axis_bend_z_y - mb.Iyz * J.axis_bend_z_z;
+      D[0][11] = -mb.Ixz * J.axis_bend_z_x - mb.Iyz * J.axis_bend_z_y - mb.Izz * J.axis_bend_z_z;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
+    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+      const T dot_axis_bend_z_axis_bend_z = J.axis_bend_z_x * J.axis_bend_z_x + J.axis_bend_z_y *
+          J.axis_bend_z_y + J.axis_bend_z_z * J.axis_bend_z_z;
+      K[0] = dot_axis_bend_z_axis_bend_z * (ma.I + mb.I);
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -1444,15 +1401,15 @@ struct constant_velocity {
       const IsotropicInverseMass<T>& mb = m[1];
       const T v1_1 = ma.I * lambda[0];
       const T v2_1 = lambda[0] * mb.I;
-      v[0].wx = va.wx + v1_1 * J.wa_x;
-      v[0].wy = va.wy + v1_1 * J.wa_y;
-      v[0].wz = va.wz + v1_1 * J.wa_z;
-      v[1].wx = vb.wx + v2_1 * J.wb_x;
-      v[1].wy = vb.wy + v2_1 * J.wb_y;
-      v[1].wz = vb.wz + v2_1 * J.wb_z;
+      v[0].wx = va.wx + v1_1 * J.axis_bend_z_x;
+      v[0].wy = va.wy + v1_1 * J.axis_bend_z_y;
+      v[0].wz = va.wz + v1_1 * J.axis_bend_z_z;
+      v[1].wx = vb.wx - v2_1 * J.axis_bend_z_x;
+      v[1].wy = vb.wy - v2_1 * J.axis_bend_z_y;
+      v[1].wz = vb.wz - v2_1 * J.axis_bend_z_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1461,15 +1418,15 @@ struct constant_velocity {
       }
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
-      D[0][9] = mb.I * J.wb_x;
-      D[0][10] = mb.I * J.wb_y;
-      D[0][11] = mb.I * J.wb_z;
+      D[0][3] = ma.I * J.axis_bend_z_x;
+      D[0][4] = ma.I * J.axis_bend_z_y;
+      D[0][5] = ma.I * J.axis_bend_z_z;
+      D[0][9] = -mb.I * J.axis_bend_z_x;
+      D[0][10] = -mb.I * J.axis_bend_z_y;
+      D[0][11] = -mb.I * J.axis_bend_z_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -1477,15 +1434,15 @@ struct constant_velocity {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-      D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-      D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-      D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+      D[0][3] = J.axis_bend_z_x * a.xx + J.axis_bend_z_y * a.yx + J.axis_bend_z_z * a.zx;
+      D[0][4] = J.axis_bend_z_x * a.xy + J.axis_bend_z_y * a.yy + J.axis_bend_z_z * a.zy;
+      D[0][5] = J.axis_bend_z_x * a.xz + J.axis_bend_z_y * a.yz + J.axis_bend_z_z * a.zz;
+      D[0][9] = -J.axis_bend_z_x * b.xx - J.axis_bend_z_y * b.yx - J.axis_bend_z_z * b.zx;
+      D[0][10] = -J.axis_bend_z_x * b.xy - J.axis_bend_z_y * b.yy - J.axis_bend_z_z * b.zy;
+      D[0][11] = -J.axis_bend_z_x * b.xz - J.axis_bend_z_y * b.yz - J.axis_bend_z_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 27 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -1493,17 +1450,20 @@ struct constant_velocity {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-      D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-      D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-      D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+      const T D1_1 = J.axis_bend_z_x * T(2);
+      const T D1_2 = J.axis_bend_z_y * T(2);
+      const T D1_3 = J.axis_bend_z_z * T(2);
+      D[0][3] = -D1_1 * a.e1 - D1_2 * a.e2 - D1_3 * a.e3;
+      D[0][4] = D1_1 * a.e0 + D1_2 * a.e3 - D1_3 * a.e2;
+      D[0][5] = D1_2 * a.e0 - D1_1 * a.e3 + D1_3 * a.e1;
+      D[0][6] = D1_1 * a.e2 - D1_2 * a.e1 + D1_3 * a.e0;
+      D[0][10] = D1_1 * b.e1 + D1_2 * b.e2 + D1_3 * b.e3;
+      D[0][11] = D1_3 * b.e2 - D1_1 * b.e0 - D1_2 * b.e3;
+      D[0][12] = D1_1 * b.e3 - D1_2 * b.e0 - D1_3 * b.e1;
+      D[0][13] = D1_2 * b.e1 - D1_1 * b.e2 - D1_3 * b.e0;
     }
 
-    // -Jdot v - d/dt(dC/dt): 71 +, 112 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 71 +, 108 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1511,64 +1471,56 @@ struct constant_velocity {
       const Velocity<T>& va = v[0];
       const Pose<T>& b = q[1];
       const Velocity<T>& vb = v[1];
-      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
       const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
       const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
       const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
       const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-      const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
-      const T g1_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_y_fb_x * dot_fa_y_fb_x);
       const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
       const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
       const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
       const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
           w_b_x_fb_x_z;
+      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
       const T dot_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_fb_x_x + fa_y_y * w_b_x_fb_x_y + fa_y_z *
           w_b_x_fb_x_z;
-      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-      const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
-          w_a_x_fa_x_z;
-      const T g1_2 = dot_w_b_x_fb_x_fa_x + dot_w_a_x_fa_x_fb_x;
       const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
       const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
       const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
       const T dot_w_a_x_fa_y_fb_x = fb_x_x * w_a_x_fa_y_x + fb_x_y * w_a_x_fa_y_y + fb_x_z *
           w_a_x_fa_y_z;
-      const T g1_3 = dot_w_b_x_fb_x_fa_y + dot_w_a_x_fa_y_fb_x;
-      const T g1_4 = T(2) * (g1_3 * dot_fa_x_fb_x - g1_2 * dot_fa_y_fb_x) * g1_1;
-      const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-      const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-      const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-      const T dot_w_b_x_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_w_b_x_fb_x_x + fa_x_y *
-          w_b_x_w_b_x_fb_x_y + fa_x_z * w_b_x_w_b_x_fb_x_z;
-      const T dot_w_b_x_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_w_b_x_fb_x_x + fa_y_y *
-          w_b_x_w_b_x_fb_x_y + fa_y_z * w_b_x_w_b_x_fb_x_z;
-      const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-      const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-      const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-      const T dot_w_a_x_w_a_x_fa_y_fb_x = fb_x_x * w_a_x_w_a_x_fa_y_x + fb_x_y *
-          w_a_x_w_a_x_fa_y_y + fb_x_z * w_a_x_w_a_x_fa_y_z;
-      const T dot_w_a_x_fa_y_w_b_x_fb_x = w_a_x_fa_y_z * w_b_x_fb_x_z + w_a_x_fa_y_y *
-          w_b_x_fb_x_y + w_a_x_fa_y_x * w_b_x_fb_x_x;
-      const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-      const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-      const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-      const T dot_w_a_x_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_w_a_x_fa_x_x + fb_x_y *
-          w_a_x_w_a_x_fa_x_y + fb_x_z * w_a_x_w_a_x_fa_x_z;
-      const T dot_w_a_x_fa_x_w_b_x_fb_x = w_a_x_fa_x_z * w_b_x_fb_x_z + w_a_x_fa_x_y *
-          w_b_x_fb_x_y + w_a_x_fa_x_x * w_b_x_fb_x_x;
-      g[0] = g1_1 * (dot_fa_x_fb_x *
-          (g1_4 * g1_2 - dot_w_b_x_w_b_x_fb_x_fa_y - dot_w_a_x_w_a_x_fa_y_fb_x -
-          dot_w_a_x_fa_y_w_b_x_fb_x * T(2)) + dot_fa_y_fb_x *
-          (g1_4 * g1_3 + dot_w_b_x_w_b_x_fb_x_fa_x + dot_w_a_x_w_a_x_fa_x_fb_x +
-          dot_w_a_x_fa_x_w_b_x_fb_x * T(2)));
+      const T g1_1 = dot_w_b_x_fb_x_fa_y + dot_w_a_x_fa_y_fb_x;
+      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+      const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
+      const T g1_2 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_y_fb_x * dot_fa_y_fb_x);
+      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
+      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
+      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
+      const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
+          w_a_x_fa_x_z;
+      const T g1_3 = dot_w_b_x_fb_x_fa_x + dot_w_a_x_fa_x_fb_x;
+      const T g1_4 = g1_2 * T(2) * (g1_3 * dot_fa_x_fb_x + g1_1 * dot_fa_y_fb_x);
+      const T g1_5 = dot_fa_y_fb_x * g1_2;
+      const T g1_6 = g1_1 * g1_2 - g1_4 * g1_5;
+      const T g1_7 = dot_fa_x_fb_x * g1_2;
+      const T g1_8 = g1_3 * g1_2 - g1_4 * g1_7;
+      const T g1_9 = fa_y_z * g1_8 - fa_x_z * g1_6 - g1_5 * w_a_x_fa_x_z + g1_7 * w_a_x_fa_y_z;
+      const T g1_10 = fa_y_y * g1_8 - fa_x_y * g1_6 - g1_5 * w_a_x_fa_x_y + g1_7 * w_a_x_fa_y_y;
+      const T g1_11 = g1_7 * fa_y_y - g1_5 * fa_x_y;
+      const T g1_12 = g1_7 * fa_y_z - g1_5 * fa_x_z;
+      const T axis_bend_z_dot_x = fb_x_z * g1_10 - fb_x_y * g1_9 + w_b_x_fb_x_z * g1_11 -
+          w_b_x_fb_x_y * g1_12;
+      const T g1_13 = fa_y_x * g1_8 - fa_x_x * g1_6 - g1_5 * w_a_x_fa_x_x + g1_7 * w_a_x_fa_y_x;
+      const T g1_14 = g1_7 * fa_y_x - g1_5 * fa_x_x;
+      const T axis_bend_z_dot_y = fb_x_x * g1_9 - fb_x_z * g1_13 - w_b_x_fb_x_z * g1_14 +
+          w_b_x_fb_x_x * g1_12;
+      const T axis_bend_z_dot_z = fb_x_y * g1_13 - fb_x_x * g1_10 + w_b_x_fb_x_y * g1_14 -
+          w_b_x_fb_x_x * g1_11;
+      g[0] = axis_bend_z_dot_x * (vb.wx - va.wx) + axis_bend_z_dot_y * (vb.wy - va.wy) +
+          axis_bend_z_dot_z * (vb.wz - va.wz);
     }
 
     // dC/dt at fixed q: nothing
@@ -1577,7 +1529,7 @@ struct constant_velocity {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 163 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 166 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -1601,107 +1553,107 @@ struct constant_velocity {
       const T H4_2 = lambda[0] * H4_1;
       const T H4_3 = dot_fa_y_fb_x * H4_2;
       const T H4_4 = H4_3 * fb_x_y;
-      const T fa_y_x_fb_x_x = fa_y_y * fb_x_z - fa_y_z * fb_x_y;
-      const T fa_y_x_fb_x_y = fa_y_z * fb_x_x - fa_y_x * fb_x_z;
-      const T H4_5 = T(2) * H4_1 * H4_2;
-      const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
-      const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
-      const T H4_6 = H4_5 * (dot_fa_y_fb_x * fa_x_x_fb_x_x - dot_fa_x_fb_x * fa_y_x_fb_x_x);
-      const T H4_7 = H4_2 * fa_y_x_fb_x_x + H4_6 * dot_fa_x_fb_x;
-      const T H4_8 = H4_4 + fb_x_z * H4_7;
-      const T H4_9 = dot_fa_x_fb_x * H4_2;
-      const T H4_10 = H4_9 * fb_x_y;
-      const T H4_11 = H4_6 * dot_fa_y_fb_x - H4_2 * fa_x_x_fb_x_x;
-      const T H4_12 = fb_x_z * H4_11 - H4_10;
-      const T H4_13 = H4_3 * fb_x_z;
-      const T H4_14 = fb_x_y * H4_7 - H4_13;
-      const T H4_15 = H4_9 * fb_x_z;
-      const T H4_16 = H4_15 + fb_x_y * H4_11;
-      const T H4_17 = fa_x_y * H4_8 + fa_y_y * H4_12 - fa_x_z * H4_14 - fa_y_z * H4_16;
-      const T H4_1_2 = fa_x_z * H4_7 + fa_y_z * H4_11;
-      const T H4_2_2 = fb_x_x * H4_1_2 - fa_x_x * H4_8 - fa_y_x * H4_12;
-      const T H4_1_3 = fa_x_y * H4_7 + fa_y_y * H4_11;
-      const T H4_2_3 = fa_x_x * H4_14 + fa_y_x * H4_16 - fb_x_x * H4_1_3;
-      const T H4_1_4 = H4_3 * fa_x_y - H4_9 * fa_y_y;
+      const T H4_5 = fa_y_z * fb_x_y - fa_y_y * fb_x_z;
+      const T H4_6 = T(2) * H4_1 * H4_2;
+      const T H4_7 = fa_x_z * fb_x_y - fa_x_y * fb_x_z;
+      const T H4_8 = H4_6 * (dot_fa_x_fb_x * H4_5 - dot_fa_y_fb_x * H4_7);
+      const T H4_9 = H4_8 * dot_fa_x_fb_x - H4_2 * H4_5;
+      const T H4_10 = H4_4 + fb_x_z * H4_9;
+      const T H4_11 = dot_fa_x_fb_x * H4_2;
+      const T H4_12 = H4_11 * fb_x_y;
+      const T H4_13 = H4_2 * H4_7 + H4_8 * dot_fa_y_fb_x;
+      const T H4_14 = fb_x_z * H4_13 - H4_12;
+      const T H4_15 = H4_3 * fb_x_z;
+      const T H4_16 = fb_x_y * H4_9 - H4_15;
+      const T H4_17 = H4_11 * fb_x_z;
+      const T H4_18 = H4_17 + fb_x_y * H4_13;
+      const T H4_19 = fa_x_y * H4_10 + fa_y_y * H4_14 - fa_x_z * H4_16 - fa_y_z * H4_18;
+      const T H4_1_2 = fa_x_z * H4_9 + fa_y_z * H4_13;
+      const T H4_2_2 = fb_x_x * H4_1_2 - fa_x_x * H4_10 - fa_y_x * H4_14;
+      const T H4_1_3 = fa_x_y * H4_9 + fa_y_y * H4_13;
+      const T H4_2_3 = fa_x_x * H4_16 + fa_y_x * H4_18 - fb_x_x * H4_1_3;
+      const T H4_1_4 = H4_2 * (fa_x_y * dot_fa_y_fb_x - fa_y_y * dot_fa_x_fb_x);
       const T H4_2_4 = H4_1_2 - H4_1_4;
-      const T H4_3_2 = H4_3 * fa_x_z - H4_9 * fa_y_z;
-      const T H4_4_2 = H4_1_3 + H4_3_2;
+      const T H4_3_2 = H4_2 * (fa_y_z * dot_fa_x_fb_x - fa_x_z * dot_fa_y_fb_x);
+      const T H4_4_2 = H4_1_3 - H4_3_2;
       const T H4_5_2 = fb_x_y * H4_2_4 - fb_x_z * H4_4_2;
-      const T H4_1_5 = fa_x_x * H4_7 + fa_y_x * H4_11;
+      const T H4_1_5 = fa_x_x * H4_9 + fa_y_x * H4_13;
       const T H4_2_5 = fb_x_z * H4_1_5 - fb_x_x * H4_2_4;
       const T H4_1_6 = fb_x_x * H4_4_2 - fb_x_y * H4_1_5;
       const T H5_1 = H4_3 * fb_x_x;
-      const T H5_2 = H4_5 * (fa_x_x_fb_x_y * dot_fa_y_fb_x - dot_fa_x_fb_x * fa_y_x_fb_x_y);
-      const T H5_3 = H4_2 * fa_y_x_fb_x_y + H5_2 * dot_fa_x_fb_x;
-      const T H5_4 = fb_x_z * H5_3 - H5_1;
-      const T H5_5 = H4_9 * fb_x_x;
-      const T H5_6 = H5_2 * dot_fa_y_fb_x - H4_2 * fa_x_x_fb_x_y;
-      const T H5_7 = H5_5 + fb_x_z * H5_6;
-      const T H5_8 = fa_x_z * H5_3 + fa_y_z * H5_6;
-      const T H5_9 = fa_x_y * H5_4 + fa_y_y * H5_7 - fb_x_y * H5_8;
-      const T H5_1_2 = H4_13 + fb_x_x * H5_3;
-      const T H5_2_2 = fb_x_x * H5_6 - H4_15;
-      const T H5_3_2 = fa_x_z * H5_1_2 - fa_x_x * H5_4 - fa_y_x * H5_7 + fa_y_z * H5_2_2;
-      const T H5_1_3 = fa_x_x * H5_3 + fa_y_x * H5_6;
+      const T H5_2 = fa_y_x * fb_x_z - fa_y_z * fb_x_x;
+      const T H5_3 = fa_x_x * fb_x_z - fa_x_z * fb_x_x;
+      const T H5_4 = H4_6 * (dot_fa_x_fb_x * H5_2 - H5_3 * dot_fa_y_fb_x);
+      const T H5_5 = H5_4 * dot_fa_x_fb_x - H4_2 * H5_2;
+      const T H5_6 = fb_x_z * H5_5 - H5_1;
+      const T H5_7 = H4_11 * fb_x_x;
+      const T H5_8 = H4_2 * H5_3 + H5_4 * dot_fa_y_fb_x;
+      const T H5_9 = H5_7 + fb_x_z * H5_8;
+      const T H5_10 = fa_x_z * H5_5 + fa_y_z * H5_8;
+      const T H5_11 = fa_x_y * H5_6 + fa_y_y * H5_9 - fb_x_y * H5_10;
+      const T H5_1_2 = H4_15 + fb_x_x * H5_5;
+      const T H5_2_2 = fb_x_x * H5_8 - H4_17;
+      const T H5_3_2 = fa_x_z * H5_1_2 - fa_x_x * H5_6 - fa_y_x * H5_9 + fa_y_z * H5_2_2;
+      const T H5_1_3 = fa_x_x * H5_5 + fa_y_x * H5_8;
       const T H5_2_3 = fb_x_y * H5_1_3 - fa_x_y * H5_1_2 - fa_y_y * H5_2_2;
-      const T H5_1_4 = H4_3 * fa_x_x - H4_9 * fa_y_x;
-      const T H5_2_4 = H5_8 + H5_1_4;
-      const T H5_3_3 = fa_x_y * H5_3 + fa_y_y * H5_6;
+      const T H5_1_4 = H4_2 * (fa_y_x * dot_fa_x_fb_x - fa_x_x * dot_fa_y_fb_x);
+      const T H5_2_4 = H5_10 - H5_1_4;
+      const T H5_3_3 = fa_x_y * H5_5 + fa_y_y * H5_8;
       const T H5_4_2 = fb_x_y * H5_2_4 - fb_x_z * H5_3_3;
-      const T H5_1_5 = H5_1_3 - H4_3_2;
+      const T H5_1_5 = H5_1_3 + H4_3_2;
       const T H5_2_5 = fb_x_z * H5_1_5 - fb_x_x * H5_2_4;
       const T H5_1_6 = fb_x_x * H5_3_3 - fb_x_y * H5_1_5;
-      const T fa_y_x_fb_x_z = fa_y_x * fb_x_y - fa_y_y * fb_x_x;
-      const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
-      const T H6_1 = H4_5 * (fa_x_x_fb_x_z * dot_fa_y_fb_x - dot_fa_x_fb_x * fa_y_x_fb_x_z);
-      const T H6_2 = H4_2 * fa_y_x_fb_x_z + H6_1 * dot_fa_x_fb_x;
-      const T H6_3 = H5_1 + fb_x_y * H6_2;
-      const T H6_4 = H6_1 * dot_fa_y_fb_x - H4_2 * fa_x_x_fb_x_z;
-      const T H6_5 = fb_x_y * H6_4 - H5_5;
-      const T H6_6 = fa_x_y * H6_2 + fa_y_y * H6_4;
-      const T H6_7 = fb_x_z * H6_6 - fa_x_z * H6_3 - fa_y_z * H6_5;
-      const T H6_1_2 = fb_x_x * H6_2 - H4_4;
-      const T H6_2_2 = H4_10 + fb_x_x * H6_4;
-      const T H6_3_2 = fa_x_x * H6_2 + fa_y_x * H6_4;
+      const T H6_1 = fa_y_y * fb_x_x - fa_y_x * fb_x_y;
+      const T H6_2 = fa_x_y * fb_x_x - fa_x_x * fb_x_y;
+      const T H6_3 = H4_6 * (dot_fa_x_fb_x * H6_1 - H6_2 * dot_fa_y_fb_x);
+      const T H6_4 = H6_3 * dot_fa_x_fb_x - H4_2 * H6_1;
+      const T H6_5 = H5_1 + fb_x_y * H6_4;
+      const T H6_6 = H4_2 * H6_2 + H6_3 * dot_fa_y_fb_x;
+      const T H6_7 = fb_x_y * H6_6 - H5_7;
+      const T H6_8 = fa_x_y * H6_4 + fa_y_y * H6_6;
+      const T H6_9 = fb_x_z * H6_8 - fa_x_z * H6_5 - fa_y_z * H6_7;
+      const T H6_1_2 = fb_x_x * H6_4 - H4_4;
+      const T H6_2_2 = H4_12 + fb_x_x * H6_6;
+      const T H6_3_2 = fa_x_x * H6_4 + fa_y_x * H6_6;
       const T H6_4_2 = fa_x_z * H6_1_2 + fa_y_z * H6_2_2 - fb_x_z * H6_3_2;
-      const T H6_1_3 = fa_x_x * H6_3 + fa_y_x * H6_5 - fa_x_y * H6_1_2 - fa_y_y * H6_2_2;
-      const T H6_1_4 = fa_x_z * H6_2 + fa_y_z * H6_4;
-      const T H6_2_3 = H6_6 - H5_1_4;
+      const T H6_1_3 = fa_x_x * H6_5 + fa_y_x * H6_7 - fa_x_y * H6_1_2 - fa_y_y * H6_2_2;
+      const T H6_1_4 = fa_x_z * H6_4 + fa_y_z * H6_6;
+      const T H6_2_3 = H6_8 + H5_1_4;
       const T H6_3_3 = fb_x_y * H6_1_4 - fb_x_z * H6_2_3;
       const T H6_1_5 = H6_3_2 + H4_1_4;
       const T H6_2_4 = fb_x_z * H6_1_5 - fb_x_x * H6_1_4;
       const T H6_1_6 = fb_x_x * H6_2_3 - fb_x_y * H6_1_5;
-      H[3][3] = H4_17;
+      H[3][3] = H4_19;
       H[3][4] = H4_2_2;
       H[3][5] = H4_2_3;
       H[3][9] = H4_5_2;
       H[3][10] = H4_2_5;
       H[3][11] = H4_1_6;
-      H[4][3] = H5_9;
+      H[4][3] = H5_11;
       H[4][4] = H5_3_2;
       H[4][5] = H5_2_3;
       H[4][9] = H5_4_2;
       H[4][10] = H5_2_5;
       H[4][11] = H5_1_6;
-      H[5][3] = H6_7;
+      H[5][3] = H6_9;
       H[5][4] = H6_4_2;
       H[5][5] = H6_1_3;
       H[5][9] = H6_3_3;
       H[5][10] = H6_2_4;
       H[5][11] = H6_1_6;
-      H[9][3] = -H4_17;
+      H[9][3] = -H4_19;
       H[9][4] = -H4_2_2;
       H[9][5] = -H4_2_3;
       H[9][9] = -H4_5_2;
       H[9][10] = -H4_2_5;
       H[9][11] = -H4_1_6;
-      H[10][3] = -H5_9;
+      H[10][3] = -H5_11;
       H[10][4] = -H5_3_2;
       H[10][5] = -H5_2_3;
       H[10][9] = -H5_4_2;
       H[10][10] = -H5_2_5;
       H[10][11] = -H5_1_6;
-      H[11][3] = -H6_7;
+      H[11][3] = -H6_9;
       H[11][4] = -H6_4_2;
       H[11][5] = -H6_1_3;
       H[11][9] = -H6_3_3;
@@ -1746,32 +1698,25 @@ struct constant_velocity::a_immovable : constant_velocity {
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
     const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T dot_fa_y_fb_z = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
     const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
-    const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
-    const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
-    const T fa_z_x_fb_y_x = fa_z_y * fb_y_z - fa_z_z * fb_y_y;
-    const T fa_z_x_fb_y_y = fa_z_z * fb_y_x - fa_z_x * fb_y_z;
-    const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
-    const T fa_z_x_fb_y_z = fa_z_x * fb_y_y - fa_z_y * fb_y_x;
     C[0] = a.x - b.x + ra_x - rb_x;
     C[1] = a.y - b.y + ra_y - rb_y;
     C[2] = a.z - b.z + ra_z - rb_z;
-    C[3] = dot_fa_z_fb_y - dot_fa_y_fb_z;
+    C[3] = fa_z_x * fb_y_x - fa_y_x * fb_z_x - fa_y_y * fb_z_y + fa_z_y * fb_y_y - fa_y_z *
+        fb_z_z + fa_z_z * fb_y_z;
     J.rb_z = rb_z;
     J.rb_y = rb_y;
     J.rb_x = rb_x;
-    J.wb_4_x = fa_y_x_fb_z_x - fa_z_x_fb_y_x;
-    J.wb_4_y = fa_y_x_fb_z_y - fa_z_x_fb_y_y;
-    J.wb_4_z = fa_y_x_fb_z_z - fa_z_x_fb_y_z;
+    J.wb_4_x = fa_y_y * fb_z_z - fa_z_y * fb_y_z - fa_y_z * fb_z_y + fa_z_z * fb_y_y;
+    J.wb_4_y = fa_z_x * fb_y_z - fa_y_x * fb_z_z + fa_y_z * fb_z_x - fa_z_z * fb_y_x;
+    J.wb_4_z = fa_y_x * fb_z_y - fa_z_x * fb_y_y - fa_y_y * fb_z_x + fa_z_y * fb_y_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 32 +, 48 *
@@ -1947,7 +1892,7 @@ struct constant_velocity::b_immovable : constant_velocity {
 
   template <class T>
   struct Jacobian {
-    T ra_z, ra_y, ra_x, wa_4_x, wa_4_y, wa_4_z;
+    T ra_z, ra_y, ra_x, axis_shafts_x, axis_shafts_y, axis_shafts_z;
   };
 
   // C and J: 59 +, 72 *
@@ -1966,16 +1911,14 @@ struct constant_velocity::b_immovable : constant_velocity {
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
     const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T dot_fa_y_fb_z = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
     const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
     const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
     const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
     const T fa_z_x_fb_y_x = fa_z_y * fb_y_z - fa_z_z * fb_y_y;
@@ -1985,13 +1928,14 @@ struct constant_velocity::b_immovable : constant_velocity {
     C[0] = a.x - b.x + ra_x - rb_x;
     C[1] = a.y - b.y + ra_y - rb_y;
     C[2] = a.z - b.z + ra_z - rb_z;
-    C[3] = dot_fa_z_fb_y - dot_fa_y_fb_z;
+    C[3] = fa_z_x * fb_y_x - fa_y_x * fb_z_x - fa_y_y * fb_z_y + fa_z_y * fb_y_y - fa_y_z *
+        fb_z_z + fa_z_z * fb_y_z;
     J.ra_z = ra_z;
     J.ra_y = ra_y;
     J.ra_x = ra_x;
-    J.wa_4_x = fa_z_x_fb_y_x - fa_y_x_fb_z_x;
-    J.wa_4_y = fa_z_x_fb_y_y - fa_y_x_fb_z_y;
-    J.wa_4_z = fa_z_x_fb_y_z - fa_y_x_fb_z_z;
+    J.axis_shafts_x = fa_z_x_fb_y_x - fa_y_x_fb_z_x;
+    J.axis_shafts_y = fa_z_x_fb_y_y - fa_y_x_fb_z_y;
+    J.axis_shafts_z = fa_z_x_fb_y_z - fa_y_x_fb_z_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 32 +, 48 *
@@ -2015,12 +1959,14 @@ struct constant_velocity::b_immovable : constant_velocity {
     K[3] = J.ra_y * K21_3 - J.ra_x * K11_2;
     K[4] = J.ra_y * K22_2 - J.ra_x * K32_2;
     K[5] = ma.m - J.ra_x * K33_1 + J.ra_y * K33_2;
-    K[6] = J.wa_4_x * K21_3 + J.wa_4_y * K11_2 + J.wa_4_z * K11_1;
-    K[7] = J.wa_4_x * K22_2 + J.wa_4_y * K32_2 + J.wa_4_z * K22_1;
-    K[8] = J.wa_4_x * K33_2 + J.wa_4_y * K33_1 + J.wa_4_z * (K21_2 - K32_1);
-    K[9] = J.wa_4_x * (ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z) + J.wa_4_y *
-        (ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z) + J.wa_4_z *
-        (ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z);
+    K[6] = J.axis_shafts_x * K21_3 + J.axis_shafts_y * K11_2 + J.axis_shafts_z * K11_1;
+    K[7] = J.axis_shafts_x * K22_2 + J.axis_shafts_y * K32_2 + J.axis_shafts_z * K22_1;
+    K[8] = J.axis_shafts_x * K33_2 + J.axis_shafts_y * K33_1 + J.axis_shafts_z * (K21_2 - K32_1);
+    K[9] = J.axis_shafts_x * (ma.Ixx * J.axis_shafts_x + ma.Ixy * J.axis_shafts_y + ma.Ixz *
+        J.axis_shafts_z) + J.axis_shafts_y *
+        (ma.Ixy * J.axis_shafts_x + ma.Iyy * J.axis_shafts_y + ma.Iyz * J.axis_shafts_z) +
+        J.axis_shafts_z * (ma.Ixz * J.axis_shafts_x + ma.Iyz * J.axis_shafts_y + ma.Izz *
+        J.axis_shafts_z);
   }
 
   // J v: 8 +, 9 *
@@ -2030,7 +1976,7 @@ struct constant_velocity::b_immovable : constant_velocity {
     Jv[0] = va.x - J.ra_y * va.wz + J.ra_z * va.wy;
     Jv[1] = va.y + J.ra_x * va.wz - J.ra_z * va.wx;
     Jv[2] = va.z - J.ra_x * va.wy + J.ra_y * va.wx;
-    Jv[3] = J.wa_4_x * va.wx + J.wa_4_y * va.wy + J.wa_4_z * va.wz;
+    Jv[3] = J.axis_shafts_x * va.wx + J.axis_shafts_y * va.wy + J.axis_shafts_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 18 +, 21 *
@@ -2039,9 +1985,9 @@ struct constant_velocity::b_immovable : constant_velocity {
       Velocity<T> (&v)[2]) {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
-    const T v1_1 = J.ra_y * lambda[2] - J.ra_z * lambda[1] + J.wa_4_x * lambda[3];
-    const T v1_2 = J.ra_z * lambda[0] - J.ra_x * lambda[2] + J.wa_4_y * lambda[3];
-    const T v1_3 = J.ra_x * lambda[1] - J.ra_y * lambda[0] + J.wa_4_z * lambda[3];
+    const T v1_1 = J.axis_shafts_x * lambda[3] + J.ra_y * lambda[2] - J.ra_z * lambda[1];
+    const T v1_2 = J.axis_shafts_y * lambda[3] - J.ra_x * lambda[2] + J.ra_z * lambda[0];
+    const T v1_3 = J.axis_shafts_z * lambda[3] + J.ra_x * lambda[1] - J.ra_y * lambda[0];
     v[0].x = va.x + ma.m * lambda[0];
     v[0].y = va.y + ma.m * lambda[1];
     v[0].z = va.z + ma.m * lambda[2];
@@ -2065,9 +2011,9 @@ struct constant_velocity::b_immovable : constant_velocity {
     D[2][2] = T(1);
     D[2][3] = J.ra_y;
     D[2][4] = -J.ra_x;
-    D[3][3] = J.wa_4_x;
-    D[3][4] = J.wa_4_y;
-    D[3][5] = J.wa_4_z;
+    D[3][3] = J.axis_shafts_x;
+    D[3][4] = J.axis_shafts_y;
+    D[3][5] = J.axis_shafts_z;
   }
 
   // (M^-1 J^T)^T, laid out like dense: 15 +, 24 *
@@ -2093,9 +2039,9 @@ struct constant_velocity::b_immovable : constant_velocity {
     D[2][3] = ma.Ixx * J.ra_y - ma.Ixy * J.ra_x;
     D[2][4] = ma.Ixy * J.ra_y - ma.Iyy * J.ra_x;
     D[2][5] = D1_2 - D2_1;
-    D[3][3] = ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z;
-    D[3][4] = ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z;
-    D[3][5] = ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z;
+    D[3][3] = ma.Ixx * J.axis_shafts_x + ma.Ixy * J.axis_shafts_y + ma.Ixz * J.axis_shafts_z;
+    D[3][4] = ma.Ixy * J.axis_shafts_x + ma.Iyy * J.axis_shafts_y + ma.Iyz * J.axis_shafts_z;
+    D[3][5] = ma.Ixz * J.axis_shafts_x + ma.Iyz * J.axis_shafts_y + ma.Izz * J.axis_shafts_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 13 +, 19 *
@@ -2110,15 +2056,16 @@ struct constant_velocity::b_immovable : constant_velocity {
     const T ia_ra_x = ma.I * J.ra_x;
     const T K22_1 = ia_ra_x * J.ra_x;
     K[0] = K11_1 + K11_2;
-    K[1] = -ia_ra_x * J.ra_y;
+    K[1] = -ia_ra_y * J.ra_x;
     K[2] = K11_1 + K22_1;
     K[3] = -ia_ra_z * J.ra_x;
     K[4] = -ia_ra_z * J.ra_y;
     K[5] = ma.m + K22_1 + K11_2;
-    K[6] = ia_ra_z * J.wa_4_y - ia_ra_y * J.wa_4_z;
-    K[7] = ia_ra_x * J.wa_4_z - ia_ra_z * J.wa_4_x;
-    K[8] = ia_ra_y * J.wa_4_x - ia_ra_x * J.wa_4_y;
-    K[9] = ma.I * (J.wa_4_x * J.wa_4_x + J.wa_4_y * J.wa_4_y + J.wa_4_z * J.wa_4_z);
+    K[6] = ia_ra_z * J.axis_shafts_y - ia_ra_y * J.axis_shafts_z;
+    K[7] = ia_ra_x * J.axis_shafts_z - ia_ra_z * J.axis_shafts_x;
+    K[8] = ia_ra_y * J.axis_shafts_x - ia_ra_x * J.axis_shafts_y;
+    K[9] = ma.I * (J.axis_shafts_x * J.axis_shafts_x + J.axis_shafts_y * J.axis_shafts_y +
+        J.axis_shafts_z * J.axis_shafts_z);
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 15 *
@@ -2130,9 +2077,12 @@ struct constant_velocity::b_immovable : constant_velocity {
     v[0].x = va.x + ma.m * lambda[0];
     v[0].y = va.y + ma.m * lambda[1];
     v[0].z = va.z + ma.m * lambda[2];
-    v[0].wx = va.wx + ma.I * (J.ra_y * lambda[2] - J.ra_z * lambda[1] + J.wa_4_x * lambda[3]);
-    v[0].wy = va.wy + ma.I * (J.ra_z * lambda[0] - J.ra_x * lambda[2] + J.wa_4_y * lambda[3]);
-    v[0].wz = va.wz + ma.I * (J.ra_x * lambda[1] - J.ra_y * lambda[0] + J.wa_4_z * lambda[3]);
+    v[0].wx = va.wx + ma.I * (J.axis_shafts_x * lambda[3] + J.ra_y * lambda[2] - J.ra_z *
+        lambda[1]);
+    v[0].wy = va.wy + ma.I * (J.axis_shafts_y * lambda[3] - J.ra_x * lambda[2] + J.ra_z *
+        lambda[0]);
+    v[0].wz = va.wz + ma.I * (J.axis_shafts_z * lambda[3] + J.ra_x * lambda[1] - J.ra_y *
+        lambda[0]);
   }
 
   // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
@@ -2155,9 +2105,9 @@ struct constant_velocity::b_immovable : constant_velocity {
     D[2][2] = ma.m;
     D[2][3] = ia_ra_y;
     D[2][4] = -ia_ra_x;
-    D[3][3] = ma.I * J.wa_4_x;
-    D[3][4] = ma.I * J.wa_4_y;
-    D[3][5] = ma.I * J.wa_4_z;
+    D[3][3] = ma.I * J.axis_shafts_x;
+    D[3][4] = ma.I * J.axis_shafts_y;
+    D[3][5] = ma.I * J.axis_shafts_z;
   }
 };
 
@@ -2260,7 +2210,8 @@ struct constant_velocity::bend_y::a_immovable : constant_velocity::bend_y {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& mb = m[1];
-    K[0] = mb.I * (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+    const T dot_axis_bend_y_axis_bend_y = J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z;
+    K[0] = mb.I * dot_axis_bend_y_axis_bend_y;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
@@ -2293,59 +2244,21 @@ struct constant_velocity::bend_y::a_immovable : constant_velocity::bend_y {
 struct constant_velocity::bend_y::b_immovable : constant_velocity::bend_y {
   static constexpr int immovable_body = 1;
 
-  template <class T>
-  struct Jacobian {
-    T wa_x, wa_y, wa_z;
-  };
-
-  // C and J: 33 +, 55 *, 1 /, 1 <, 1 call
-  template <class T>
-  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
-      Jacobian<T>& J) {
-    using std::atan2;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-    const T wa_x_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_z_fb_x * dot_fa_z_fb_x);
-    const T wa_x_2 = dot_fa_x_fb_x * wa_x_1;
-    const T fa_z_x_fb_x_x = fa_z_y * fb_x_z - fa_z_z * fb_x_y;
-    const T fa_z_x_fb_x_y = fa_z_z * fb_x_x - fa_z_x * fb_x_z;
-    const T wa_x_3 = dot_fa_z_fb_x * wa_x_1;
-    const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
-    const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
-    const T fa_z_x_fb_x_z = fa_z_x * fb_x_y - fa_z_y * fb_x_x;
-    const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
-    C[0] = atan2(-dot_fa_z_fb_x, dot_fa_x_fb_x);
-    J.wa_x = wa_x_3 * fa_x_x_fb_x_x - wa_x_2 * fa_z_x_fb_x_x;
-    J.wa_y = wa_x_3 * fa_x_x_fb_x_y - wa_x_2 * fa_z_x_fb_x_y;
-    J.wa_z = wa_x_3 * fa_x_x_fb_x_z - wa_x_2 * fa_z_x_fb_x_z;
-  }
-
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    const T K11_1 = J.wa_z * T(2);
-    K[0] = ma.Izz * J.wa_z * J.wa_z + J.wa_x *
-        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
-        (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
+    const T K11_1 = J.axis_bend_y_z * T(2);
+    K[0] = ma.Izz * J.axis_bend_y_z * J.axis_bend_y_z + J.axis_bend_y_x *
+        (ma.Ixx * J.axis_bend_y_x + ma.Ixy * J.axis_bend_y_y * T(2) + K11_1 * ma.Ixz) +
+        J.axis_bend_y_y * (ma.Iyy * J.axis_bend_y_y + K11_1 * ma.Iyz);
   }
 
   // J v: 2 +, 3 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz;
+    Jv[0] = J.axis_bend_y_x * va.wx + J.axis_bend_y_y * va.wy + J.axis_bend_y_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 9 +, 12 *
@@ -2354,9 +2267,9 @@ struct constant_velocity::bend_y::b_immovable : constant_velocity::bend_y {
       Velocity<T> (&v)[2]) {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
-    const T v1_1 = J.wa_x * lambda[0];
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1 = J.axis_bend_y_x * lambda[0];
+    const T v1_2 = lambda[0] * J.axis_bend_y_y;
+    const T v1_3 = lambda[0] * J.axis_bend_y_z;
     v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
     v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
     v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
@@ -2368,9 +2281,9 @@ struct constant_velocity::bend_y::b_immovable : constant_velocity::bend_y {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = J.axis_bend_y_x;
+    D[0][4] = J.axis_bend_y_y;
+    D[0][5] = J.axis_bend_y_z;
   }
 
   // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
@@ -2381,9 +2294,9 @@ struct constant_velocity::bend_y::b_immovable : constant_velocity::bend_y {
       for (T& entry : row) entry = T(0);
     }
     const InverseMass<T>& ma = m[0];
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = ma.Ixx * J.axis_bend_y_x + ma.Ixy * J.axis_bend_y_y + ma.Ixz * J.axis_bend_y_z;
+    D[0][4] = ma.Ixy * J.axis_bend_y_x + ma.Iyy * J.axis_bend_y_y + ma.Iyz * J.axis_bend_y_z;
+    D[0][5] = ma.Ixz * J.axis_bend_y_x + ma.Iyz * J.axis_bend_y_y + ma.Izz * J.axis_bend_y_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
@@ -2391,7 +2304,9 @@ struct constant_velocity::bend_y::b_immovable : constant_velocity::bend_y {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_axis_bend_y_axis_bend_y = J.axis_bend_y_x * J.axis_bend_y_x + J.axis_bend_y_y *
+        J.axis_bend_y_y + J.axis_bend_y_z * J.axis_bend_y_z;
+    K[0] = ma.I * dot_axis_bend_y_axis_bend_y;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
@@ -2401,9 +2316,9 @@ struct constant_velocity::bend_y::b_immovable : constant_velocity::bend_y {
     const Velocity<T> va = v[0];
     const IsotropicInverseMass<T>& ma = m[0];
     const T v1_1 = ma.I * lambda[0];
-    v[0].wx = va.wx + v1_1 * J.wa_x;
-    v[0].wy = va.wy + v1_1 * J.wa_y;
-    v[0].wz = va.wz + v1_1 * J.wa_z;
+    v[0].wx = va.wx + v1_1 * J.axis_bend_y_x;
+    v[0].wy = va.wy + v1_1 * J.axis_bend_y_y;
+    v[0].wz = va.wz + v1_1 * J.axis_bend_y_z;
   }
 
   // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
@@ -2414,9 +2329,9 @@ struct constant_velocity::bend_y::b_immovable : constant_velocity::bend_y {
       for (T& entry : row) entry = T(0);
     }
     const IsotropicInverseMass<T>& ma = m[0];
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = ma.I * J.axis_bend_y_x;
+    D[0][4] = ma.I * J.axis_bend_y_y;
+    D[0][5] = ma.I * J.axis_bend_y_z;
   }
 };
 
@@ -2519,7 +2434,8 @@ struct constant_velocity::bend_z::a_immovable : constant_velocity::bend_z {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& mb = m[1];
-    K[0] = mb.I * (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+    const T dot_axis_bend_y_axis_bend_y = J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z;
+    K[0] = mb.I * dot_axis_bend_y_axis_bend_y;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
@@ -2552,59 +2468,21 @@ struct constant_velocity::bend_z::a_immovable : constant_velocity::bend_z {
 struct constant_velocity::bend_z::b_immovable : constant_velocity::bend_z {
   static constexpr int immovable_body = 1;
 
-  template <class T>
-  struct Jacobian {
-    T wa_x, wa_y, wa_z;
-  };
-
-  // C and J: 32 +, 55 *, 1 /, 1 <, 1 call
-  template <class T>
-  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
-      Jacobian<T>& J) {
-    using std::atan2;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-    const T wa_x_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_y_fb_x * dot_fa_y_fb_x);
-    const T wa_x_2 = dot_fa_x_fb_x * wa_x_1;
-    const T fa_y_x_fb_x_x = fa_y_y * fb_x_z - fa_y_z * fb_x_y;
-    const T fa_y_x_fb_x_y = fa_y_z * fb_x_x - fa_y_x * fb_x_z;
-    const T wa_x_3 = dot_fa_y_fb_x * wa_x_1;
-    const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
-    const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
-    const T fa_y_x_fb_x_z = fa_y_x * fb_x_y - fa_y_y * fb_x_x;
-    const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
-    C[0] = atan2(dot_fa_y_fb_x, dot_fa_x_fb_x);
-    J.wa_x = wa_x_2 * fa_y_x_fb_x_x - wa_x_3 * fa_x_x_fb_x_x;
-    J.wa_y = wa_x_2 * fa_y_x_fb_x_y - wa_x_3 * fa_x_x_fb_x_y;
-    J.wa_z = wa_x_2 * fa_y_x_fb_x_z - wa_x_3 * fa_x_x_fb_x_z;
-  }
-
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    const T K11_1 = J.wa_z * T(2);
-    K[0] = ma.Izz * J.wa_z * J.wa_z + J.wa_x *
-        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
-        (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
+    const T K11_1 = J.axis_bend_z_z * T(2);
+    K[0] = ma.Izz * J.axis_bend_z_z * J.axis_bend_z_z + J.axis_bend_z_x *
+        (ma.Ixx * J.axis_bend_z_x + ma.Ixy * J.axis_bend_z_y * T(2) + K11_1 * ma.Ixz) +
+        J.axis_bend_z_y * (ma.Iyy * J.axis_bend_z_y + K11_1 * ma.Iyz);
   }
 
   // J v: 2 +, 3 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz;
+    Jv[0] = J.axis_bend_z_x * va.wx + J.axis_bend_z_y * va.wy + J.axis_bend_z_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 9 +, 12 *
@@ -2613,9 +2491,9 @@ struct constant_velocity::bend_z::b_immovable : constant_velocity::bend_z {
       Velocity<T> (&v)[2]) {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
-    const T v1_1 = J.wa_x * lambda[0];
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1 = J.axis_bend_z_x * lambda[0];
+    const T v1_2 = lambda[0] * J.axis_bend_z_y;
+    const T v1_3 = lambda[0] * J.axis_bend_z_z;
     v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
     v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
     v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
@@ -2627,9 +2505,9 @@ struct constant_velocity::bend_z::b_immovable : constant_velocity::bend_z {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = J.axis_bend_z_x;
+    D[0][4] = J.axis_bend_z_y;
+    D[0][5] = J.axis_bend_z_z;
   }
 
   // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
@@ -2640,9 +2518,9 @@ struct constant_velocity::bend_z::b_immovable : constant_velocity::bend_z {
       for (T& entry : row) entry = T(0);
     }
     const InverseMass<T>& ma = m[0];
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = ma.Ixx * J.axis_bend_z_x + ma.Ixy * J.axis_bend_z_y + ma.Ixz * J.axis_bend_z_z;
+    D[0][4] = ma.Ixy * J.axis_bend_z_x + ma.Iyy * J.axis_bend_z_y + ma.Iyz * J.axis_bend_z_z;
+    D[0][5] = ma.Ixz * J.axis_bend_z_x + ma.Iyz * J.axis_bend_z_y + ma.Izz * J.axis_bend_z_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
@@ -2650,7 +2528,9 @@ struct constant_velocity::bend_z::b_immovable : constant_velocity::bend_z {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_axis_bend_z_axis_bend_z = J.axis_bend_z_x * J.axis_bend_z_x + J.axis_bend_z_y *
+        J.axis_bend_z_y + J.axis_bend_z_z * J.axis_bend_z_z;
+    K[0] = ma.I * dot_axis_bend_z_axis_bend_z;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
@@ -2660,9 +2540,9 @@ struct constant_velocity::bend_z::b_immovable : constant_velocity::bend_z {
     const Velocity<T> va = v[0];
     const IsotropicInverseMass<T>& ma = m[0];
     const T v1_1 = ma.I * lambda[0];
-    v[0].wx = va.wx + v1_1 * J.wa_x;
-    v[0].wy = va.wy + v1_1 * J.wa_y;
-    v[0].wz = va.wz + v1_1 * J.wa_z;
+    v[0].wx = va.wx + v1_1 * J.axis_bend_z_x;
+    v[0].wy = va.wy + v1_1 * J.axis_bend_z_y;
+    v[0].wz = va.wz + v1_1 * J.axis_bend_z_z;
   }
 
   // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
@@ -2673,9 +2553,9 @@ struct constant_velocity::bend_z::b_immovable : constant_velocity::bend_z {
       for (T& entry : row) entry = T(0);
     }
     const IsotropicInverseMass<T>& ma = m[0];
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = ma.I * J.axis_bend_z_x;
+    D[0][4] = ma.I * J.axis_bend_z_y;
+    D[0][5] = ma.I * J.axis_bend_z_z;
   }
 };
 

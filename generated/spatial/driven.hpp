@@ -9,29 +9,26 @@
 // C_parallel_y = fa_y · fb_x
 // C_parallel_z = fa_z · fb_x
 // C_crank = fb_z · turned
-// J = [ E | -S(ra)                                         | -E | S(rb)
-//       0 | (fa_y × fb_x)'                                 | 0  | -(fa_y × fb_x)'
-//       0 | (fa_z × fb_x)'                                 | 0  | -(fa_z × fb_x)'
-//       0 | (sin(s) (fa_z × fb_z) + cos(s) (fa_y × fb_z))' | 0  | -(turned × fb_z)' ]  (columns
-//           v_a | w_a | v_b | w_b)
+// J = [ E | -S(ra)           | -E | S(rb)
+//       0 | (fa_y × fb_x)'   | 0  | -(fa_y × fb_x)'
+//       0 | (fa_z × fb_x)'   | 0  | -(fa_z × fb_x)'
+//       0 | (turned × fb_z)' | 0  | -(turned × fb_z)' ]           (columns v_a | w_a | v_b | w_b)
 // S(r) u = r × u
 // K[pin, pin] = inv_m_a E + S(ra) inv_I_a S(ra)' + inv_m_b E + S(rb) inv_I_b S(rb)'
 // K[pin, parallel_y] = -S(ra) inv_I_a (fa_y × fb_x) - S(rb) inv_I_b (fa_y × fb_x)
 // K[pin, parallel_z] = -S(ra) inv_I_a (fa_z × fb_x) - S(rb) inv_I_b (fa_z × fb_x)
-// K[pin, crank] = -S(ra) inv_I_a (sin(s) (fa_z × fb_z) + cos(s) (fa_y × fb_z))
-//                 - S(rb) inv_I_b (turned × fb_z)
+// K[pin, crank] = -S(ra) inv_I_a (turned × fb_z) - S(rb) inv_I_b (turned × fb_z)
 // K[parallel_y, parallel_y] = (fa_y × fb_x)' inv_I_a (fa_y × fb_x)
 //                             + (fa_y × fb_x)' inv_I_b (fa_y × fb_x)
 // K[parallel_y, parallel_z] = (fa_z × fb_x)' inv_I_a (fa_y × fb_x)
 //                             + (fa_z × fb_x)' inv_I_b (fa_y × fb_x)
-// K[parallel_y, crank] = (sin(s) (fa_z × fb_z) + cos(s) (fa_y × fb_z))' inv_I_a (fa_y × fb_x)
+// K[parallel_y, crank] = (turned × fb_z)' inv_I_a (fa_y × fb_x)
 //                        + (turned × fb_z)' inv_I_b (fa_y × fb_x)
 // K[parallel_z, parallel_z] = (fa_z × fb_x)' inv_I_a (fa_z × fb_x)
 //                             + (fa_z × fb_x)' inv_I_b (fa_z × fb_x)
-// K[parallel_z, crank] = (sin(s) (fa_z × fb_z) + cos(s) (fa_y × fb_z))' inv_I_a (fa_z × fb_x)
+// K[parallel_z, crank] = (turned × fb_z)' inv_I_a (fa_z × fb_x)
 //                        + (turned × fb_z)' inv_I_b (fa_z × fb_x)
-// K[crank, crank] = (sin(s) (fa_z × fb_z) + cos(s) (fa_y × fb_z))' inv_I_a (sin(s) (fa_z × fb_z) +
-//     cos(s) (fa_y × fb_z))
+// K[crank, crank] = (turned × fb_z)' inv_I_a (turned × fb_z)
 //                   + (turned × fb_z)' inv_I_b (turned × fb_z)
 #pragma once
 
@@ -74,8 +71,8 @@ struct driven {
   template <class T>
   struct Jacobian {
     T ra_z, ra_y, rb_z, rb_y, ra_x, rb_x, fa_y_x_fb_x_x, fa_y_x_fb_x_y, fa_y_x_fb_x_z,
-        fa_z_x_fb_x_x, fa_z_x_fb_x_y, fa_z_x_fb_x_z, wa_6_x, wa_6_y, wa_6_z, turned_x_fb_z_x,
-        turned_x_fb_z_y, turned_x_fb_z_z;
+        fa_z_x_fb_x_x, fa_z_x_fb_x_y, fa_z_x_fb_x_z, turned_x_fb_z_x, turned_x_fb_z_y,
+        turned_x_fb_z_z;
   };
 
   // C: 55 +, 70 *, 2 call
@@ -117,7 +114,7 @@ struct driven {
     C[5] = fb_z_x * turned_x + fb_z_y * turned_y + fb_z_z * turned_z;
   }
 
-  // C and J: 73 +, 106 *, 2 call
+  // C and J: 64 +, 88 *, 2 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T time, T (&C)[6],
       Jacobian<T>& J) {
@@ -149,12 +146,6 @@ struct driven {
     const T turned_y = fa_y_y * C6_1 + fa_z_y * C6_2;
     const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
     const T turned_z = fa_y_z * C6_1 + fa_z_z * C6_2;
-    const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
-    const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
-    const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
-    const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-    const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
-    const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
     C[0] = a.x - b.x + ra_x - rb_x;
     C[1] = a.y - b.y + ra_y - rb_y;
     C[2] = a.z - b.z + ra_z - rb_z;
@@ -173,15 +164,12 @@ struct driven {
     J.fa_z_x_fb_x_x = fa_z_y * fb_x_z - fa_z_z * fb_x_y;
     J.fa_z_x_fb_x_y = fa_z_z * fb_x_x - fa_z_x * fb_x_z;
     J.fa_z_x_fb_x_z = fa_z_x * fb_x_y - fa_z_y * fb_x_x;
-    J.wa_6_x = fa_y_x_fb_z_x * C6_1 + fa_z_x_fb_z_x * C6_2;
-    J.wa_6_y = fa_y_x_fb_z_y * C6_1 + fa_z_x_fb_z_y * C6_2;
-    J.wa_6_z = fa_y_x_fb_z_z * C6_1 + fa_z_x_fb_z_z * C6_2;
     J.turned_x_fb_z_x = fb_z_z * turned_y - fb_z_y * turned_z;
     J.turned_x_fb_z_y = fb_z_x * turned_z - fb_z_z * turned_x;
     J.turned_x_fb_z_z = fb_z_y * turned_x - fb_z_x * turned_y;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 139 +, 171 *
+  // K = J M^-1 J^T, lower triangle, from J: 103 +, 126 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[21]) {
     const InverseMass<T>& ma = m[0];
@@ -217,24 +205,19 @@ struct driven {
     const T K42_3 = K22_1 + K22_3;
     const T K43_1 = K33_2 + K33_4;
     const T K43_2 = K33_1 + K33_3;
-    const T K43_3 = K21_2 - K32_1;
-    const T K43_4 = K21_5 - K32_3;
-    const T K43_5 = K43_3 + K43_4;
-    const T K44_1 = ma.Ixx * J.fa_y_x_fb_x_x + ma.Ixy * J.fa_y_x_fb_x_y + ma.Ixz * J.fa_y_x_fb_x_z;
-    const T K44_2 = mb.Ixx * J.fa_y_x_fb_x_x + mb.Ixy * J.fa_y_x_fb_x_y + mb.Ixz * J.fa_y_x_fb_x_z;
-    const T K44_3 = K44_1 + K44_2;
-    const T K44_4 = ma.Ixy * J.fa_y_x_fb_x_x + ma.Iyy * J.fa_y_x_fb_x_y + ma.Iyz * J.fa_y_x_fb_x_z;
-    const T K44_5 = mb.Ixy * J.fa_y_x_fb_x_x + mb.Iyy * J.fa_y_x_fb_x_y + mb.Iyz * J.fa_y_x_fb_x_z;
-    const T K44_6 = K44_4 + K44_5;
-    const T K44_7 = ma.Ixz * J.fa_y_x_fb_x_x + ma.Iyz * J.fa_y_x_fb_x_y + ma.Izz * J.fa_y_x_fb_x_z;
-    const T K44_8 = mb.Ixz * J.fa_y_x_fb_x_x + mb.Iyz * J.fa_y_x_fb_x_y + mb.Izz * J.fa_y_x_fb_x_z;
-    const T K44_9 = K44_7 + K44_8;
-    const T K55_1 = ma.Ixx * J.fa_z_x_fb_x_x + ma.Ixy * J.fa_z_x_fb_x_y + ma.Ixz * J.fa_z_x_fb_x_z;
-    const T K55_2 = mb.Ixx * J.fa_z_x_fb_x_x + mb.Ixy * J.fa_z_x_fb_x_y + mb.Ixz * J.fa_z_x_fb_x_z;
-    const T K55_3 = ma.Ixy * J.fa_z_x_fb_x_x + ma.Iyy * J.fa_z_x_fb_x_y + ma.Iyz * J.fa_z_x_fb_x_z;
-    const T K55_4 = mb.Ixy * J.fa_z_x_fb_x_x + mb.Iyy * J.fa_z_x_fb_x_y + mb.Iyz * J.fa_z_x_fb_x_z;
-    const T K55_5 = ma.Ixz * J.fa_z_x_fb_x_x + ma.Iyz * J.fa_z_x_fb_x_y + ma.Izz * J.fa_z_x_fb_x_z;
-    const T K55_6 = mb.Ixz * J.fa_z_x_fb_x_x + mb.Iyz * J.fa_z_x_fb_x_y + mb.Izz * J.fa_z_x_fb_x_z;
+    const T K43_3 = K21_2 - K32_1 + K21_5 - K32_3;
+    const T K44_1 = ma.Ixx + mb.Ixx;
+    const T K44_2 = ma.Ixy + mb.Ixy;
+    const T K44_3 = ma.Ixz + mb.Ixz;
+    const T K44_4 = J.fa_y_x_fb_x_x * K44_1 + J.fa_y_x_fb_x_y * K44_2 + J.fa_y_x_fb_x_z * K44_3;
+    const T K44_5 = ma.Iyy + mb.Iyy;
+    const T K44_6 = ma.Iyz + mb.Iyz;
+    const T K44_7 = J.fa_y_x_fb_x_x * K44_2 + J.fa_y_x_fb_x_y * K44_5 + J.fa_y_x_fb_x_z * K44_6;
+    const T K44_8 = ma.Izz + mb.Izz;
+    const T K44_9 = J.fa_y_x_fb_x_x * K44_3 + J.fa_y_x_fb_x_y * K44_6 + J.fa_y_x_fb_x_z * K44_8;
+    const T K55_1 = J.fa_z_x_fb_x_x * K44_1 + J.fa_z_x_fb_x_y * K44_2 + J.fa_z_x_fb_x_z * K44_3;
+    const T K55_2 = J.fa_z_x_fb_x_x * K44_2 + J.fa_z_x_fb_x_y * K44_5 + J.fa_z_x_fb_x_z * K44_6;
+    const T K55_3 = J.fa_z_x_fb_x_x * K44_3 + J.fa_z_x_fb_x_y * K44_6 + J.fa_z_x_fb_x_z * K44_8;
     K[0] = K11_1 - J.ra_y * K11_2 + J.ra_z * K11_3 - J.rb_y * K11_4 + J.rb_z * K11_5;
     K[1] = J.ra_x * K11_2 - J.ra_z * K21_3 + J.rb_x * K11_4 - J.rb_z * K21_6;
     K[2] = K11_1 + J.ra_x * K22_1 - J.ra_z * K22_2 + J.rb_x * K22_3 - J.rb_z * K22_4;
@@ -243,32 +226,23 @@ struct driven {
     K[5] = K11_1 - J.ra_x * K33_1 + J.ra_y * K33_2 - J.rb_x * K33_3 + J.rb_y * K33_4;
     K[6] = J.fa_y_x_fb_x_x * K41_1 + J.fa_y_x_fb_x_y * K41_2 + J.fa_y_x_fb_x_z * K41_3;
     K[7] = J.fa_y_x_fb_x_x * K42_1 + J.fa_y_x_fb_x_y * K42_2 + J.fa_y_x_fb_x_z * K42_3;
-    K[8] = J.fa_y_x_fb_x_x * K43_1 + J.fa_y_x_fb_x_y * K43_2 + J.fa_y_x_fb_x_z * K43_5;
-    K[9] = J.fa_y_x_fb_x_x * K44_3 + J.fa_y_x_fb_x_y * K44_6 + J.fa_y_x_fb_x_z * K44_9;
+    K[8] = J.fa_y_x_fb_x_x * K43_1 + J.fa_y_x_fb_x_y * K43_2 + J.fa_y_x_fb_x_z * K43_3;
+    K[9] = J.fa_y_x_fb_x_x * K44_4 + J.fa_y_x_fb_x_y * K44_7 + J.fa_y_x_fb_x_z * K44_9;
     K[10] = J.fa_z_x_fb_x_x * K41_1 + J.fa_z_x_fb_x_y * K41_2 + J.fa_z_x_fb_x_z * K41_3;
     K[11] = J.fa_z_x_fb_x_x * K42_1 + J.fa_z_x_fb_x_y * K42_2 + J.fa_z_x_fb_x_z * K42_3;
-    K[12] = J.fa_z_x_fb_x_x * K43_1 + J.fa_z_x_fb_x_y * K43_2 + J.fa_z_x_fb_x_z * K43_5;
-    K[13] = J.fa_z_x_fb_x_x * K44_3 + J.fa_z_x_fb_x_y * K44_6 + J.fa_z_x_fb_x_z * K44_9;
-    K[14] = J.fa_z_x_fb_x_x * (K55_1 + K55_2) + J.fa_z_x_fb_x_y * (K55_3 + K55_4) +
-        J.fa_z_x_fb_x_z * (K55_5 + K55_6);
-    K[15] = J.turned_x_fb_z_x * K21_6 + J.turned_x_fb_z_y * K11_5 + J.turned_x_fb_z_z * K11_4 +
-        J.wa_6_x * K21_3 + J.wa_6_y * K11_3 + J.wa_6_z * K11_2;
-    K[16] = J.turned_x_fb_z_x * K22_4 + J.turned_x_fb_z_y * K32_4 + J.turned_x_fb_z_z * K22_3 +
-        J.wa_6_x * K22_2 + J.wa_6_y * K32_2 + J.wa_6_z * K22_1;
-    K[17] = J.turned_x_fb_z_x * K33_4 + J.turned_x_fb_z_y * K33_3 + J.turned_x_fb_z_z * K43_4 +
-        J.wa_6_x * K33_2 + J.wa_6_y * K33_1 + J.wa_6_z * K43_3;
-    K[18] = J.turned_x_fb_z_x * K44_2 + J.turned_x_fb_z_y * K44_5 + J.turned_x_fb_z_z * K44_8 +
-        J.wa_6_x * K44_1 + J.wa_6_y * K44_4 + J.wa_6_z * K44_7;
-    K[19] = J.turned_x_fb_z_x * K55_2 + J.turned_x_fb_z_y * K55_4 + J.turned_x_fb_z_z * K55_6 +
-        J.wa_6_x * K55_1 + J.wa_6_y * K55_3 + J.wa_6_z * K55_5;
-    K[20] = J.turned_x_fb_z_x * (mb.Ixx * J.turned_x_fb_z_x + mb.Ixy * J.turned_x_fb_z_y + mb.Ixz *
-        J.turned_x_fb_z_z) + J.turned_x_fb_z_y *
-        (mb.Ixy * J.turned_x_fb_z_x + mb.Iyy * J.turned_x_fb_z_y + mb.Iyz * J.turned_x_fb_z_z) +
-        J.turned_x_fb_z_z * (mb.Ixz * J.turned_x_fb_z_x + mb.Iyz * J.turned_x_fb_z_y + mb.Izz *
-        J.turned_x_fb_z_z) + J.wa_6_x *
-        (ma.Ixx * J.wa_6_x + ma.Ixy * J.wa_6_y + ma.Ixz * J.wa_6_z) + J.wa_6_y *
-        (ma.Ixy * J.wa_6_x + ma.Iyy * J.wa_6_y + ma.Iyz * J.wa_6_z) + J.wa_6_z *
-        (ma.Ixz * J.wa_6_x + ma.Iyz * J.wa_6_y + ma.Izz * J.wa_6_z);
+    K[12] = J.fa_z_x_fb_x_x * K43_1 + J.fa_z_x_fb_x_y * K43_2 + J.fa_z_x_fb_x_z * K43_3;
+    K[13] = J.fa_z_x_fb_x_x * K44_4 + J.fa_z_x_fb_x_y * K44_7 + J.fa_z_x_fb_x_z * K44_9;
+    K[14] = J.fa_z_x_fb_x_x * K55_1 + J.fa_z_x_fb_x_y * K55_2 + J.fa_z_x_fb_x_z * K55_3;
+    K[15] = J.turned_x_fb_z_x * K41_1 + J.turned_x_fb_z_y * K41_2 + J.turned_x_fb_z_z * K41_3;
+    K[16] = J.turned_x_fb_z_x * K42_1 + J.turned_x_fb_z_y * K42_2 + J.turned_x_fb_z_z * K42_3;
+    K[17] = J.turned_x_fb_z_x * K43_1 + J.turned_x_fb_z_y * K43_2 + J.turned_x_fb_z_z * K43_3;
+    K[18] = J.turned_x_fb_z_x * K44_4 + J.turned_x_fb_z_y * K44_7 + J.turned_x_fb_z_z * K44_9;
+    K[19] = J.turned_x_fb_z_x * K55_1 + J.turned_x_fb_z_y * K55_2 + J.turned_x_fb_z_z * K55_3;
+    K[20] = J.turned_x_fb_z_x * (J.turned_x_fb_z_x * K44_1 + J.turned_x_fb_z_y * K44_2 +
+        J.turned_x_fb_z_z * K44_3) + J.turned_x_fb_z_y *
+        (J.turned_x_fb_z_x * K44_2 + J.turned_x_fb_z_y * K44_5 + J.turned_x_fb_z_z * K44_6) +
+        J.turned_x_fb_z_z * (J.turned_x_fb_z_x * K44_3 + J.turned_x_fb_z_y * K44_6 +
+        J.turned_x_fb_z_z * K44_8);
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 35 +, 71 *, 6 /, 6 <
@@ -354,7 +328,7 @@ struct driven {
     lambda[5] = x6;
   }
 
-  // J v: 27 +, 24 *
+  // J v: 24 +, 21 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[6]) {
     const Velocity<T>& va = v[0];
@@ -367,11 +341,10 @@ struct driven {
     Jv[2] = va.z - vb.z - J.ra_x * va.wy + J.ra_y * va.wx + J.rb_x * vb.wy - J.rb_y * vb.wx;
     Jv[3] = J.fa_y_x_fb_x_x * Jv4_1 + J.fa_y_x_fb_x_y * Jv4_2 + J.fa_y_x_fb_x_z * Jv4_3;
     Jv[4] = J.fa_z_x_fb_x_x * Jv4_1 + J.fa_z_x_fb_x_y * Jv4_2 + J.fa_z_x_fb_x_z * Jv4_3;
-    Jv[5] = J.wa_6_x * va.wx - J.turned_x_fb_z_x * vb.wx - J.turned_x_fb_z_y * vb.wy -
-        J.turned_x_fb_z_z * vb.wz + J.wa_6_y * va.wy + J.wa_6_z * va.wz;
+    Jv[5] = J.turned_x_fb_z_x * Jv4_1 + J.turned_x_fb_z_y * Jv4_2 + J.turned_x_fb_z_z * Jv4_3;
   }
 
-  // v += M^-1 J^T lambda: 45 +, 48 *
+  // v += M^-1 J^T lambda: 42 +, 45 *
   template <class T>
   static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[6],
       Velocity<T> (&v)[2]) {
@@ -379,15 +352,18 @@ struct driven {
     const InverseMass<T>& ma = m[0];
     const Velocity<T> vb = v[1];
     const InverseMass<T>& mb = m[1];
-    const T v1_1 = J.fa_y_x_fb_x_x * lambda[3] + J.fa_z_x_fb_x_x * lambda[4];
-    const T v1_2 = v1_1 + J.ra_y * lambda[2] - J.ra_z * lambda[1] + J.wa_6_x * lambda[5];
-    const T v1_3 = J.fa_y_x_fb_x_y * lambda[3] + J.fa_z_x_fb_x_y * lambda[4];
-    const T v1_4 = v1_3 - J.ra_x * lambda[2] + J.ra_z * lambda[0] + J.wa_6_y * lambda[5];
-    const T v1_5 = J.fa_y_x_fb_x_z * lambda[3] + J.fa_z_x_fb_x_z * lambda[4];
-    const T v1_6 = v1_5 + J.ra_x * lambda[1] - J.ra_y * lambda[0] + J.wa_6_z * lambda[5];
-    const T v2_1 = J.rb_z * lambda[1] - v1_1 - J.rb_y * lambda[2] - J.turned_x_fb_z_x * lambda[5];
-    const T v2_2 = J.rb_x * lambda[2] - v1_3 - J.rb_z * lambda[0] - J.turned_x_fb_z_y * lambda[5];
-    const T v2_3 = J.rb_y * lambda[0] - v1_5 - J.rb_x * lambda[1] - J.turned_x_fb_z_z * lambda[5];
+    const T v1_1 = J.turned_x_fb_z_x * lambda[5] + J.fa_y_x_fb_x_x * lambda[3] + J.fa_z_x_fb_x_x *
+        lambda[4];
+    const T v1_2 = v1_1 + J.ra_y * lambda[2] - J.ra_z * lambda[1];
+    const T v1_3 = J.turned_x_fb_z_y * lambda[5] + J.fa_y_x_fb_x_y * lambda[3] + J.fa_z_x_fb_x_y *
+        lambda[4];
+    const T v1_4 = v1_3 - J.ra_x * lambda[2] + J.ra_z * lambda[0];
+    const T v1_5 = J.turned_x_fb_z_z * lambda[5] + J.fa_y_x_fb_x_z * lambda[3] + J.fa_z_x_fb_x_z *
+        lambda[4];
+    const T v1_6 = v1_5 + J.ra_x * lambda[1] - J.ra_y * lambda[0];
+    const T v2_1 = J.rb_z * lambda[1] - v1_1 - J.rb_y * lambda[2];
+    const T v2_2 = J.rb_x * lambda[2] - v1_3 - J.rb_z * lambda[0];
+    const T v2_3 = J.rb_y * lambda[0] - v1_5 - J.rb_x * lambda[1];
     v[0].x = va.x + ma.m * lambda[0];
     v[0].y = va.y + ma.m * lambda[1];
     v[0].z = va.z + ma.m * lambda[2];
@@ -438,9 +414,9 @@ struct driven {
     D[4][9] = -J.fa_z_x_fb_x_x;
     D[4][10] = -J.fa_z_x_fb_x_y;
     D[4][11] = -J.fa_z_x_fb_x_z;
-    D[5][3] = J.wa_6_x;
-    D[5][4] = J.wa_6_y;
-    D[5][5] = J.wa_6_z;
+    D[5][3] = J.turned_x_fb_z_x;
+    D[5][4] = J.turned_x_fb_z_y;
+    D[5][5] = J.turned_x_fb_z_z;
     D[5][9] = -J.turned_x_fb_z_x;
     D[5][10] = -J.turned_x_fb_z_y;
     D[5][11] = -J.turned_x_fb_z_z;
@@ -497,9 +473,9 @@ struct driven {
     D[4][9] = -mb.Ixx * J.fa_z_x_fb_x_x - mb.Ixy * J.fa_z_x_fb_x_y - mb.Ixz * J.fa_z_x_fb_x_z;
     D[4][10] = -mb.Ixy * J.fa_z_x_fb_x_x - mb.Iyy * J.fa_z_x_fb_x_y - mb.Iyz * J.fa_z_x_fb_x_z;
     D[4][11] = -mb.Ixz * J.fa_z_x_fb_x_x - mb.Iyz * J.fa_z_x_fb_x_y - mb.Izz * J.fa_z_x_fb_x_z;
-    D[5][3] = ma.Ixx * J.wa_6_x + ma.Ixy * J.wa_6_y + ma.Ixz * J.wa_6_z;
-    D[5][4] = ma.Ixy * J.wa_6_x + ma.Iyy * J.wa_6_y + ma.Iyz * J.wa_6_z;
-    D[5][5] = ma.Ixz * J.wa_6_x + ma.Iyz * J.wa_6_y + ma.Izz * J.wa_6_z;
+    D[5][3] = ma.Ixx * J.turned_x_fb_z_x + ma.Ixy * J.turned_x_fb_z_y + ma.Ixz * J.turned_x_fb_z_z;
+    D[5][4] = ma.Ixy * J.turned_x_fb_z_x + ma.Iyy * J.turned_x_fb_z_y + ma.Iyz * J.turned_x_fb_z_z;
+    D[5][5] = ma.Ixz * J.turned_x_fb_z_x + ma.Iyz * J.turned_x_fb_z_y + ma.Izz * J.turned_x_fb_z_z;
     D[5][9] = -mb.Ixx * J.turned_x_fb_z_x - mb.Ixy * J.turned_x_fb_z_y - mb.Ixz * J.turned_x_fb_z_z;
     D[5][10] = -mb.Ixy * J.turned_x_fb_z_x - mb.Iyy * J.turned_x_fb_z_y - mb.Iyz *
         J.turned_x_fb_z_z;
@@ -507,7 +483,7 @@ struct driven {
         J.turned_x_fb_z_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 58 +, 79 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 40 +, 60 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[21]) {
@@ -526,21 +502,10 @@ struct driven {
     const T K41_1 = ia_ra_z + ib_rb_z;
     const T K41_2 = ia_ra_y + ib_rb_y;
     const T K42_1 = ia_ra_x + ib_rb_x;
-    const T ia_fa_y_x_fb_x_y = ma.I * J.fa_y_x_fb_x_y;
-    const T ib_fa_y_x_fb_x_y = mb.I * J.fa_y_x_fb_x_y;
-    const T K44_1 = ia_fa_y_x_fb_x_y + ib_fa_y_x_fb_x_y;
-    const T ia_fa_y_x_fb_x_z = ma.I * J.fa_y_x_fb_x_z;
-    const T ib_fa_y_x_fb_x_z = mb.I * J.fa_y_x_fb_x_z;
-    const T K44_2 = ia_fa_y_x_fb_x_z + ib_fa_y_x_fb_x_z;
-    const T ia_fa_y_x_fb_x_x = ma.I * J.fa_y_x_fb_x_x;
-    const T ib_fa_y_x_fb_x_x = mb.I * J.fa_y_x_fb_x_x;
-    const T K44_3 = ia_fa_y_x_fb_x_x + ib_fa_y_x_fb_x_x;
-    const T ia_wa_6_y = ma.I * J.wa_6_y;
-    const T ib_turned_x_fb_z_y = mb.I * J.turned_x_fb_z_y;
-    const T ia_wa_6_z = ma.I * J.wa_6_z;
-    const T ib_turned_x_fb_z_z = mb.I * J.turned_x_fb_z_z;
-    const T ia_wa_6_x = ma.I * J.wa_6_x;
-    const T ib_turned_x_fb_z_x = mb.I * J.turned_x_fb_z_x;
+    const T K44_1 = ma.I + mb.I;
+    const T K44_2 = J.fa_y_x_fb_x_y * K44_1;
+    const T K44_3 = J.fa_y_x_fb_x_z * K44_1;
+    const T K44_4 = J.fa_y_x_fb_x_x * K44_1;
     K[0] = K11_1 + K11_3;
     K[1] = -ia_ra_x * J.ra_y - ib_rb_x * J.rb_y;
     K[2] = K22_1 + K11_3;
@@ -550,30 +515,24 @@ struct driven {
     K[6] = J.fa_y_x_fb_x_y * K41_1 - J.fa_y_x_fb_x_z * K41_2;
     K[7] = J.fa_y_x_fb_x_z * K42_1 - J.fa_y_x_fb_x_x * K41_1;
     K[8] = J.fa_y_x_fb_x_x * K41_2 - J.fa_y_x_fb_x_y * K42_1;
-    K[9] = J.fa_y_x_fb_x_y * K44_1 + J.fa_y_x_fb_x_z * K44_2 + J.fa_y_x_fb_x_x * K44_3;
+    K[9] = J.fa_y_x_fb_x_y * K44_2 + J.fa_y_x_fb_x_z * K44_3 + J.fa_y_x_fb_x_x * K44_4;
     K[10] = J.fa_z_x_fb_x_y * K41_1 - J.fa_z_x_fb_x_z * K41_2;
     K[11] = J.fa_z_x_fb_x_z * K42_1 - J.fa_z_x_fb_x_x * K41_1;
     K[12] = J.fa_z_x_fb_x_x * K41_2 - J.fa_z_x_fb_x_y * K42_1;
-    K[13] = J.fa_z_x_fb_x_y * K44_1 + J.fa_z_x_fb_x_z * K44_2 + J.fa_z_x_fb_x_x * K44_3;
+    K[13] = J.fa_z_x_fb_x_y * K44_2 + J.fa_z_x_fb_x_z * K44_3 + J.fa_z_x_fb_x_x * K44_4;
     K[14] = (J.fa_z_x_fb_x_x * J.fa_z_x_fb_x_x + J.fa_z_x_fb_x_y * J.fa_z_x_fb_x_y +
-        J.fa_z_x_fb_x_z * J.fa_z_x_fb_x_z) * (ma.I + mb.I);
-    K[15] = ia_ra_z * J.wa_6_y - ia_ra_y * J.wa_6_z - ib_rb_y * J.turned_x_fb_z_z + ib_rb_z *
-        J.turned_x_fb_z_y;
-    K[16] = ia_ra_x * J.wa_6_z - ia_ra_z * J.wa_6_x + ib_rb_x * J.turned_x_fb_z_z - ib_rb_z *
-        J.turned_x_fb_z_x;
-    K[17] = ia_ra_y * J.wa_6_x - ia_ra_x * J.wa_6_y - ib_rb_x * J.turned_x_fb_z_y + ib_rb_y *
-        J.turned_x_fb_z_x;
-    K[18] = ia_fa_y_x_fb_x_x * J.wa_6_x + ia_fa_y_x_fb_x_y * J.wa_6_y + ia_fa_y_x_fb_x_z *
-        J.wa_6_z + ib_fa_y_x_fb_x_x * J.turned_x_fb_z_x + ib_fa_y_x_fb_x_y * J.turned_x_fb_z_y +
-        ib_fa_y_x_fb_x_z * J.turned_x_fb_z_z;
-    K[19] = J.fa_z_x_fb_x_y * (ia_wa_6_y + ib_turned_x_fb_z_y) + J.fa_z_x_fb_x_z *
-        (ia_wa_6_z + ib_turned_x_fb_z_z) + J.fa_z_x_fb_x_x * (ia_wa_6_x + ib_turned_x_fb_z_x);
-    K[20] = ia_wa_6_x * J.wa_6_x + ia_wa_6_y * J.wa_6_y + ia_wa_6_z * J.wa_6_z +
-        ib_turned_x_fb_z_x * J.turned_x_fb_z_x + ib_turned_x_fb_z_y * J.turned_x_fb_z_y +
-        ib_turned_x_fb_z_z * J.turned_x_fb_z_z;
+        J.fa_z_x_fb_x_z * J.fa_z_x_fb_x_z) * K44_1;
+    K[15] = J.turned_x_fb_z_y * K41_1 - J.turned_x_fb_z_z * K41_2;
+    K[16] = J.turned_x_fb_z_z * K42_1 - J.turned_x_fb_z_x * K41_1;
+    K[17] = J.turned_x_fb_z_x * K41_2 - J.turned_x_fb_z_y * K42_1;
+    K[18] = J.turned_x_fb_z_z * K44_3 + J.turned_x_fb_z_y * K44_2 + J.turned_x_fb_z_x * K44_4;
+    K[19] = (J.fa_z_x_fb_x_x * J.turned_x_fb_z_x + J.fa_z_x_fb_x_y * J.turned_x_fb_z_y +
+        J.fa_z_x_fb_x_z * J.turned_x_fb_z_z) * K44_1;
+    K[20] = (J.turned_x_fb_z_x * J.turned_x_fb_z_x + J.turned_x_fb_z_y * J.turned_x_fb_z_y +
+        J.turned_x_fb_z_z * J.turned_x_fb_z_z) * K44_1;
   }
 
-  // v += M^-1 J^T lambda, for sphere-like bodies: 33 +, 36 *
+  // v += M^-1 J^T lambda, for sphere-like bodies: 30 +, 33 *
   template <class T>
   static void apply(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       const T (&lambda)[6], Velocity<T> (&v)[2]) {
@@ -581,27 +540,24 @@ struct driven {
     const IsotropicInverseMass<T>& ma = m[0];
     const Velocity<T> vb = v[1];
     const IsotropicInverseMass<T>& mb = m[1];
-    const T v1_1 = J.fa_y_x_fb_x_x * lambda[3] + J.fa_z_x_fb_x_x * lambda[4];
-    const T v1_1_2 = J.fa_y_x_fb_x_y * lambda[3] + J.fa_z_x_fb_x_y * lambda[4];
-    const T v1_1_3 = J.fa_y_x_fb_x_z * lambda[3] + J.fa_z_x_fb_x_z * lambda[4];
+    const T v1_1 = J.turned_x_fb_z_x * lambda[5] + J.fa_y_x_fb_x_x * lambda[3] + J.fa_z_x_fb_x_x *
+        lambda[4];
+    const T v1_1_2 = J.turned_x_fb_z_y * lambda[5] + J.fa_y_x_fb_x_y * lambda[3] +
+        J.fa_z_x_fb_x_y * lambda[4];
+    const T v1_1_3 = J.turned_x_fb_z_z * lambda[5] + J.fa_y_x_fb_x_z * lambda[3] +
+        J.fa_z_x_fb_x_z * lambda[4];
     v[0].x = va.x + ma.m * lambda[0];
     v[0].y = va.y + ma.m * lambda[1];
     v[0].z = va.z + ma.m * lambda[2];
-    v[0].wx = va.wx + ma.I * (v1_1 + J.ra_y * lambda[2] - J.ra_z * lambda[1] + J.wa_6_x *
-        lambda[5]);
-    v[0].wy = va.wy + ma.I * (v1_1_2 - J.ra_x * lambda[2] + J.ra_z * lambda[0] + J.wa_6_y *
-        lambda[5]);
-    v[0].wz = va.wz + ma.I * (v1_1_3 + J.ra_x * lambda[1] - J.ra_y * lambda[0] + J.wa_6_z *
-        lambda[5]);
+    v[0].wx = va.wx + ma.I * (v1_1 + J.ra_y * lambda[2] - J.ra_z * lambda[1]);
+    v[0].wy = va.wy + ma.I * (v1_1_2 - J.ra_x * lambda[2] + J.ra_z * lambda[0]);
+    v[0].wz = va.wz + ma.I * (v1_1_3 + J.ra_x * lambda[1] - J.ra_y * lambda[0]);
     v[1].x = vb.x - mb.m * lambda[0];
     v[1].y = vb.y - mb.m * lambda[1];
     v[1].z = vb.z - mb.m * lambda[2];
-    v[1].wx = vb.wx + mb.I * (J.rb_z * lambda[1] - v1_1 - J.rb_y * lambda[2] - J.turned_x_fb_z_x *
-        lambda[5]);
-    v[1].wy = vb.wy + mb.I * (J.rb_x * lambda[2] - v1_1_2 - J.rb_z * lambda[0] -
-        J.turned_x_fb_z_y * lambda[5]);
-    v[1].wz = vb.wz + mb.I * (J.rb_y * lambda[0] - v1_1_3 - J.rb_x * lambda[1] -
-        J.turned_x_fb_z_z * lambda[5]);
+    v[1].wx = vb.wx + mb.I * (J.rb_z * lambda[1] - v1_1 - J.rb_y * lambda[2]);
+    v[1].wy = vb.wy + mb.I * (J.rb_x * lambda[2] - v1_1_2 - J.rb_z * lambda[0]);
+    v[1].wz = vb.wz + mb.I * (J.rb_y * lambda[0] - v1_1_3 - J.rb_x * lambda[1]);
   }
 
   // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 16 +, 24 *
@@ -649,9 +605,9 @@ struct driven {
     D[4][9] = -mb.I * J.fa_z_x_fb_x_x;
     D[4][10] = -mb.I * J.fa_z_x_fb_x_y;
     D[4][11] = -mb.I * J.fa_z_x_fb_x_z;
-    D[5][3] = ma.I * J.wa_6_x;
-    D[5][4] = ma.I * J.wa_6_y;
-    D[5][5] = ma.I * J.wa_6_z;
+    D[5][3] = ma.I * J.turned_x_fb_z_x;
+    D[5][4] = ma.I * J.turned_x_fb_z_y;
+    D[5][5] = ma.I * J.turned_x_fb_z_z;
     D[5][9] = -mb.I * J.turned_x_fb_z_x;
     D[5][10] = -mb.I * J.turned_x_fb_z_y;
     D[5][11] = -mb.I * J.turned_x_fb_z_z;
@@ -701,9 +657,9 @@ struct driven {
     D[4][9] = -J.fa_z_x_fb_x_x * b.xx - J.fa_z_x_fb_x_y * b.yx - J.fa_z_x_fb_x_z * b.zx;
     D[4][10] = -J.fa_z_x_fb_x_x * b.xy - J.fa_z_x_fb_x_y * b.yy - J.fa_z_x_fb_x_z * b.zy;
     D[4][11] = -J.fa_z_x_fb_x_x * b.xz - J.fa_z_x_fb_x_y * b.yz - J.fa_z_x_fb_x_z * b.zz;
-    D[5][3] = J.wa_6_x * a.xx + J.wa_6_y * a.yx + J.wa_6_z * a.zx;
-    D[5][4] = J.wa_6_x * a.xy + J.wa_6_y * a.yy + J.wa_6_z * a.zy;
-    D[5][5] = J.wa_6_x * a.xz + J.wa_6_y * a.yz + J.wa_6_z * a.zz;
+    D[5][3] = J.turned_x_fb_z_x * a.xx + J.turned_x_fb_z_y * a.yx + J.turned_x_fb_z_z * a.zx;
+    D[5][4] = J.turned_x_fb_z_x * a.xy + J.turned_x_fb_z_y * a.yy + J.turned_x_fb_z_z * a.zy;
+    D[5][5] = J.turned_x_fb_z_x * a.xz + J.turned_x_fb_z_y * a.yz + J.turned_x_fb_z_z * a.zz;
     D[5][9] = -J.turned_x_fb_z_x * b.xx - J.turned_x_fb_z_y * b.yx - J.turned_x_fb_z_z * b.zx;
     D[5][10] = -J.turned_x_fb_z_x * b.xy - J.turned_x_fb_z_y * b.yy - J.turned_x_fb_z_z * b.zy;
     D[5][11] = -J.turned_x_fb_z_x * b.xz - J.turned_x_fb_z_y * b.yz - J.turned_x_fb_z_z * b.zz;
@@ -795,17 +751,17 @@ struct driven {
     D[4][11] = D1_3_3 * J.fa_z_x_fb_x_z - D1_3_4 * J.fa_z_x_fb_x_x - D1_1_5 * J.fa_z_x_fb_x_y;
     D[4][12] = D1_1_5 * J.fa_z_x_fb_x_x - D1_3_4 * J.fa_z_x_fb_x_y - D1_1_7 * J.fa_z_x_fb_x_z;
     D[4][13] = D1_1_7 * J.fa_z_x_fb_x_y - D1_3_3 * J.fa_z_x_fb_x_x - D1_3_4 * J.fa_z_x_fb_x_z;
-    D[5][3] = -D1_1_3 * J.wa_6_x - D1_3 * J.wa_6_y - D1_1 * J.wa_6_z;
-    D[5][4] = D1_3_2 * J.wa_6_x + D1_1 * J.wa_6_y - D1_3 * J.wa_6_z;
-    D[5][5] = D1_3_2 * J.wa_6_y - D1_1 * J.wa_6_x + D1_1_3 * J.wa_6_z;
-    D[5][6] = D1_3 * J.wa_6_x - D1_1_3 * J.wa_6_y + D1_3_2 * J.wa_6_z;
+    D[5][3] = -D1_1_3 * J.turned_x_fb_z_x - D1_3 * J.turned_x_fb_z_y - D1_1 * J.turned_x_fb_z_z;
+    D[5][4] = D1_3_2 * J.turned_x_fb_z_x + D1_1 * J.turned_x_fb_z_y - D1_3 * J.turned_x_fb_z_z;
+    D[5][5] = D1_3_2 * J.turned_x_fb_z_y - D1_1 * J.turned_x_fb_z_x + D1_1_3 * J.turned_x_fb_z_z;
+    D[5][6] = D1_3 * J.turned_x_fb_z_x - D1_1_3 * J.turned_x_fb_z_y + D1_3_2 * J.turned_x_fb_z_z;
     D[5][10] = D1_1_7 * J.turned_x_fb_z_x + D1_3_3 * J.turned_x_fb_z_y + D1_1_5 * J.turned_x_fb_z_z;
     D[5][11] = D1_3_3 * J.turned_x_fb_z_z - D1_3_4 * J.turned_x_fb_z_x - D1_1_5 * J.turned_x_fb_z_y;
     D[5][12] = D1_1_5 * J.turned_x_fb_z_x - D1_3_4 * J.turned_x_fb_z_y - D1_1_7 * J.turned_x_fb_z_z;
     D[5][13] = D1_1_7 * J.turned_x_fb_z_y - D1_3_3 * J.turned_x_fb_z_x - D1_3_4 * J.turned_x_fb_z_z;
   }
 
-  // -Jdot v - d/dt(dC/dt): 124 +, 202 *, 2 call
+  // -Jdot v - d/dt(dC/dt): 126 +, 184 *, 2 call
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p,
       T time, T (&g)[6]) {
@@ -833,87 +789,83 @@ struct driven {
     const T w_b_x_rb_x_w_b_y = vb.wz * rb_x_w_b_x - vb.wx * rb_x_w_b_z;
     const T w_a_x_ra_x_w_a_z = va.wx * ra_x_w_a_y - va.wy * ra_x_w_a_x;
     const T w_b_x_rb_x_w_b_z = vb.wx * rb_x_w_b_y - vb.wy * rb_x_w_b_x;
+    const T g4_1 = va.wx - vb.wx;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
     const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
     const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
     const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-    const T dot_w_b_x_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_w_b_x_fb_x_x + fa_y_y * w_b_x_w_b_x_fb_x_y +
-        fa_y_z * w_b_x_w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_y_x = fa_y_z * w_b_x_fb_x_y - fa_y_y * w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_y_y = fa_y_x * w_b_x_fb_x_z - fa_y_z * w_b_x_fb_x_x;
     const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
     const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
     const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-    const T dot_w_a_x_w_a_x_fa_y_fb_x = fb_x_x * w_a_x_w_a_x_fa_y_x + fb_x_y * w_a_x_w_a_x_fa_y_y +
-        fb_x_z * w_a_x_w_a_x_fa_y_z;
-    const T dot_w_a_x_fa_y_w_b_x_fb_x = w_a_x_fa_y_z * w_b_x_fb_x_z + w_a_x_fa_y_y * w_b_x_fb_x_y +
-        w_a_x_fa_y_x * w_b_x_fb_x_x;
+    const T w_a_x_fa_y_x_fb_x_x = fb_x_z * w_a_x_fa_y_y - fb_x_y * w_a_x_fa_y_z;
+    const T w_a_x_fa_y_x_fb_x_y = fb_x_x * w_a_x_fa_y_z - fb_x_z * w_a_x_fa_y_x;
+    const T g4_2 = va.wy - vb.wy;
+    const T g4_3 = va.wz - vb.wz;
+    const T w_b_x_fb_x_x_fa_y_z = fa_y_y * w_b_x_fb_x_x - fa_y_x * w_b_x_fb_x_y;
+    const T w_a_x_fa_y_x_fb_x_z = fb_x_y * w_a_x_fa_y_x - fb_x_x * w_a_x_fa_y_y;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T dot_w_b_x_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_w_b_x_fb_x_x + fa_z_y * w_b_x_w_b_x_fb_x_y +
-        fa_z_z * w_b_x_w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_z_x = fa_z_z * w_b_x_fb_x_y - fa_z_y * w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_z_y = fa_z_x * w_b_x_fb_x_z - fa_z_z * w_b_x_fb_x_x;
     const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
     const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
     const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-    const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-    const T dot_w_a_x_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_w_a_x_fa_z_x + fb_x_y * w_a_x_w_a_x_fa_z_y +
-        fb_x_z * w_a_x_w_a_x_fa_z_z;
-    const T dot_w_a_x_fa_z_w_b_x_fb_x = w_a_x_fa_z_z * w_b_x_fb_x_z + w_a_x_fa_z_y * w_b_x_fb_x_y +
-        w_a_x_fa_z_x * w_b_x_fb_x_x;
+    const T w_a_x_fa_z_x_fb_x_x = fb_x_z * w_a_x_fa_z_y - fb_x_y * w_a_x_fa_z_z;
+    const T w_a_x_fa_z_x_fb_x_y = fb_x_x * w_a_x_fa_z_z - fb_x_z * w_a_x_fa_z_x;
+    const T w_b_x_fb_x_x_fa_z_z = fa_z_y * w_b_x_fb_x_x - fa_z_x * w_b_x_fb_x_y;
+    const T w_a_x_fa_z_x_fb_x_z = fb_x_y * w_a_x_fa_z_x - fb_x_x * w_a_x_fa_z_y;
     const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
     const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
     const T s = p.phase + time * p.rate;
-    const T g6_1 = cos(s);
-    const T g6_2 = sin(s);
-    const T g6_3 = fa_y_x * g6_1 + fa_z_x * g6_2;
-    const T turned_dot_dot_x = w_a_x_w_a_x_fa_y_x * g6_1 + w_a_x_w_a_x_fa_z_x * g6_2 + p.rate *
-        (T(2) * w_a_x_fa_z_x * g6_1 - T(2) * w_a_x_fa_y_x * g6_2 - p.rate * g6_3);
-    const T g6_4 = fa_y_y * g6_1 + fa_z_y * g6_2;
-    const T turned_dot_dot_y = w_a_x_w_a_x_fa_y_y * g6_1 + w_a_x_w_a_x_fa_z_y * g6_2 + p.rate *
-        (T(2) * w_a_x_fa_z_y * g6_1 - T(2) * w_a_x_fa_y_y * g6_2 - p.rate * g6_4);
+    const T g6_1 = sin(s);
+    const T g6_2 = p.rate * g6_1;
+    const T g6_3 = cos(s);
+    const T g6_4 = p.rate * g6_3;
+    const T g6_5 = g6_2 * fa_y_z - g6_4 * fa_z_z;
+    const T turned_dot_z = w_a_x_fa_y_z * g6_3 - g6_5 + w_a_x_fa_z_z * g6_1;
     const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T g6_5 = fa_y_z * g6_1 + fa_z_z * g6_2;
-    const T turned_dot_dot_z = w_a_x_w_a_x_fa_y_z * g6_1 + w_a_x_w_a_x_fa_z_z * g6_2 + p.rate *
-        (T(2) * w_a_x_fa_z_z * g6_1 - T(2) * w_a_x_fa_y_z * g6_2 - p.rate * g6_5);
-    const T dot_turned_dot_dot_fb_z = fb_z_x * turned_dot_dot_x + fb_z_y * turned_dot_dot_y +
-        fb_z_z * turned_dot_dot_z;
+    const T g6_6 = g6_2 * fa_y_x - g6_4 * fa_z_x;
+    const T turned_dot_x = w_a_x_fa_y_x * g6_3 - g6_6 + w_a_x_fa_z_x * g6_1;
+    const T g6_7 = g6_2 * fa_y_y - g6_4 * fa_z_y;
+    const T turned_dot_y = w_a_x_fa_y_y * g6_3 - g6_7 + w_a_x_fa_z_y * g6_1;
+    const T turned_dot_x_fb_z_x = fb_z_z * turned_dot_y - fb_z_y * turned_dot_z;
+    const T turned_dot_x_fb_z_y = fb_z_x * turned_dot_z - fb_z_z * turned_dot_x;
     const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
-    const T turned_dot_z = w_a_x_fa_y_z * g6_1 + w_a_x_fa_z_z * g6_2 + p.rate *
-        (fa_z_z * g6_1 - fa_y_z * g6_2);
+    const T turned_x = fa_y_x * g6_3 + fa_z_x * g6_1;
+    const T turned_y = fa_y_y * g6_3 + fa_z_y * g6_1;
     const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
     const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
-    const T turned_dot_x = w_a_x_fa_y_x * g6_1 + w_a_x_fa_z_x * g6_2 + p.rate *
-        (fa_z_x * g6_1 - fa_y_x * g6_2);
-    const T turned_dot_y = w_a_x_fa_y_y * g6_1 + w_a_x_fa_z_y * g6_2 + p.rate *
-        (fa_z_y * g6_1 - fa_y_y * g6_2);
-    const T dot_turned_dot_w_b_x_fb_z = w_b_x_fb_z_z * turned_dot_z + w_b_x_fb_z_y * turned_dot_y +
-        w_b_x_fb_z_x * turned_dot_x;
-    const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
-    const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
-    const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-    const T dot_turned_w_b_x_w_b_x_fb_z = w_b_x_w_b_x_fb_z_y * g6_4 + w_b_x_w_b_x_fb_z_z * g6_5 +
-        w_b_x_w_b_x_fb_z_x * g6_3;
+    const T turned_z = fa_y_z * g6_3 + fa_z_z * g6_1;
+    const T turned_x_w_b_x_fb_z_x = w_b_x_fb_z_z * turned_y - w_b_x_fb_z_y * turned_z;
+    const T turned_x_w_b_x_fb_z_y = w_b_x_fb_z_x * turned_z - w_b_x_fb_z_z * turned_x;
+    const T turned_dot_x_fb_z_turned_x_w_b_x_fb_z_x = turned_dot_x_fb_z_x + turned_x_w_b_x_fb_z_x;
+    const T turned_dot_x_fb_z_turned_x_w_b_x_fb_z_y = turned_dot_x_fb_z_y + turned_x_w_b_x_fb_z_y;
+    const T turned_dot_x_fb_z_z = fb_z_y * turned_dot_x - fb_z_x * turned_dot_y;
+    const T turned_x_w_b_x_fb_z_z = w_b_x_fb_z_y * turned_x - w_b_x_fb_z_x * turned_y;
+    const T turned_dot_x_fb_z_turned_x_w_b_x_fb_z_z = turned_dot_x_fb_z_z + turned_x_w_b_x_fb_z_z;
     g[0] = w_a_x_ra_x_w_a_x - w_b_x_rb_x_w_b_x;
     g[1] = w_a_x_ra_x_w_a_y - w_b_x_rb_x_w_b_y;
     g[2] = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
-    g[3] = T(-2) * dot_w_a_x_fa_y_w_b_x_fb_x - dot_w_b_x_w_b_x_fb_x_fa_y -
-        dot_w_a_x_w_a_x_fa_y_fb_x;
-    g[4] = T(-2) * dot_w_a_x_fa_z_w_b_x_fb_x - dot_w_b_x_w_b_x_fb_x_fa_z -
-        dot_w_a_x_w_a_x_fa_z_fb_x;
-    g[5] = T(-2) * dot_turned_dot_w_b_x_fb_z - dot_turned_dot_dot_fb_z -
-        dot_turned_w_b_x_w_b_x_fb_z;
+    g[3] = -g4_1 * (w_a_x_fa_y_x_fb_x_x - w_b_x_fb_x_x_fa_y_x) - g4_2 *
+        (w_a_x_fa_y_x_fb_x_y - w_b_x_fb_x_x_fa_y_y) - g4_3 *
+        (w_a_x_fa_y_x_fb_x_z - w_b_x_fb_x_x_fa_y_z);
+    g[4] = -g4_1 * (w_a_x_fa_z_x_fb_x_x - w_b_x_fb_x_x_fa_z_x) - g4_2 *
+        (w_a_x_fa_z_x_fb_x_y - w_b_x_fb_x_x_fa_z_y) - g4_3 *
+        (w_a_x_fa_z_x_fb_x_z - w_b_x_fb_x_x_fa_z_z);
+    g[5] = w_b_x_fb_z_z * g6_5 - g4_1 * turned_dot_x_fb_z_turned_x_w_b_x_fb_z_x - g4_2 *
+        turned_dot_x_fb_z_turned_x_w_b_x_fb_z_y - g4_3 * turned_dot_x_fb_z_turned_x_w_b_x_fb_z_z +
+        w_b_x_fb_z_y * g6_7 + w_b_x_fb_z_x * g6_6 - p.rate *
+        (fb_z_x * (w_a_x_fa_z_x * g6_3 - w_a_x_fa_y_x * g6_1 - p.rate * turned_x) + fb_z_y *
+        (w_a_x_fa_z_y * g6_3 - w_a_x_fa_y_y * g6_1 - p.rate * turned_y) + fb_z_z *
+        (w_a_x_fa_z_z * g6_3 - w_a_x_fa_y_z * g6_1 - p.rate * turned_z));
   }
 
   // dC/dt at fixed q: 24 +, 39 *, 2 call
@@ -944,7 +896,7 @@ struct driven {
         (C_t6_2 * fa_z_y - C_t6_1 * fa_y_y) + fb_z_z * (C_t6_2 * fa_z_z - C_t6_1 * fa_y_z);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 127 +, 151 *, 2 call
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 115 +, 139 *, 2 call
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T time,
       const T (&lambda)[6], T (&H)[12][12]) {
@@ -985,81 +937,78 @@ struct driven {
     const T H4_12 = lambda[2] * ra_z + H4_11;
     const T H4_1_2 = fa_y_x * H4_3 + fa_z_x * H4_5;
     const T H4_1_3 = fa_y_x * H4_9 + fa_z_x * H4_10;
-    const T H4_1_4 = lambda[3] * fa_y_y + lambda[4] * fa_z_y;
-    const T H4_2_2 = fb_x_y * H4_1_4;
+    const T H4_1_4 = lambda[3] * fa_y_z + lambda[4] * fa_z_z;
+    const T H4_2_2 = fb_x_z * H4_1_4;
     const T turned_x = fa_y_x * H4_2 + fa_z_x * H4_4;
     const T turned_y = fa_y_y * H4_2 + fa_z_y * H4_4;
-    const T H4_3_2 = lambda[5] * turned_y;
-    const T H4_4_2 = H4_2_2 + fb_z_y * H4_3_2;
-    const T H4_5_2 = lambda[3] * fa_y_z + lambda[4] * fa_z_z;
-    const T H4_6_2 = fb_x_z * H4_5_2;
+    const T H4_3_2 = fb_z_y * turned_y;
     const T turned_z = fa_y_z * H4_2 + fa_z_z * H4_4;
-    const T H4_7_2 = lambda[5] * turned_z;
-    const T H4_8_2 = H4_6_2 + fb_z_z * H4_7_2;
-    const T H4_1_5 = fb_x_x * H4_1_4;
-    const T H4_1_6 = fb_x_x * H4_5_2;
-    const T H5_1 = lambda[5] * fb_z_x;
-    const T H5_2 = lambda[3] * fb_x_x + H5_1 * H4_2;
-    const T H5_3 = lambda[4] * fb_x_x + H5_1 * H4_4;
-    const T H5_4 = fa_y_y * H5_2 + fa_z_y * H5_3;
-    const T H5_1_2 = fa_y_x * H5_2 + fa_z_x * H5_3;
+    const T H4_4_2 = fb_z_z * turned_z;
+    const T H4_5_2 = lambda[3] * fa_y_y + lambda[4] * fa_z_y;
+    const T H4_6_2 = fb_x_y * H4_5_2;
+    const T H4_7_2 = H4_2_2 + lambda[5] * (H4_3_2 + H4_4_2) + H4_6_2;
+    const T H4_1_5 = lambda[5] * fb_z_x;
+    const T H4_2_3 = H4_1_5 * turned_y + fb_x_x * H4_5_2;
+    const T H4_1_6 = H4_1_5 * turned_z + fb_x_x * H4_1_4;
+    const T H5_1 = lambda[3] * fb_x_x + H4_1_5 * H4_2;
+    const T H5_2 = lambda[4] * fb_x_x + H4_1_5 * H4_4;
+    const T H5_3 = fa_y_y * H5_1 + fa_z_y * H5_2;
+    const T H5_1_2 = fa_y_x * H5_1 + fa_z_x * H5_2;
     const T H5_2_2 = lambda[0] * ra_x + H5_1_2;
     const T H5_1_3 = fa_y_y * H4_9 + fa_z_y * H4_10;
     const T H5_1_4 = lambda[3] * fa_y_x + lambda[4] * fa_z_x;
-    const T H5_2_3 = fb_x_y * H5_1_4;
-    const T H5_3_2 = lambda[5] * turned_x;
-    const T H5_1_5 = fb_x_x * H5_1_4;
-    const T H5_2_4 = H5_1_5 + fb_z_x * H5_3_2;
-    const T H5_1_6 = fb_x_y * H4_5_2;
-    const T H6_1 = fa_y_z * H5_2 + fa_z_z * H5_3;
+    const T H5_2_3 = H4_1 * turned_x + fb_x_y * H5_1_4;
+    const T H5_1_5 = fb_z_x * turned_x;
+    const T H5_2_4 = fb_x_x * H5_1_4;
+    const T H5_3_2 = H4_2_2 + lambda[5] * (H5_1_5 + H4_4_2) + H5_2_4;
+    const T H5_1_6 = H4_1 * turned_z + fb_x_y * H4_1_4;
+    const T H6_1 = fa_y_z * H5_1 + fa_z_z * H5_2;
     const T H6_1_2 = fa_y_z * H4_3 + fa_z_z * H4_5;
-    const T H6_1_3 = fb_x_z * H5_1_4;
-    const T H6_1_4 = fb_x_z * H4_1_4;
+    const T H6_1_3 = H4_8 * turned_x + fb_x_z * H5_1_4;
+    const T H6_1_4 = H4_8 * turned_y + fb_x_z * H4_5_2;
+    const T H6_1_5 = H4_6_2 + H5_2_4 + lambda[5] * (H5_1_5 + H4_3_2);
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T H10_1 = H4_2_2 - lambda[1] * rb_y;
+    const T H10_1 = lambda[1] * rb_y;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T H10_2 = H4_6_2 - lambda[2] * rb_z;
-    const T H10_3 = fb_z_y * turned_y;
-    const T H10_4 = fb_z_z * turned_z;
-    const T H11_1 = H5_1_5 - lambda[0] * rb_x;
-    const T H11_2 = fb_z_x * turned_x;
+    const T H10_2 = lambda[2] * rb_z;
+    const T H11_1 = lambda[0] * rb_x;
     H[3][3] = -H4_7 - H4_12;
     H[3][4] = H4_1_2 + lambda[1] * ra_x;
     H[3][5] = H4_1_3 + lambda[2] * ra_x;
-    H[3][9] = H4_4_2 + H4_8_2;
-    H[3][10] = -H4_1_5 - fb_z_x * H4_3_2;
-    H[3][11] = -H4_1_6 - fb_z_x * H4_7_2;
-    H[4][3] = H5_4 + lambda[0] * ra_y;
+    H[3][9] = H4_7_2;
+    H[3][10] = -H4_2_3;
+    H[3][11] = -H4_1_6;
+    H[4][3] = H5_3 + lambda[0] * ra_y;
     H[4][4] = -H5_2_2 - H4_12;
     H[4][5] = H5_1_3 + lambda[2] * ra_y;
-    H[4][9] = -H5_2_3 - fb_z_y * H5_3_2;
-    H[4][10] = H5_2_4 + H4_8_2;
-    H[4][11] = -H5_1_6 - fb_z_y * H4_7_2;
+    H[4][9] = -H5_2_3;
+    H[4][10] = H5_3_2;
+    H[4][11] = -H5_1_6;
     H[5][3] = H6_1 + lambda[0] * ra_z;
     H[5][4] = H6_1_2 + lambda[1] * ra_z;
     H[5][5] = -H5_2_2 - H4_7;
-    H[5][9] = -H6_1_3 - fb_z_z * H5_3_2;
-    H[5][10] = -H6_1_4 - fb_z_z * H4_3_2;
-    H[5][11] = H4_4_2 + H5_2_4;
+    H[5][9] = -H6_1_3;
+    H[5][10] = -H6_1_4;
+    H[5][11] = H6_1_5;
     H[9][3] = H4_6 + H4_11;
     H[9][4] = -H4_1_2;
     H[9][5] = -H4_1_3;
-    H[9][9] = -H10_1 - H10_2 - lambda[5] * (H10_3 + H10_4);
-    H[9][10] = H5_1 * turned_y - lambda[1] * rb_x + H4_1_5;
-    H[9][11] = H5_1 * turned_z - lambda[2] * rb_x + H4_1_6;
-    H[10][3] = -H5_4;
+    H[9][9] = H10_1 - H4_7_2 + H10_2;
+    H[9][10] = H4_2_3 - lambda[1] * rb_x;
+    H[9][11] = H4_1_6 - lambda[2] * rb_x;
+    H[10][3] = -H5_3;
     H[10][4] = H5_1_2 + H4_11;
     H[10][5] = -H5_1_3;
-    H[10][9] = H4_1 * turned_x - lambda[0] * rb_y + H5_2_3;
-    H[10][10] = -H11_1 - H10_2 - lambda[5] * (H11_2 + H10_4);
-    H[10][11] = H4_1 * turned_z - lambda[2] * rb_y + H5_1_6;
+    H[10][9] = H5_2_3 - lambda[0] * rb_y;
+    H[10][10] = H11_1 - H5_3_2 + H10_2;
+    H[10][11] = H5_1_6 - lambda[2] * rb_y;
     H[11][3] = -H6_1;
     H[11][4] = -H6_1_2;
     H[11][5] = H4_6 + H5_1_2;
-    H[11][9] = H4_8 * turned_x - lambda[0] * rb_z + H6_1_3;
-    H[11][10] = H4_8 * turned_y - lambda[1] * rb_z + H6_1_4;
-    H[11][11] = -H10_1 - H11_1 - lambda[5] * (H11_2 + H10_3);
+    H[11][9] = H6_1_3 - lambda[0] * rb_z;
+    H[11][10] = H6_1_4 - lambda[1] * rb_z;
+    H[11][11] = H11_1 - H6_1_5 + H10_1;
   }
 
   // The default of parameter `index`, from the initial pose and the parameters before it.
@@ -1444,10 +1393,10 @@ struct driven::b_immovable : driven {
   template <class T>
   struct Jacobian {
     T ra_z, ra_y, ra_x, fa_y_x_fb_x_x, fa_y_x_fb_x_y, fa_y_x_fb_x_z, fa_z_x_fb_x_x, fa_z_x_fb_x_y,
-        fa_z_x_fb_x_z, wa_6_x, wa_6_y, wa_6_z;
+        fa_z_x_fb_x_z, turned_x_fb_z_x, turned_x_fb_z_y, turned_x_fb_z_z;
   };
 
-  // C and J: 70 +, 100 *, 2 call
+  // C and J: 64 +, 88 *, 2 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T time, T (&C)[6],
       Jacobian<T>& J) {
@@ -1479,12 +1428,6 @@ struct driven::b_immovable : driven {
     const T turned_y = fa_y_y * C6_1 + fa_z_y * C6_2;
     const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
     const T turned_z = fa_y_z * C6_1 + fa_z_z * C6_2;
-    const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
-    const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
-    const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
-    const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-    const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
-    const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
     C[0] = a.x - b.x + ra_x - rb_x;
     C[1] = a.y - b.y + ra_y - rb_y;
     C[2] = a.z - b.z + ra_z - rb_z;
@@ -1500,9 +1443,9 @@ struct driven::b_immovable : driven {
     J.fa_z_x_fb_x_x = fa_z_y * fb_x_z - fa_z_z * fb_x_y;
     J.fa_z_x_fb_x_y = fa_z_z * fb_x_x - fa_z_x * fb_x_z;
     J.fa_z_x_fb_x_z = fa_z_x * fb_x_y - fa_z_y * fb_x_x;
-    J.wa_6_x = fa_y_x_fb_z_x * C6_1 + fa_z_x_fb_z_x * C6_2;
-    J.wa_6_y = fa_y_x_fb_z_y * C6_1 + fa_z_x_fb_z_y * C6_2;
-    J.wa_6_z = fa_y_x_fb_z_z * C6_1 + fa_z_x_fb_z_z * C6_2;
+    J.turned_x_fb_z_x = fb_z_z * turned_y - fb_z_y * turned_z;
+    J.turned_x_fb_z_y = fb_z_x * turned_z - fb_z_z * turned_x;
+    J.turned_x_fb_z_z = fb_z_y * turned_x - fb_z_x * turned_y;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 66 +, 99 *
@@ -1542,14 +1485,16 @@ struct driven::b_immovable : driven {
     K[12] = J.fa_z_x_fb_x_x * K33_2 + J.fa_z_x_fb_x_y * K33_1 + J.fa_z_x_fb_x_z * K43_1;
     K[13] = J.fa_z_x_fb_x_x * K44_1 + J.fa_z_x_fb_x_y * K44_2 + J.fa_z_x_fb_x_z * K44_3;
     K[14] = J.fa_z_x_fb_x_x * K55_1 + J.fa_z_x_fb_x_y * K55_2 + J.fa_z_x_fb_x_z * K55_3;
-    K[15] = J.wa_6_x * K21_3 + J.wa_6_y * K11_2 + J.wa_6_z * K11_1;
-    K[16] = J.wa_6_x * K22_2 + J.wa_6_y * K32_2 + J.wa_6_z * K22_1;
-    K[17] = J.wa_6_x * K33_2 + J.wa_6_y * K33_1 + J.wa_6_z * K43_1;
-    K[18] = J.wa_6_x * K44_1 + J.wa_6_y * K44_2 + J.wa_6_z * K44_3;
-    K[19] = J.wa_6_x * K55_1 + J.wa_6_y * K55_2 + J.wa_6_z * K55_3;
-    K[20] = J.wa_6_x * (ma.Ixx * J.wa_6_x + ma.Ixy * J.wa_6_y + ma.Ixz * J.wa_6_z) + J.wa_6_y *
-        (ma.Ixy * J.wa_6_x + ma.Iyy * J.wa_6_y + ma.Iyz * J.wa_6_z) + J.wa_6_z *
-        (ma.Ixz * J.wa_6_x + ma.Iyz * J.wa_6_y + ma.Izz * J.wa_6_z);
+    K[15] = J.turned_x_fb_z_x * K21_3 + J.turned_x_fb_z_y * K11_2 + J.turned_x_fb_z_z * K11_1;
+    K[16] = J.turned_x_fb_z_x * K22_2 + J.turned_x_fb_z_y * K32_2 + J.turned_x_fb_z_z * K22_1;
+    K[17] = J.turned_x_fb_z_x * K33_2 + J.turned_x_fb_z_y * K33_1 + J.turned_x_fb_z_z * K43_1;
+    K[18] = J.turned_x_fb_z_x * K44_1 + J.turned_x_fb_z_y * K44_2 + J.turned_x_fb_z_z * K44_3;
+    K[19] = J.turned_x_fb_z_x * K55_1 + J.turned_x_fb_z_y * K55_2 + J.turned_x_fb_z_z * K55_3;
+    K[20] = J.turned_x_fb_z_x * (ma.Ixx * J.turned_x_fb_z_x + ma.Ixy * J.turned_x_fb_z_y + ma.Ixz *
+        J.turned_x_fb_z_z) + J.turned_x_fb_z_y *
+        (ma.Ixy * J.turned_x_fb_z_x + ma.Iyy * J.turned_x_fb_z_y + ma.Iyz * J.turned_x_fb_z_z) +
+        J.turned_x_fb_z_z * (ma.Ixz * J.turned_x_fb_z_x + ma.Iyz * J.turned_x_fb_z_y + ma.Izz *
+        J.turned_x_fb_z_z);
   }
 
   // J v: 12 +, 15 *
@@ -1561,7 +1506,7 @@ struct driven::b_immovable : driven {
     Jv[2] = va.z - J.ra_x * va.wy + J.ra_y * va.wx;
     Jv[3] = J.fa_y_x_fb_x_x * va.wx + J.fa_y_x_fb_x_y * va.wy + J.fa_y_x_fb_x_z * va.wz;
     Jv[4] = J.fa_z_x_fb_x_x * va.wx + J.fa_z_x_fb_x_y * va.wy + J.fa_z_x_fb_x_z * va.wz;
-    Jv[5] = J.wa_6_x * va.wx + J.wa_6_y * va.wy + J.wa_6_z * va.wz;
+    Jv[5] = J.turned_x_fb_z_x * va.wx + J.turned_x_fb_z_y * va.wy + J.turned_x_fb_z_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 24 +, 27 *
@@ -1571,11 +1516,11 @@ struct driven::b_immovable : driven {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = J.fa_y_x_fb_x_x * lambda[3] + J.fa_z_x_fb_x_x * lambda[4] + J.ra_y * lambda[2] -
-        J.ra_z * lambda[1] + J.wa_6_x * lambda[5];
+        J.ra_z * lambda[1] + J.turned_x_fb_z_x * lambda[5];
     const T v1_2 = J.fa_y_x_fb_x_y * lambda[3] + J.fa_z_x_fb_x_y * lambda[4] - J.ra_x * lambda[2] +
-        J.ra_z * lambda[0] + J.wa_6_y * lambda[5];
+        J.ra_z * lambda[0] + J.turned_x_fb_z_y * lambda[5];
     const T v1_3 = J.fa_y_x_fb_x_z * lambda[3] + J.fa_z_x_fb_x_z * lambda[4] + J.ra_x * lambda[1] -
-        J.ra_y * lambda[0] + J.wa_6_z * lambda[5];
+        J.ra_y * lambda[0] + J.turned_x_fb_z_z * lambda[5];
     v[0].x = va.x + ma.m * lambda[0];
     v[0].y = va.y + ma.m * lambda[1];
     v[0].z = va.z + ma.m * lambda[2];
@@ -1605,9 +1550,9 @@ struct driven::b_immovable : driven {
     D[4][3] = J.fa_z_x_fb_x_x;
     D[4][4] = J.fa_z_x_fb_x_y;
     D[4][5] = J.fa_z_x_fb_x_z;
-    D[5][3] = J.wa_6_x;
-    D[5][4] = J.wa_6_y;
-    D[5][5] = J.wa_6_z;
+    D[5][3] = J.turned_x_fb_z_x;
+    D[5][4] = J.turned_x_fb_z_y;
+    D[5][5] = J.turned_x_fb_z_z;
   }
 
   // (M^-1 J^T)^T, laid out like dense: 27 +, 42 *
@@ -1639,9 +1584,9 @@ struct driven::b_immovable : driven {
     D[4][3] = ma.Ixx * J.fa_z_x_fb_x_x + ma.Ixy * J.fa_z_x_fb_x_y + ma.Ixz * J.fa_z_x_fb_x_z;
     D[4][4] = ma.Ixy * J.fa_z_x_fb_x_x + ma.Iyy * J.fa_z_x_fb_x_y + ma.Iyz * J.fa_z_x_fb_x_z;
     D[4][5] = ma.Ixz * J.fa_z_x_fb_x_x + ma.Iyz * J.fa_z_x_fb_x_y + ma.Izz * J.fa_z_x_fb_x_z;
-    D[5][3] = ma.Ixx * J.wa_6_x + ma.Ixy * J.wa_6_y + ma.Ixz * J.wa_6_z;
-    D[5][4] = ma.Ixy * J.wa_6_x + ma.Iyy * J.wa_6_y + ma.Iyz * J.wa_6_z;
-    D[5][5] = ma.Ixz * J.wa_6_x + ma.Iyz * J.wa_6_y + ma.Izz * J.wa_6_z;
+    D[5][3] = ma.Ixx * J.turned_x_fb_z_x + ma.Ixy * J.turned_x_fb_z_y + ma.Ixz * J.turned_x_fb_z_z;
+    D[5][4] = ma.Ixy * J.turned_x_fb_z_x + ma.Iyy * J.turned_x_fb_z_y + ma.Iyz * J.turned_x_fb_z_z;
+    D[5][5] = ma.Ixz * J.turned_x_fb_z_x + ma.Iyz * J.turned_x_fb_z_y + ma.Izz * J.turned_x_fb_z_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 29 +, 52 *
@@ -1679,12 +1624,15 @@ struct driven::b_immovable : driven {
         ia_fa_y_x_fb_x_z * J.fa_z_x_fb_x_z;
     K[14] = ia_fa_z_x_fb_x_x * J.fa_z_x_fb_x_x + ia_fa_z_x_fb_x_y * J.fa_z_x_fb_x_y +
         ia_fa_z_x_fb_x_z * J.fa_z_x_fb_x_z;
-    K[15] = ia_ra_z * J.wa_6_y - ia_ra_y * J.wa_6_z;
-    K[16] = ia_ra_x * J.wa_6_z - ia_ra_z * J.wa_6_x;
-    K[17] = ia_ra_y * J.wa_6_x - ia_ra_x * J.wa_6_y;
-    K[18] = ia_fa_y_x_fb_x_x * J.wa_6_x + ia_fa_y_x_fb_x_y * J.wa_6_y + ia_fa_y_x_fb_x_z * J.wa_6_z;
-    K[19] = ia_fa_z_x_fb_x_x * J.wa_6_x + ia_fa_z_x_fb_x_y * J.wa_6_y + ia_fa_z_x_fb_x_z * J.wa_6_z;
-    K[20] = ma.I * (J.wa_6_x * J.wa_6_x + J.wa_6_y * J.wa_6_y + J.wa_6_z * J.wa_6_z);
+    K[15] = ia_ra_z * J.turned_x_fb_z_y - ia_ra_y * J.turned_x_fb_z_z;
+    K[16] = ia_ra_x * J.turned_x_fb_z_z - ia_ra_z * J.turned_x_fb_z_x;
+    K[17] = ia_ra_y * J.turned_x_fb_z_x - ia_ra_x * J.turned_x_fb_z_y;
+    K[18] = ia_fa_y_x_fb_x_x * J.turned_x_fb_z_x + ia_fa_y_x_fb_x_y * J.turned_x_fb_z_y +
+        ia_fa_y_x_fb_x_z * J.turned_x_fb_z_z;
+    K[19] = ia_fa_z_x_fb_x_x * J.turned_x_fb_z_x + ia_fa_z_x_fb_x_y * J.turned_x_fb_z_y +
+        ia_fa_z_x_fb_x_z * J.turned_x_fb_z_z;
+    K[20] = ma.I * (J.turned_x_fb_z_x * J.turned_x_fb_z_x + J.turned_x_fb_z_y * J.turned_x_fb_z_y +
+        J.turned_x_fb_z_z * J.turned_x_fb_z_z);
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 18 +, 21 *
@@ -1697,11 +1645,11 @@ struct driven::b_immovable : driven {
     v[0].y = va.y + ma.m * lambda[1];
     v[0].z = va.z + ma.m * lambda[2];
     v[0].wx = va.wx + ma.I * (J.fa_y_x_fb_x_x * lambda[3] + J.fa_z_x_fb_x_x * lambda[4] + J.ra_y *
-        lambda[2] - J.ra_z * lambda[1] + J.wa_6_x * lambda[5]);
+        lambda[2] - J.ra_z * lambda[1] + J.turned_x_fb_z_x * lambda[5]);
     v[0].wy = va.wy + ma.I * (J.fa_y_x_fb_x_y * lambda[3] + J.fa_z_x_fb_x_y * lambda[4] - J.ra_x *
-        lambda[2] + J.ra_z * lambda[0] + J.wa_6_y * lambda[5]);
+        lambda[2] + J.ra_z * lambda[0] + J.turned_x_fb_z_y * lambda[5]);
     v[0].wz = va.wz + ma.I * (J.fa_y_x_fb_x_z * lambda[3] + J.fa_z_x_fb_x_z * lambda[4] + J.ra_x *
-        lambda[1] - J.ra_y * lambda[0] + J.wa_6_z * lambda[5]);
+        lambda[1] - J.ra_y * lambda[0] + J.turned_x_fb_z_z * lambda[5]);
   }
 
   // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 12 *
@@ -1730,9 +1678,9 @@ struct driven::b_immovable : driven {
     D[4][3] = ma.I * J.fa_z_x_fb_x_x;
     D[4][4] = ma.I * J.fa_z_x_fb_x_y;
     D[4][5] = ma.I * J.fa_z_x_fb_x_z;
-    D[5][3] = ma.I * J.wa_6_x;
-    D[5][4] = ma.I * J.wa_6_y;
-    D[5][5] = ma.I * J.wa_6_z;
+    D[5][3] = ma.I * J.turned_x_fb_z_x;
+    D[5][4] = ma.I * J.turned_x_fb_z_y;
+    D[5][5] = ma.I * J.turned_x_fb_z_z;
   }
 };
 

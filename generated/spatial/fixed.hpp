@@ -57,11 +57,11 @@ struct fixed {
 
   template <class T>
   struct Jacobian {
-    T ra_z, ra_y, rb_z, rb_y, ra_x, rb_x, wa_4_x, wa_4_y, wa_4_z, wb_4_x, wb_4_y, wb_4_z, wa_5_x,
-        wa_5_y, wa_5_z, wb_5_x, wb_5_y, wb_5_z, wa_6_x, wa_6_y, wa_6_z, wb_6_x, wb_6_y, wb_6_z;
+    T ra_z, ra_y, rb_z, rb_y, ra_x, rb_x, wa_4_x, wa_4_y, wa_4_z, wb_4_y, wb_4_z, wa_5_y, wa_5_z,
+        wb_5_z, wa_6_z;
   };
 
-  // C: 72 +, 93 *
+  // C: 66 +, 87 *
   template <class T>
   static void position(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[6]) {
     const Pose<T>& a = q[0];
@@ -88,12 +88,12 @@ struct fixed {
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
     const T fa_y_x_fb_y_x = fa_y_y * fb_y_z - fa_y_z * fb_y_y;
     const T fa_y_x_fb_y_y = fa_y_z * fb_y_x - fa_y_x * fb_y_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    const T fb_z_x = fb_x_y * fb_y_z - fb_y_y * fb_x_z;
+    const T fb_z_y = fb_y_x * fb_x_z - fb_x_x * fb_y_z;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+    const T fb_z_z = fb_x_x * fb_y_y - fb_y_x * fb_x_y;
     const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
     const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
     const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
@@ -107,7 +107,7 @@ struct fixed {
     C[5] = T(0.5) * (fa_x_x_fb_x_z + fa_y_x_fb_y_z + fa_z_x_fb_z_z);
   }
 
-  // C and J: 93 +, 120 *
+  // C and J: 75 +, 105 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[6],
       Jacobian<T>& J) {
@@ -121,91 +121,52 @@ struct fixed {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T C4_1 = fa_x_y * fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T C4_2 = fa_x_z * fb_x_y;
-    const T fa_x_x_fb_x_x = C4_1 - C4_2;
-    const T C4_3 = fa_x_x * fb_x_z;
-    const T C4_4 = fa_x_z * fb_x_x;
-    const T fa_x_x_fb_x_y = C4_4 - C4_3;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
     const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T C4_5 = fa_y_y * fb_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T C4_6 = fa_y_z * fb_y_y;
-    const T fa_y_x_fb_y_x = C4_5 - C4_6;
-    const T C4_7 = fa_y_x * fb_y_z;
-    const T C4_8 = fa_y_z * fb_y_x;
-    const T fa_y_x_fb_y_y = C4_8 - C4_7;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T C4_9 = fa_z_y * fb_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T C4_10 = fa_z_z * fb_z_y;
-    const T fa_z_x_fb_z_x = C4_9 - C4_10;
-    const T C4_11 = fa_z_x * fb_z_z;
-    const T C4_12 = fa_z_z * fb_z_x;
-    const T fa_z_x_fb_z_y = C4_12 - C4_11;
-    const T C6_1 = fa_x_x * fb_x_y;
-    const T C6_2 = fa_x_y * fb_x_x;
-    const T fa_x_x_fb_x_z = C6_1 - C6_2;
-    const T C6_3 = fa_y_x * fb_y_y;
-    const T C6_4 = fa_y_y * fb_y_x;
-    const T fa_y_x_fb_y_z = C6_3 - C6_4;
-    const T C6_5 = fa_z_x * fb_z_y;
-    const T C6_6 = fa_z_y * fb_z_x;
-    const T fa_z_x_fb_z_z = C6_5 - C6_6;
+    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+    const T fb_z_x = fb_x_y * fb_y_z - fb_y_y * fb_x_z;
+    const T fb_z_y = fb_y_x * fb_x_z - fb_x_x * fb_y_z;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T C4_1 = fa_z_z * fb_z_y + fa_x_z * fb_x_y + fa_y_z * fb_y_y;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+    const T fb_z_z = fb_x_x * fb_y_y - fb_y_x * fb_x_y;
+    const T C4_2 = fa_z_y * fb_z_z + fa_x_y * fb_x_z + fa_y_y * fb_y_z;
+    const T C5_1 = fa_z_z * fb_z_x + fa_x_z * fb_x_x + fa_y_z * fb_y_x;
+    const T C5_2 = fa_z_x * fb_z_z + fa_x_x * fb_x_z + fa_y_x * fb_y_z;
+    const T C6_1 = fa_z_y * fb_z_x + fa_x_y * fb_x_x + fa_y_y * fb_y_x;
+    const T C6_2 = fa_z_x * fb_z_y + fa_x_x * fb_x_y + fa_y_x * fb_y_y;
     const T wa_4_x_1 = fa_z_y * fb_z_y + fa_x_y * fb_x_y + fa_y_y * fb_y_y;
     const T wa_4_x_2 = fa_z_z * fb_z_z + fa_x_z * fb_x_z + fa_y_z * fb_y_z;
-    const T wa_4_x_3 = wa_4_x_1 + wa_4_x_2;
-    const T wa_4_y_1 = C6_1 + C6_3 + C6_5;
-    const T wa_4_z_1 = C4_3 + C4_7 + C4_11;
-    const T wb_4_y_1 = C6_2 + C6_4 + C6_6;
-    const T wb_4_z_1 = C4_4 + C4_8 + C4_12;
     const T wa_5_y_1 = fa_z_x * fb_z_x + fa_x_x * fb_x_x + fa_y_x * fb_y_x;
-    const T wa_5_y_2 = wa_5_y_1 + wa_4_x_2;
-    const T wa_5_z_1 = C4_1 + C4_5 + C4_9;
-    const T wb_5_z_1 = C4_2 + C4_6 + C4_10;
-    const T wa_6_z_1 = wa_4_x_1 + wa_5_y_1;
     C[0] = a.x - b.x + ra_x - rb_x;
     C[1] = a.y - b.y + ra_y - rb_y;
     C[2] = a.z - b.z + ra_z - rb_z;
-    C[3] = T(0.5) * (fa_x_x_fb_x_x + fa_y_x_fb_y_x + fa_z_x_fb_z_x);
-    C[4] = T(0.5) * (fa_x_x_fb_x_y + fa_y_x_fb_y_y + fa_z_x_fb_z_y);
-    C[5] = T(0.5) * (fa_x_x_fb_x_z + fa_y_x_fb_y_z + fa_z_x_fb_z_z);
+    C[3] = T(0.5) * (C4_2 - C4_1);
+    C[4] = T(0.5) * (C5_1 - C5_2);
+    C[5] = T(0.5) * (C6_2 - C6_1);
     J.ra_z = ra_z;
     J.ra_y = ra_y;
     J.rb_z = rb_z;
     J.rb_y = rb_y;
     J.ra_x = ra_x;
     J.rb_x = rb_x;
-    J.wa_4_x = T(-0.5) * wa_4_x_3;
-    J.wa_4_y = T(0.5) * wa_4_y_1;
-    J.wa_4_z = T(0.5) * wa_4_z_1;
-    J.wb_4_x = T(0.5) * wa_4_x_3;
-    J.wb_4_y = T(-0.5) * wb_4_y_1;
-    J.wb_4_z = T(-0.5) * wb_4_z_1;
-    J.wa_5_x = T(0.5) * wb_4_y_1;
-    J.wa_5_y = T(-0.5) * wa_5_y_2;
-    J.wa_5_z = T(0.5) * wa_5_z_1;
-    J.wb_5_x = T(-0.5) * wa_4_y_1;
-    J.wb_5_y = T(0.5) * wa_5_y_2;
-    J.wb_5_z = T(-0.5) * wb_5_z_1;
-    J.wa_6_x = T(0.5) * wb_4_z_1;
-    J.wa_6_y = T(0.5) * wb_5_z_1;
-    J.wa_6_z = T(-0.5) * wa_6_z_1;
-    J.wb_6_x = T(-0.5) * wa_4_z_1;
-    J.wb_6_y = T(-0.5) * wa_5_z_1;
-    J.wb_6_z = T(0.5) * wa_6_z_1;
+    J.wa_4_x = T(-0.5) * (wa_4_x_1 + wa_4_x_2);
+    J.wa_4_y = T(0.5) * C6_2;
+    J.wa_4_z = T(0.5) * C5_2;
+    J.wb_4_y = T(-0.5) * C6_1;
+    J.wb_4_z = T(-0.5) * C5_1;
+    J.wa_5_y = T(-0.5) * (wa_5_y_1 + wa_4_x_2);
+    J.wa_5_z = T(0.5) * C4_2;
+    J.wb_5_z = T(-0.5) * C4_1;
+    J.wa_6_z = T(-0.5) * (wa_4_x_1 + wa_5_y_1);
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 151 +, 182 *
@@ -375,7 +336,7 @@ struct fixed {
     lambda[5] = x6;
   }
 
-  // J v: 30 +, 30 *
+  // J v: 30 +, 27 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[6]) {
     const Velocity<T>& va = v[0];
@@ -383,15 +344,15 @@ struct fixed {
     Jv[0] = va.x - vb.x - J.ra_y * va.wz + J.ra_z * va.wy + J.rb_y * vb.wz - J.rb_z * vb.wy;
     Jv[1] = va.y - vb.y + J.ra_x * va.wz - J.ra_z * va.wx - J.rb_x * vb.wz + J.rb_z * vb.wx;
     Jv[2] = va.z - vb.z - J.ra_x * va.wy + J.ra_y * va.wx + J.rb_x * vb.wy - J.rb_y * vb.wx;
-    Jv[3] = J.wa_4_x * va.wx + J.wa_4_y * va.wy + J.wa_4_z * va.wz + J.wb_4_x * vb.wx + J.wb_4_y *
-        vb.wy + J.wb_4_z * vb.wz;
-    Jv[4] = J.wa_5_x * va.wx + J.wa_5_y * va.wy + J.wa_5_z * va.wz + J.wb_5_x * vb.wx + J.wb_5_y *
-        vb.wy + J.wb_5_z * vb.wz;
-    Jv[5] = J.wa_6_x * va.wx + J.wa_6_y * va.wy + J.wa_6_z * va.wz + J.wb_6_x * vb.wx + J.wb_6_y *
-        vb.wy + J.wb_6_z * vb.wz;
+    Jv[3] = J.wa_4_y * va.wy + J.wa_4_z * va.wz + J.wb_4_y * vb.wy + J.wb_4_z * vb.wz + J.wa_4_x *
+        (va.wx - vb.wx);
+    Jv[4] = J.wa_5_z * va.wz - J.wa_4_y * vb.wx - J.wb_4_y * va.wx + J.wb_5_z * vb.wz + J.wa_5_y *
+        (va.wy - vb.wy);
+    Jv[5] = J.wa_6_z * (va.wz - vb.wz) - J.wa_4_z * vb.wx - J.wa_5_z * vb.wy - J.wb_4_z * va.wx -
+        J.wb_5_z * va.wy;
   }
 
-  // v += M^-1 J^T lambda: 48 +, 54 *
+  // v += M^-1 J^T lambda: 48 +, 51 *
   template <class T>
   static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[6],
       Velocity<T> (&v)[2]) {
@@ -399,24 +360,27 @@ struct fixed {
     const InverseMass<T>& ma = m[0];
     const Velocity<T> vb = v[1];
     const InverseMass<T>& mb = m[1];
-    const T v1_1 = J.ra_y * lambda[2] - J.ra_z * lambda[1] + J.wa_4_x * lambda[3] + J.wa_5_x *
-        lambda[4] + J.wa_6_x * lambda[5];
-    const T v1_2 = J.ra_z * lambda[0] - J.ra_x * lambda[2] + J.wa_4_y * lambda[3] + J.wa_5_y *
-        lambda[4] + J.wa_6_y * lambda[5];
-    const T v1_3 = J.ra_x * lambda[1] - J.ra_y * lambda[0] + J.wa_4_z * lambda[3] + J.wa_5_z *
-        lambda[4] + J.wa_6_z * lambda[5];
-    const T v2_1 = J.rb_z * lambda[1] - J.rb_y * lambda[2] + J.wb_4_x * lambda[3] + J.wb_5_x *
-        lambda[4] + J.wb_6_x * lambda[5];
-    const T v2_2 = J.rb_x * lambda[2] - J.rb_z * lambda[0] + J.wb_4_y * lambda[3] + J.wb_5_y *
-        lambda[4] + J.wb_6_y * lambda[5];
-    const T v2_3 = J.rb_y * lambda[0] - J.rb_x * lambda[1] + J.wb_4_z * lambda[3] + J.wb_5_z *
-        lambda[4] + J.wb_6_z * lambda[5];
+    const T v1_1 = J.wa_4_x * lambda[3];
+    const T v1_2 = J.ra_y * lambda[2] - J.ra_z * lambda[1] + v1_1 - J.wb_4_y * lambda[4] -
+        J.wb_4_z * lambda[5];
+    const T v1_3 = J.wa_5_y * lambda[4];
+    const T v1_4 = J.ra_z * lambda[0] - J.ra_x * lambda[2] + J.wa_4_y * lambda[3] + v1_3 -
+        J.wb_5_z * lambda[5];
+    const T v1_5 = J.wa_6_z * lambda[5];
+    const T v1_6 = J.ra_x * lambda[1] - J.ra_y * lambda[0] + J.wa_4_z * lambda[3] + J.wa_5_z *
+        lambda[4] + v1_5;
+    const T v2_1 = J.rb_z * lambda[1] - J.rb_y * lambda[2] - v1_1 - J.wa_4_y * lambda[4] -
+        J.wa_4_z * lambda[5];
+    const T v2_2 = J.rb_x * lambda[2] - J.rb_z * lambda[0] - v1_3 - J.wa_5_z * lambda[5] +
+        J.wb_4_y * lambda[3];
+    const T v2_3 = J.rb_y * lambda[0] - J.rb_x * lambda[1] - v1_5 + J.wb_4_z * lambda[3] +
+        J.wb_5_z * lambda[4];
     v[0].x = va.x + ma.m * lambda[0];
     v[0].y = va.y + ma.m * lambda[1];
     v[0].z = va.z + ma.m * lambda[2];
-    v[0].wx = va.wx + ma.Ixx * v1_1 + ma.Ixy * v1_2 + ma.Ixz * v1_3;
-    v[0].wy = va.wy + ma.Ixy * v1_1 + ma.Iyy * v1_2 + ma.Iyz * v1_3;
-    v[0].wz = va.wz + ma.Ixz * v1_1 + ma.Iyz * v1_2 + ma.Izz * v1_3;
+    v[0].wx = va.wx + ma.Ixx * v1_2 + ma.Ixy * v1_4 + ma.Ixz * v1_6;
+    v[0].wy = va.wy + ma.Ixy * v1_2 + ma.Iyy * v1_4 + ma.Iyz * v1_6;
+    v[0].wz = va.wz + ma.Ixz * v1_2 + ma.Iyz * v1_4 + ma.Izz * v1_6;
     v[1].x = vb.x - mb.m * lambda[0];
     v[1].y = vb.y - mb.m * lambda[1];
     v[1].z = vb.z - mb.m * lambda[2];
@@ -425,7 +389,7 @@ struct fixed {
     v[1].wz = vb.wz + mb.Ixz * v2_1 + mb.Iyz * v2_2 + mb.Izz * v2_3;
   }
 
-  // J with its zeros: v, w of each body: 6 +
+  // J with its zeros: v, w of each body: 15 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[6][12]) {
     for (auto& row : D) {
@@ -452,24 +416,24 @@ struct fixed {
     D[3][3] = J.wa_4_x;
     D[3][4] = J.wa_4_y;
     D[3][5] = J.wa_4_z;
-    D[3][9] = J.wb_4_x;
+    D[3][9] = -J.wa_4_x;
     D[3][10] = J.wb_4_y;
     D[3][11] = J.wb_4_z;
-    D[4][3] = J.wa_5_x;
+    D[4][3] = -J.wb_4_y;
     D[4][4] = J.wa_5_y;
     D[4][5] = J.wa_5_z;
-    D[4][9] = J.wb_5_x;
-    D[4][10] = J.wb_5_y;
+    D[4][9] = -J.wa_4_y;
+    D[4][10] = -J.wa_5_y;
     D[4][11] = J.wb_5_z;
-    D[5][3] = J.wa_6_x;
-    D[5][4] = J.wa_6_y;
+    D[5][3] = -J.wb_4_z;
+    D[5][4] = -J.wb_5_z;
     D[5][5] = J.wa_6_z;
-    D[5][9] = J.wb_6_x;
-    D[5][10] = J.wb_6_y;
-    D[5][11] = J.wb_6_z;
+    D[5][9] = -J.wa_4_z;
+    D[5][10] = -J.wa_5_z;
+    D[5][11] = -J.wa_6_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 55 +, 84 *
+  // (M^-1 J^T)^T, laid out like dense: 58 +, 84 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[6][12]) {
@@ -511,24 +475,24 @@ struct fixed {
     D[3][3] = ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z;
     D[3][4] = ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z;
     D[3][5] = ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z;
-    D[3][9] = mb.Ixx * J.wb_4_x + mb.Ixy * J.wb_4_y + mb.Ixz * J.wb_4_z;
-    D[3][10] = mb.Ixy * J.wb_4_x + mb.Iyy * J.wb_4_y + mb.Iyz * J.wb_4_z;
-    D[3][11] = mb.Ixz * J.wb_4_x + mb.Iyz * J.wb_4_y + mb.Izz * J.wb_4_z;
-    D[4][3] = ma.Ixx * J.wa_5_x + ma.Ixy * J.wa_5_y + ma.Ixz * J.wa_5_z;
-    D[4][4] = ma.Ixy * J.wa_5_x + ma.Iyy * J.wa_5_y + ma.Iyz * J.wa_5_z;
-    D[4][5] = ma.Ixz * J.wa_5_x + ma.Iyz * J.wa_5_y + ma.Izz * J.wa_5_z;
-    D[4][9] = mb.Ixx * J.wb_5_x + mb.Ixy * J.wb_5_y + mb.Ixz * J.wb_5_z;
-    D[4][10] = mb.Ixy * J.wb_5_x + mb.Iyy * J.wb_5_y + mb.Iyz * J.wb_5_z;
-    D[4][11] = mb.Ixz * J.wb_5_x + mb.Iyz * J.wb_5_y + mb.Izz * J.wb_5_z;
-    D[5][3] = ma.Ixx * J.wa_6_x + ma.Ixy * J.wa_6_y + ma.Ixz * J.wa_6_z;
-    D[5][4] = ma.Ixy * J.wa_6_x + ma.Iyy * J.wa_6_y + ma.Iyz * J.wa_6_z;
-    D[5][5] = ma.Ixz * J.wa_6_x + ma.Iyz * J.wa_6_y + ma.Izz * J.wa_6_z;
-    D[5][9] = mb.Ixx * J.wb_6_x + mb.Ixy * J.wb_6_y + mb.Ixz * J.wb_6_z;
-    D[5][10] = mb.Ixy * J.wb_6_x + mb.Iyy * J.wb_6_y + mb.Iyz * J.wb_6_z;
-    D[5][11] = mb.Ixz * J.wb_6_x + mb.Iyz * J.wb_6_y + mb.Izz * J.wb_6_z;
+    D[3][9] = mb.Ixy * J.wb_4_y - mb.Ixx * J.wa_4_x + mb.Ixz * J.wb_4_z;
+    D[3][10] = mb.Iyy * J.wb_4_y - mb.Ixy * J.wa_4_x + mb.Iyz * J.wb_4_z;
+    D[3][11] = mb.Iyz * J.wb_4_y - mb.Ixz * J.wa_4_x + mb.Izz * J.wb_4_z;
+    D[4][3] = ma.Ixy * J.wa_5_y - ma.Ixx * J.wb_4_y + ma.Ixz * J.wa_5_z;
+    D[4][4] = ma.Iyy * J.wa_5_y - ma.Ixy * J.wb_4_y + ma.Iyz * J.wa_5_z;
+    D[4][5] = ma.Iyz * J.wa_5_y - ma.Ixz * J.wb_4_y + ma.Izz * J.wa_5_z;
+    D[4][9] = mb.Ixz * J.wb_5_z - mb.Ixx * J.wa_4_y - mb.Ixy * J.wa_5_y;
+    D[4][10] = mb.Iyz * J.wb_5_z - mb.Ixy * J.wa_4_y - mb.Iyy * J.wa_5_y;
+    D[4][11] = mb.Izz * J.wb_5_z - mb.Ixz * J.wa_4_y - mb.Iyz * J.wa_5_y;
+    D[5][3] = ma.Ixz * J.wa_6_z - ma.Ixx * J.wb_4_z - ma.Ixy * J.wb_5_z;
+    D[5][4] = ma.Iyz * J.wa_6_z - ma.Ixy * J.wb_4_z - ma.Iyy * J.wb_5_z;
+    D[5][5] = ma.Izz * J.wa_6_z - ma.Ixz * J.wb_4_z - ma.Iyz * J.wb_5_z;
+    D[5][9] = -mb.Ixx * J.wa_4_z - mb.Ixy * J.wa_5_z - mb.Ixz * J.wa_6_z;
+    D[5][10] = -mb.Ixy * J.wa_4_z - mb.Iyy * J.wa_5_z - mb.Iyz * J.wa_6_z;
+    D[5][11] = -mb.Ixz * J.wa_4_z - mb.Iyz * J.wa_5_z - mb.Izz * J.wa_6_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 72 +, 104 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 69 +, 92 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[21]) {
@@ -544,18 +508,22 @@ struct fixed {
     const T ia_ra_x = ma.I * J.ra_x;
     const T ib_rb_x = mb.I * J.rb_x;
     const T K22_1 = ia_ra_x * J.ra_x + ib_rb_x * J.rb_x;
-    const T ia_wa_4_x = ma.I * J.wa_4_x;
+    const T K42_1 = ia_ra_z + ib_rb_z;
+    const T K43_1 = ia_ra_y + ib_rb_y;
     const T ia_wa_4_y = ma.I * J.wa_4_y;
     const T ia_wa_4_z = ma.I * J.wa_4_z;
-    const T ib_wb_4_x = mb.I * J.wb_4_x;
     const T ib_wb_4_y = mb.I * J.wb_4_y;
     const T ib_wb_4_z = mb.I * J.wb_4_z;
-    const T ia_wa_5_x = ma.I * J.wa_5_x;
-    const T ia_wa_5_y = ma.I * J.wa_5_y;
+    const T ia_wa_4_x = ma.I * J.wa_4_x;
+    const T ib_wa_4_x = mb.I * J.wa_4_x;
+    const T K53_1 = ia_ra_x + ib_rb_x;
     const T ia_wa_5_z = ma.I * J.wa_5_z;
-    const T ib_wb_5_x = mb.I * J.wb_5_x;
-    const T ib_wb_5_y = mb.I * J.wb_5_y;
+    const T ia_wb_4_y = ma.I * J.wb_4_y;
+    const T ib_wa_4_y = mb.I * J.wa_4_y;
     const T ib_wb_5_z = mb.I * J.wb_5_z;
+    const T ia_wb_5_z = ma.I * J.wb_5_z;
+    const T ib_wa_5_z = mb.I * J.wa_5_z;
+    const T K66_1 = J.wa_6_z * J.wa_6_z;
     K[0] = K11_1 + K11_3;
     K[1] = -ia_ra_x * J.ra_y - ib_rb_x * J.rb_y;
     K[2] = K22_1 + K11_3;
@@ -563,29 +531,29 @@ struct fixed {
     K[4] = -ia_ra_z * J.ra_y - ib_rb_z * J.rb_y;
     K[5] = K11_1 + K22_1 + K11_2;
     K[6] = ia_ra_z * J.wa_4_y - ia_ra_y * J.wa_4_z + ib_rb_y * J.wb_4_z - ib_rb_z * J.wb_4_y;
-    K[7] = ia_ra_x * J.wa_4_z - ia_ra_z * J.wa_4_x - ib_rb_x * J.wb_4_z + ib_rb_z * J.wb_4_x;
-    K[8] = ia_ra_y * J.wa_4_x - ia_ra_x * J.wa_4_y + ib_rb_x * J.wb_4_y - ib_rb_y * J.wb_4_x;
-    K[9] = ia_wa_4_x * J.wa_4_x + ia_wa_4_y * J.wa_4_y + ia_wa_4_z * J.wa_4_z + ib_wb_4_x *
-        J.wb_4_x + ib_wb_4_y * J.wb_4_y + ib_wb_4_z * J.wb_4_z;
-    K[10] = ia_ra_z * J.wa_5_y - ia_ra_y * J.wa_5_z + ib_rb_y * J.wb_5_z - ib_rb_z * J.wb_5_y;
-    K[11] = ia_ra_x * J.wa_5_z - ia_ra_z * J.wa_5_x - ib_rb_x * J.wb_5_z + ib_rb_z * J.wb_5_x;
-    K[12] = ia_ra_y * J.wa_5_x - ia_ra_x * J.wa_5_y + ib_rb_x * J.wb_5_y - ib_rb_y * J.wb_5_x;
-    K[13] = ia_wa_4_x * J.wa_5_x + ia_wa_4_y * J.wa_5_y + ia_wa_4_z * J.wa_5_z + ib_wb_4_x *
-        J.wb_5_x + ib_wb_4_y * J.wb_5_y + ib_wb_4_z * J.wb_5_z;
-    K[14] = ia_wa_5_x * J.wa_5_x + ia_wa_5_y * J.wa_5_y + ia_wa_5_z * J.wa_5_z + ib_wb_5_x *
-        J.wb_5_x + ib_wb_5_y * J.wb_5_y + ib_wb_5_z * J.wb_5_z;
-    K[15] = ia_ra_z * J.wa_6_y - ia_ra_y * J.wa_6_z + ib_rb_y * J.wb_6_z - ib_rb_z * J.wb_6_y;
-    K[16] = ia_ra_x * J.wa_6_z - ia_ra_z * J.wa_6_x - ib_rb_x * J.wb_6_z + ib_rb_z * J.wb_6_x;
-    K[17] = ia_ra_y * J.wa_6_x - ia_ra_x * J.wa_6_y + ib_rb_x * J.wb_6_y - ib_rb_y * J.wb_6_x;
-    K[18] = ia_wa_4_x * J.wa_6_x + ia_wa_4_y * J.wa_6_y + ia_wa_4_z * J.wa_6_z + ib_wb_4_x *
-        J.wb_6_x + ib_wb_4_y * J.wb_6_y + ib_wb_4_z * J.wb_6_z;
-    K[19] = ia_wa_5_x * J.wa_6_x + ia_wa_5_y * J.wa_6_y + ia_wa_5_z * J.wa_6_z + ib_wb_5_x *
-        J.wb_6_x + ib_wb_5_y * J.wb_6_y + ib_wb_5_z * J.wb_6_z;
-    K[20] = ma.I * (J.wa_6_x * J.wa_6_x + J.wa_6_y * J.wa_6_y + J.wa_6_z * J.wa_6_z) + mb.I *
-        (J.wb_6_x * J.wb_6_x + J.wb_6_y * J.wb_6_y + J.wb_6_z * J.wb_6_z);
+    K[7] = ia_ra_x * J.wa_4_z - ib_rb_x * J.wb_4_z - J.wa_4_x * K42_1;
+    K[8] = ib_rb_x * J.wb_4_y - ia_ra_x * J.wa_4_y + J.wa_4_x * K43_1;
+    K[9] = ia_wa_4_y * J.wa_4_y + ia_wa_4_z * J.wa_4_z + ib_wb_4_y * J.wb_4_y + ib_wb_4_z *
+        J.wb_4_z + J.wa_4_x * (ia_wa_4_x + ib_wa_4_x);
+    K[10] = ib_rb_y * J.wb_5_z - ia_ra_y * J.wa_5_z + J.wa_5_y * K42_1;
+    K[11] = ia_ra_x * J.wa_5_z + ia_ra_z * J.wb_4_y - ib_rb_x * J.wb_5_z - ib_rb_z * J.wa_4_y;
+    K[12] = ib_rb_y * J.wa_4_y - ia_ra_y * J.wb_4_y - J.wa_5_y * K53_1;
+    K[13] = ia_wa_4_z * J.wa_5_z - ia_wa_4_x * J.wb_4_y + ib_wa_4_x * J.wa_4_y + ib_wb_4_z *
+        J.wb_5_z + J.wa_5_y * (ia_wa_4_y - ib_wb_4_y);
+    K[14] = ia_wa_5_z * J.wa_5_z + ia_wb_4_y * J.wb_4_y + ib_wa_4_y * J.wa_4_y + ib_wb_5_z *
+        J.wb_5_z + J.wa_5_y * J.wa_5_y * (ma.I + mb.I);
+    K[15] = ib_rb_z * J.wa_5_z - ia_ra_z * J.wb_5_z - J.wa_6_z * K43_1;
+    K[16] = ia_ra_z * J.wb_4_z - ib_rb_z * J.wa_4_z + J.wa_6_z * K53_1;
+    K[17] = ia_ra_x * J.wb_5_z - ia_ra_y * J.wb_4_z - ib_rb_x * J.wa_5_z + ib_rb_y * J.wa_4_z;
+    K[18] = ib_wa_4_x * J.wa_4_z - ia_wa_4_x * J.wb_4_z - ia_wa_4_y * J.wb_5_z - ib_wb_4_y *
+        J.wa_5_z + J.wa_6_z * (ia_wa_4_z - ib_wb_4_z);
+    K[19] = ia_wb_4_y * J.wb_4_z + ib_wa_4_y * J.wa_4_z + J.wa_5_y * (ib_wa_5_z - ia_wb_5_z) +
+        J.wa_6_z * (ia_wa_5_z - ib_wb_5_z);
+    K[20] = ia_wb_5_z * J.wb_5_z + ib_wa_5_z * J.wa_5_z + ma.I * (K66_1 + J.wb_4_z * J.wb_4_z) +
+        mb.I * (J.wa_4_z * J.wa_4_z + K66_1);
   }
 
-  // v += M^-1 J^T lambda, for sphere-like bodies: 36 +, 42 *
+  // v += M^-1 J^T lambda, for sphere-like bodies: 36 +, 39 *
   template <class T>
   static void apply(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       const T (&lambda)[6], Velocity<T> (&v)[2]) {
@@ -593,27 +561,30 @@ struct fixed {
     const IsotropicInverseMass<T>& ma = m[0];
     const Velocity<T> vb = v[1];
     const IsotropicInverseMass<T>& mb = m[1];
+    const T v1_1 = J.wa_4_x * lambda[3];
+    const T v1_1_2 = J.wa_5_y * lambda[4];
+    const T v1_1_3 = J.wa_6_z * lambda[5];
     v[0].x = va.x + ma.m * lambda[0];
     v[0].y = va.y + ma.m * lambda[1];
     v[0].z = va.z + ma.m * lambda[2];
-    v[0].wx = va.wx + ma.I * (J.ra_y * lambda[2] - J.ra_z * lambda[1] + J.wa_4_x * lambda[3] +
-        J.wa_5_x * lambda[4] + J.wa_6_x * lambda[5]);
+    v[0].wx = va.wx + ma.I * (J.ra_y * lambda[2] - J.ra_z * lambda[1] + v1_1 - J.wb_4_y *
+        lambda[4] - J.wb_4_z * lambda[5]);
     v[0].wy = va.wy + ma.I * (J.ra_z * lambda[0] - J.ra_x * lambda[2] + J.wa_4_y * lambda[3] +
-        J.wa_5_y * lambda[4] + J.wa_6_y * lambda[5]);
+        v1_1_2 - J.wb_5_z * lambda[5]);
     v[0].wz = va.wz + ma.I * (J.ra_x * lambda[1] - J.ra_y * lambda[0] + J.wa_4_z * lambda[3] +
-        J.wa_5_z * lambda[4] + J.wa_6_z * lambda[5]);
+        J.wa_5_z * lambda[4] + v1_1_3);
     v[1].x = vb.x - mb.m * lambda[0];
     v[1].y = vb.y - mb.m * lambda[1];
     v[1].z = vb.z - mb.m * lambda[2];
-    v[1].wx = vb.wx + mb.I * (J.rb_z * lambda[1] - J.rb_y * lambda[2] + J.wb_4_x * lambda[3] +
-        J.wb_5_x * lambda[4] + J.wb_6_x * lambda[5]);
-    v[1].wy = vb.wy + mb.I * (J.rb_x * lambda[2] - J.rb_z * lambda[0] + J.wb_4_y * lambda[3] +
-        J.wb_5_y * lambda[4] + J.wb_6_y * lambda[5]);
-    v[1].wz = vb.wz + mb.I * (J.rb_y * lambda[0] - J.rb_x * lambda[1] + J.wb_4_z * lambda[3] +
-        J.wb_5_z * lambda[4] + J.wb_6_z * lambda[5]);
+    v[1].wx = vb.wx + mb.I * (J.rb_z * lambda[1] - J.rb_y * lambda[2] - v1_1 - J.wa_4_y *
+        lambda[4] - J.wa_4_z * lambda[5]);
+    v[1].wy = vb.wy + mb.I * (J.rb_x * lambda[2] - J.rb_z * lambda[0] - v1_1_2 - J.wa_5_z *
+        lambda[5] + J.wb_4_y * lambda[3]);
+    v[1].wz = vb.wz + mb.I * (J.rb_y * lambda[0] - J.rb_x * lambda[1] - v1_1_3 + J.wb_4_z *
+        lambda[3] + J.wb_5_z * lambda[4]);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 7 +, 24 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 16 +, 24 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[6][12]) {
@@ -649,24 +620,24 @@ struct fixed {
     D[3][3] = ma.I * J.wa_4_x;
     D[3][4] = ma.I * J.wa_4_y;
     D[3][5] = ma.I * J.wa_4_z;
-    D[3][9] = mb.I * J.wb_4_x;
+    D[3][9] = -mb.I * J.wa_4_x;
     D[3][10] = mb.I * J.wb_4_y;
     D[3][11] = mb.I * J.wb_4_z;
-    D[4][3] = ma.I * J.wa_5_x;
+    D[4][3] = -ma.I * J.wb_4_y;
     D[4][4] = ma.I * J.wa_5_y;
     D[4][5] = ma.I * J.wa_5_z;
-    D[4][9] = mb.I * J.wb_5_x;
-    D[4][10] = mb.I * J.wb_5_y;
+    D[4][9] = -mb.I * J.wa_4_y;
+    D[4][10] = -mb.I * J.wa_5_y;
     D[4][11] = mb.I * J.wb_5_z;
-    D[5][3] = ma.I * J.wa_6_x;
-    D[5][4] = ma.I * J.wa_6_y;
+    D[5][3] = -ma.I * J.wb_4_z;
+    D[5][4] = -ma.I * J.wb_5_z;
     D[5][5] = ma.I * J.wa_6_z;
-    D[5][9] = mb.I * J.wb_6_x;
-    D[5][10] = mb.I * J.wb_6_y;
-    D[5][11] = mb.I * J.wb_6_z;
+    D[5][9] = -mb.I * J.wa_4_z;
+    D[5][10] = -mb.I * J.wa_5_z;
+    D[5][11] = -mb.I * J.wa_6_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 54 +, 90 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 57 +, 90 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[6][12]) {
     for (auto& row : D) {
@@ -701,24 +672,24 @@ struct fixed {
     D[3][3] = J.wa_4_x * a.xx + J.wa_4_y * a.yx + J.wa_4_z * a.zx;
     D[3][4] = J.wa_4_x * a.xy + J.wa_4_y * a.yy + J.wa_4_z * a.zy;
     D[3][5] = J.wa_4_x * a.xz + J.wa_4_y * a.yz + J.wa_4_z * a.zz;
-    D[3][9] = J.wb_4_x * b.xx + J.wb_4_y * b.yx + J.wb_4_z * b.zx;
-    D[3][10] = J.wb_4_x * b.xy + J.wb_4_y * b.yy + J.wb_4_z * b.zy;
-    D[3][11] = J.wb_4_x * b.xz + J.wb_4_y * b.yz + J.wb_4_z * b.zz;
-    D[4][3] = J.wa_5_x * a.xx + J.wa_5_y * a.yx + J.wa_5_z * a.zx;
-    D[4][4] = J.wa_5_x * a.xy + J.wa_5_y * a.yy + J.wa_5_z * a.zy;
-    D[4][5] = J.wa_5_x * a.xz + J.wa_5_y * a.yz + J.wa_5_z * a.zz;
-    D[4][9] = J.wb_5_x * b.xx + J.wb_5_y * b.yx + J.wb_5_z * b.zx;
-    D[4][10] = J.wb_5_x * b.xy + J.wb_5_y * b.yy + J.wb_5_z * b.zy;
-    D[4][11] = J.wb_5_x * b.xz + J.wb_5_y * b.yz + J.wb_5_z * b.zz;
-    D[5][3] = J.wa_6_x * a.xx + J.wa_6_y * a.yx + J.wa_6_z * a.zx;
-    D[5][4] = J.wa_6_x * a.xy + J.wa_6_y * a.yy + J.wa_6_z * a.zy;
-    D[5][5] = J.wa_6_x * a.xz + J.wa_6_y * a.yz + J.wa_6_z * a.zz;
-    D[5][9] = J.wb_6_x * b.xx + J.wb_6_y * b.yx + J.wb_6_z * b.zx;
-    D[5][10] = J.wb_6_x * b.xy + J.wb_6_y * b.yy + J.wb_6_z * b.zy;
-    D[5][11] = J.wb_6_x * b.xz + J.wb_6_y * b.yz + J.wb_6_z * b.zz;
+    D[3][9] = J.wb_4_y * b.yx - J.wa_4_x * b.xx + J.wb_4_z * b.zx;
+    D[3][10] = J.wb_4_y * b.yy - J.wa_4_x * b.xy + J.wb_4_z * b.zy;
+    D[3][11] = J.wb_4_y * b.yz - J.wa_4_x * b.xz + J.wb_4_z * b.zz;
+    D[4][3] = J.wa_5_y * a.yx + J.wa_5_z * a.zx - J.wb_4_y * a.xx;
+    D[4][4] = J.wa_5_y * a.yy + J.wa_5_z * a.zy - J.wb_4_y * a.xy;
+    D[4][5] = J.wa_5_y * a.yz + J.wa_5_z * a.zz - J.wb_4_y * a.xz;
+    D[4][9] = J.wb_5_z * b.zx - J.wa_4_y * b.xx - J.wa_5_y * b.yx;
+    D[4][10] = J.wb_5_z * b.zy - J.wa_4_y * b.xy - J.wa_5_y * b.yy;
+    D[4][11] = J.wb_5_z * b.zz - J.wa_4_y * b.xz - J.wa_5_y * b.yz;
+    D[5][3] = J.wa_6_z * a.zx - J.wb_4_z * a.xx - J.wb_5_z * a.yx;
+    D[5][4] = J.wa_6_z * a.zy - J.wb_4_z * a.xy - J.wb_5_z * a.yy;
+    D[5][5] = J.wa_6_z * a.zz - J.wb_4_z * a.xz - J.wb_5_z * a.yz;
+    D[5][9] = -J.wa_4_z * b.xx - J.wa_5_z * b.yx - J.wa_6_z * b.zx;
+    D[5][10] = -J.wa_4_z * b.xy - J.wa_5_z * b.yy - J.wa_6_z * b.zy;
+    D[5][11] = -J.wa_4_z * b.xz - J.wa_5_z * b.yz - J.wa_6_z * b.zz;
   }
 
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 84 +, 104 *
+  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 81 +, 104 *
   template <class T>
   static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[6][14]) {
     for (auto& row : D) {
@@ -792,29 +763,29 @@ struct fixed {
     D[3][4] = D1_3_2 * J.wa_4_x + D1_1 * J.wa_4_y - D1_3 * J.wa_4_z;
     D[3][5] = D1_3_2 * J.wa_4_y - D1_1 * J.wa_4_x + D1_1_3 * J.wa_4_z;
     D[3][6] = D1_3 * J.wa_4_x - D1_1_3 * J.wa_4_y + D1_3_2 * J.wa_4_z;
-    D[3][10] = -D1_1_7 * J.wb_4_x - D1_3_3 * J.wb_4_y - D1_1_5 * J.wb_4_z;
-    D[3][11] = D1_3_4 * J.wb_4_x + D1_1_5 * J.wb_4_y - D1_3_3 * J.wb_4_z;
-    D[3][12] = D1_3_4 * J.wb_4_y - D1_1_5 * J.wb_4_x + D1_1_7 * J.wb_4_z;
-    D[3][13] = D1_3_3 * J.wb_4_x - D1_1_7 * J.wb_4_y + D1_3_4 * J.wb_4_z;
-    D[4][3] = -D1_1_3 * J.wa_5_x - D1_3 * J.wa_5_y - D1_1 * J.wa_5_z;
-    D[4][4] = D1_3_2 * J.wa_5_x + D1_1 * J.wa_5_y - D1_3 * J.wa_5_z;
-    D[4][5] = D1_3_2 * J.wa_5_y - D1_1 * J.wa_5_x + D1_1_3 * J.wa_5_z;
-    D[4][6] = D1_3 * J.wa_5_x - D1_1_3 * J.wa_5_y + D1_3_2 * J.wa_5_z;
-    D[4][10] = -D1_1_7 * J.wb_5_x - D1_3_3 * J.wb_5_y - D1_1_5 * J.wb_5_z;
-    D[4][11] = D1_3_4 * J.wb_5_x + D1_1_5 * J.wb_5_y - D1_3_3 * J.wb_5_z;
-    D[4][12] = D1_3_4 * J.wb_5_y - D1_1_5 * J.wb_5_x + D1_1_7 * J.wb_5_z;
-    D[4][13] = D1_3_3 * J.wb_5_x - D1_1_7 * J.wb_5_y + D1_3_4 * J.wb_5_z;
-    D[5][3] = -D1_1_3 * J.wa_6_x - D1_3 * J.wa_6_y - D1_1 * J.wa_6_z;
-    D[5][4] = D1_3_2 * J.wa_6_x + D1_1 * J.wa_6_y - D1_3 * J.wa_6_z;
-    D[5][5] = D1_3_2 * J.wa_6_y - D1_1 * J.wa_6_x + D1_1_3 * J.wa_6_z;
-    D[5][6] = D1_3 * J.wa_6_x - D1_1_3 * J.wa_6_y + D1_3_2 * J.wa_6_z;
-    D[5][10] = -D1_1_7 * J.wb_6_x - D1_3_3 * J.wb_6_y - D1_1_5 * J.wb_6_z;
-    D[5][11] = D1_3_4 * J.wb_6_x + D1_1_5 * J.wb_6_y - D1_3_3 * J.wb_6_z;
-    D[5][12] = D1_3_4 * J.wb_6_y - D1_1_5 * J.wb_6_x + D1_1_7 * J.wb_6_z;
-    D[5][13] = D1_3_3 * J.wb_6_x - D1_1_7 * J.wb_6_y + D1_3_4 * J.wb_6_z;
+    D[3][10] = D1_1_7 * J.wa_4_x - D1_3_3 * J.wb_4_y - D1_1_5 * J.wb_4_z;
+    D[3][11] = D1_1_5 * J.wb_4_y - D1_3_4 * J.wa_4_x - D1_3_3 * J.wb_4_z;
+    D[3][12] = D1_1_5 * J.wa_4_x + D1_3_4 * J.wb_4_y + D1_1_7 * J.wb_4_z;
+    D[3][13] = D1_3_4 * J.wb_4_z - D1_3_3 * J.wa_4_x - D1_1_7 * J.wb_4_y;
+    D[4][3] = D1_1_3 * J.wb_4_y - D1_3 * J.wa_5_y - D1_1 * J.wa_5_z;
+    D[4][4] = D1_1 * J.wa_5_y - D1_3 * J.wa_5_z - D1_3_2 * J.wb_4_y;
+    D[4][5] = D1_3_2 * J.wa_5_y + D1_1_3 * J.wa_5_z + D1_1 * J.wb_4_y;
+    D[4][6] = D1_3_2 * J.wa_5_z - D1_1_3 * J.wa_5_y - D1_3 * J.wb_4_y;
+    D[4][10] = D1_1_7 * J.wa_4_y + D1_3_3 * J.wa_5_y - D1_1_5 * J.wb_5_z;
+    D[4][11] = -D1_3_4 * J.wa_4_y - D1_1_5 * J.wa_5_y - D1_3_3 * J.wb_5_z;
+    D[4][12] = D1_1_5 * J.wa_4_y - D1_3_4 * J.wa_5_y + D1_1_7 * J.wb_5_z;
+    D[4][13] = D1_1_7 * J.wa_5_y - D1_3_3 * J.wa_4_y + D1_3_4 * J.wb_5_z;
+    D[5][3] = D1_1_3 * J.wb_4_z - D1_1 * J.wa_6_z + D1_3 * J.wb_5_z;
+    D[5][4] = -D1_3 * J.wa_6_z - D1_3_2 * J.wb_4_z - D1_1 * J.wb_5_z;
+    D[5][5] = D1_1_3 * J.wa_6_z + D1_1 * J.wb_4_z - D1_3_2 * J.wb_5_z;
+    D[5][6] = D1_3_2 * J.wa_6_z - D1_3 * J.wb_4_z + D1_1_3 * J.wb_5_z;
+    D[5][10] = D1_1_7 * J.wa_4_z + D1_3_3 * J.wa_5_z + D1_1_5 * J.wa_6_z;
+    D[5][11] = D1_3_3 * J.wa_6_z - D1_3_4 * J.wa_4_z - D1_1_5 * J.wa_5_z;
+    D[5][12] = D1_1_5 * J.wa_4_z - D1_3_4 * J.wa_5_z - D1_1_7 * J.wa_6_z;
+    D[5][13] = D1_1_7 * J.wa_5_z - D1_3_3 * J.wa_4_z - D1_3_4 * J.wa_6_z;
   }
 
-  // -Jdot v - d/dt(dC/dt): 144 +, 204 *
+  // -Jdot v - d/dt(dC/dt): 138 +, 198 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[6]) {
@@ -854,46 +825,46 @@ struct fixed {
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
     const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
     const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
-    const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
     const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
     const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
     const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
     const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-    const T g4_1 = fa_x_x * w_b_x_fb_x_y + fa_y_x * w_b_x_fb_y_y + fa_z_x * w_b_x_fb_z_y + fb_x_y *
-        w_a_x_fa_x_x + fb_y_y * w_a_x_fa_y_x + fb_z_y * w_a_x_fa_z_x;
+    const T fb_z_x = fb_x_y * fb_y_z - fb_y_y * fb_x_z;
+    const T fb_z_y = fb_y_x * fb_x_z - fb_x_x * fb_y_z;
+    const T fb_z_z = fb_x_x * fb_y_y - fb_y_x * fb_x_y;
+    const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
+    const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
+    const T g4_1 = fa_x_x * w_b_x_fb_x_y + fa_y_x * w_b_x_fb_y_y + fb_x_y * w_a_x_fa_x_x + fb_y_y *
+        w_a_x_fa_y_x + w_a_x_fa_z_x * fb_z_y + w_b_x_fb_z_y * fa_z_x;
     const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
     const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
     const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
-    const T g4_2 = fa_x_x * w_b_x_fb_x_z + fa_y_x * w_b_x_fb_y_z + fa_z_x * w_b_x_fb_z_z + fb_x_z *
-        w_a_x_fa_x_x + fb_y_z * w_a_x_fa_y_x + fb_z_z * w_a_x_fa_z_x;
-    const T g4_3 = fa_x_y * w_b_x_fb_x_x + fa_y_y * w_b_x_fb_y_x + fa_z_y * w_b_x_fb_z_x + fb_x_x *
-        w_a_x_fa_x_y + fb_y_x * w_a_x_fa_y_y + fb_z_x * w_a_x_fa_z_y;
+    const T g4_2 = fa_x_x * w_b_x_fb_x_z + fa_y_x * w_b_x_fb_y_z + fb_x_z * w_a_x_fa_x_x + fb_y_z *
+        w_a_x_fa_y_x + w_a_x_fa_z_x * fb_z_z + w_b_x_fb_z_z * fa_z_x;
+    const T g4_3 = fa_x_y * w_b_x_fb_x_x + fa_y_y * w_b_x_fb_y_x + fb_x_x * w_a_x_fa_x_y + fb_y_x *
+        w_a_x_fa_y_y + w_a_x_fa_z_y * fb_z_x + w_b_x_fb_z_x * fa_z_y;
     const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
     const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
     const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-    const T g4_4 = fa_x_z * w_b_x_fb_x_x + fa_y_z * w_b_x_fb_y_x + fa_z_z * w_b_x_fb_z_x + fb_x_x *
-        w_a_x_fa_x_z + fb_y_x * w_a_x_fa_y_z + fb_z_x * w_a_x_fa_z_z;
-    const T g4_5 = fb_z_y * w_a_x_fa_z_y + fb_y_y * w_a_x_fa_y_y + fb_x_y * w_a_x_fa_x_y + fa_z_y *
-        w_b_x_fb_z_y + fa_x_y * w_b_x_fb_x_y + fa_y_y * w_b_x_fb_y_y;
-    const T g4_6 = fb_z_z * w_a_x_fa_z_z + fb_y_z * w_a_x_fa_y_z + fb_x_z * w_a_x_fa_x_z + fa_z_z *
-        w_b_x_fb_z_z + fa_x_z * w_b_x_fb_x_z + fa_y_z * w_b_x_fb_y_z;
-    const T g5_1 = fa_x_y * w_b_x_fb_x_z + fa_y_y * w_b_x_fb_y_z + fa_z_y * w_b_x_fb_z_z + fb_x_z *
-        w_a_x_fa_x_y + fb_y_z * w_a_x_fa_y_y + fb_z_z * w_a_x_fa_z_y;
-    const T g5_2 = fa_x_z * w_b_x_fb_x_y + fa_y_z * w_b_x_fb_y_y + fa_z_z * w_b_x_fb_z_y + fb_x_y *
-        w_a_x_fa_x_z + fb_y_y * w_a_x_fa_y_z + fb_z_y * w_a_x_fa_z_z;
-    const T g5_3 = fb_z_x * w_a_x_fa_z_x + fb_y_x * w_a_x_fa_y_x + fb_x_x * w_a_x_fa_x_x + fa_z_x *
-        w_b_x_fb_z_x + fa_x_x * w_b_x_fb_x_x + fa_y_x * w_b_x_fb_y_x;
+    const T g4_4 = fa_x_z * w_b_x_fb_x_x + fa_y_z * w_b_x_fb_y_x + fb_x_x * w_a_x_fa_x_z + fb_y_x *
+        w_a_x_fa_y_z + w_a_x_fa_z_z * fb_z_x + w_b_x_fb_z_x * fa_z_z;
+    const T g4_5 = w_b_x_fb_z_y * fa_z_y + w_a_x_fa_z_y * fb_z_y + fb_y_y * w_a_x_fa_y_y + fb_x_y *
+        w_a_x_fa_x_y + fa_x_y * w_b_x_fb_x_y + fa_y_y * w_b_x_fb_y_y;
+    const T g4_6 = w_b_x_fb_z_z * fa_z_z + w_a_x_fa_z_z * fb_z_z + fb_y_z * w_a_x_fa_y_z + fb_x_z *
+        w_a_x_fa_x_z + fa_x_z * w_b_x_fb_x_z + fa_y_z * w_b_x_fb_y_z;
+    const T g5_1 = fa_x_y * w_b_x_fb_x_z + fa_y_y * w_b_x_fb_y_z + fb_x_z * w_a_x_fa_x_y + fb_y_z *
+        w_a_x_fa_y_y + w_a_x_fa_z_y * fb_z_z + w_b_x_fb_z_z * fa_z_y;
+    const T g5_2 = fa_x_z * w_b_x_fb_x_y + fa_y_z * w_b_x_fb_y_y + fb_x_y * w_a_x_fa_x_z + fb_y_y *
+        w_a_x_fa_y_z + w_a_x_fa_z_z * fb_z_y + w_b_x_fb_z_y * fa_z_z;
+    const T g5_3 = w_b_x_fb_z_x * fa_z_x + w_a_x_fa_z_x * fb_z_x + fb_y_x * w_a_x_fa_y_x + fb_x_x *
+        w_a_x_fa_x_x + fa_x_x * w_b_x_fb_x_x + fa_y_x * w_b_x_fb_y_x;
     g[0] = w_a_x_ra_x_w_a_x - w_b_x_rb_x_w_b_x;
     g[1] = w_a_x_ra_x_w_a_y - w_b_x_rb_x_w_b_y;
     g[2] = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
@@ -916,7 +887,7 @@ struct fixed {
     C_t[5] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 205 +, 290 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 199 +, 284 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[6],
       T (&H)[12][12]) {
@@ -925,35 +896,35 @@ struct fixed {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T H4_1 = T(0.5) * (lambda[5] * fb_z_x - lambda[3] * fb_z_z);
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
     const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+    const T fb_z_z = fb_x_x * fb_y_y - fb_y_x * fb_x_y;
+    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+    const T fb_z_x = fb_x_y * fb_y_z - fb_y_y * fb_x_z;
+    const T fb_z_y = fb_y_x * fb_x_z - fb_x_x * fb_y_z;
+    const T H4_1 = T(0.5) * (lambda[5] * fb_z_x - lambda[3] * fb_z_z);
+    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
     const T H4_2 = T(0.5) * (lambda[5] * fb_y_x - lambda[3] * fb_y_z);
     const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
     const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
     const T H4_3 = T(0.5) * (lambda[5] * fb_x_x - lambda[3] * fb_x_z);
-    const T H4_4 = fa_z_y * H4_1 + fa_y_y * H4_2 - lambda[1] * ra_y + fa_x_y * H4_3;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+    const T H4_4 = H4_1 * fa_z_y + fa_y_y * H4_2 - lambda[1] * ra_y + fa_x_y * H4_3;
     const T H4_5 = T(0.5) * (lambda[4] * fb_z_x - lambda[3] * fb_z_y);
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
     const T H4_6 = T(0.5) * (lambda[4] * fb_y_x - lambda[3] * fb_y_y);
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T H4_7 = T(0.5) * (lambda[4] * fb_x_x - lambda[3] * fb_x_y);
-    const T H4_8 = fa_z_z * H4_5 + fa_y_z * H4_6 + lambda[2] * ra_z + fa_x_z * H4_7;
+    const T H4_8 = H4_5 * fa_z_z + fa_y_z * H4_6 + lambda[2] * ra_z + fa_x_z * H4_7;
     const T H4_1_2 = lambda[3] * T(0.5);
     const T H4_2_2 = fa_z_y * fb_z_z + fa_x_y * fb_x_z + fa_y_y * fb_y_z;
     const T H4_3_2 = fa_z_z * fb_z_y + fa_x_z * fb_x_y + fa_y_z * fb_y_y;
@@ -975,7 +946,7 @@ struct fixed {
     const T H5_1 = T(0.5) * (lambda[5] * fb_x_y - lambda[4] * fb_x_z);
     const T H5_2 = T(0.5) * (lambda[5] * fb_y_y - lambda[4] * fb_y_z);
     const T H5_3 = T(0.5) * (lambda[5] * fb_z_y - lambda[4] * fb_z_z);
-    const T H5_1_2 = fa_z_x * H5_3 + fa_y_x * H5_2 + lambda[0] * ra_x + fa_x_x * H5_1;
+    const T H5_1_2 = H5_3 * fa_z_x + fa_y_x * H5_2 + lambda[0] * ra_x + fa_x_x * H5_1;
     const T H5_1_3 = H4_1_2 * fa_x_x;
     const T H5_2_2 = H5_1_3 + H4_4_3;
     const T H5_3_2 = H4_1_2 * fa_y_x;
@@ -1004,12 +975,12 @@ struct fixed {
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T H10_3_2 = T(0.5) * (lambda[3] * fa_x_z - lambda[5] * fa_x_x);
-    const T H10_4_2 = fb_z_y * H10_1_2 + fb_y_y * H10_2_2 + lambda[1] * rb_y + fb_x_y * H10_3_2;
+    const T H10_4_2 = H10_1_2 * fb_z_y + fb_y_y * H10_2_2 + lambda[1] * rb_y + fb_x_y * H10_3_2;
     const T H10_5_2 = T(0.5) * (lambda[3] * fa_z_y - lambda[4] * fa_z_x);
     const T H10_6_2 = T(0.5) * (lambda[3] * fa_y_y - lambda[4] * fa_y_x);
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T H10_7_2 = T(0.5) * (lambda[3] * fa_x_y - lambda[4] * fa_x_x);
-    const T H10_8_2 = fb_z_z * H10_5_2 + fb_y_z * H10_6_2 - lambda[2] * rb_z + fb_x_z * H10_7_2;
+    const T H10_8_2 = H10_5_2 * fb_z_z + fb_y_z * H10_6_2 - lambda[2] * rb_z + fb_x_z * H10_7_2;
     const T H11_1 = H4_1_2 * fb_x_x;
     const T H11_2 = H11_1 + H10_2;
     const T H11_3 = H4_1_2 * fb_y_x;
@@ -1019,45 +990,45 @@ struct fixed {
     const T H11_1_2 = T(0.5) * (lambda[4] * fa_x_z - lambda[5] * fa_x_y);
     const T H11_2_2 = T(0.5) * (lambda[4] * fa_y_z - lambda[5] * fa_y_y);
     const T H11_3_2 = T(0.5) * (lambda[4] * fa_z_z - lambda[5] * fa_z_y);
-    const T H11_1_3 = fb_z_x * H11_3_2 + fb_y_x * H11_2_2 - lambda[0] * rb_x + fb_x_x * H11_1_2;
+    const T H11_1_3 = H11_3_2 * fb_z_x + fb_y_x * H11_2_2 - lambda[0] * rb_x + fb_x_x * H11_1_2;
     const T H12_1 = H11_1 + H10_1;
     const T H12_2 = H11_3 + H10_4;
     const T H12_3 = H11_5 + H10_7;
     H[3][3] = H4_4 - H4_8;
-    H[3][4] = lambda[1] * ra_x - fa_x_x * H4_3 - fa_y_x * H4_2 - fa_z_x * H4_1;
-    H[3][5] = lambda[2] * ra_x + fa_x_x * H4_7 + fa_y_x * H4_6 + fa_z_x * H4_5;
+    H[3][4] = lambda[1] * ra_x - fa_x_x * H4_3 - fa_y_x * H4_2 - H4_1 * fa_z_x;
+    H[3][5] = lambda[2] * ra_x + fa_x_x * H4_7 + fa_y_x * H4_6 + H4_5 * fa_z_x;
     H[3][9] = H4_4_2;
-    H[3][10] = fb_x_z * H4_5_2 + fb_y_z * H4_8_2 + fb_z_z * H4_11 + lambda[3] * H4_13;
-    H[3][11] = -fb_x_y * H4_5_2 - fb_y_y * H4_8_2 - fb_z_y * H4_11 - H4_1_2 * H4_1_4;
-    H[4][3] = lambda[0] * ra_y + fa_x_y * H5_1 + fa_y_y * H5_2 + fa_z_y * H5_3;
+    H[3][10] = fb_x_z * H4_5_2 + fb_y_z * H4_8_2 + H4_11 * fb_z_z + lambda[3] * H4_13;
+    H[3][11] = -fb_x_y * H4_5_2 - fb_y_y * H4_8_2 - H4_11 * fb_z_y - H4_1_2 * H4_1_4;
+    H[4][3] = lambda[0] * ra_y + fa_x_y * H5_1 + fa_y_y * H5_2 + H5_3 * fa_z_y;
     H[4][4] = -H5_1_2 - H4_8;
-    H[4][5] = lambda[2] * ra_y + fa_x_y * H4_7 + fa_y_y * H4_6 + fa_z_y * H4_5;
-    H[4][9] = -fb_x_z * H5_2_2 - fb_y_z * H5_4 - fb_z_z * H5_6 - H4_1_3 * H4_3_2;
+    H[4][5] = lambda[2] * ra_y + fa_x_y * H4_7 + fa_y_y * H4_6 + H4_5 * fa_z_y;
+    H[4][9] = -fb_x_z * H5_2_2 - fb_y_z * H5_4 - H5_6 * fb_z_z - H4_1_3 * H4_3_2;
     H[4][10] = H5_2_3;
-    H[4][11] = fb_x_x * H5_2_2 + fb_y_x * H5_4 + fb_z_x * H5_6 + H4_1_3 * H5_1_5;
-    H[5][3] = lambda[0] * ra_z + fa_x_z * H5_1 + fa_y_z * H5_2 + fa_z_z * H5_3;
-    H[5][4] = lambda[1] * ra_z - fa_x_z * H4_3 - fa_y_z * H4_2 - fa_z_z * H4_1;
+    H[4][11] = fb_x_x * H5_2_2 + fb_y_x * H5_4 + H5_6 * fb_z_x + H4_1_3 * H5_1_5;
+    H[5][3] = lambda[0] * ra_z + fa_x_z * H5_1 + fa_y_z * H5_2 + H5_3 * fa_z_z;
+    H[5][4] = lambda[1] * ra_z - fa_x_z * H4_3 - fa_y_z * H4_2 - H4_1 * fa_z_z;
     H[5][5] = H4_4 - H5_1_2;
-    H[5][9] = fb_x_y * H6_1 + fb_y_y * H6_2 + fb_z_y * H6_3 + H4_3_3 * H4_2_2;
-    H[5][10] = -fb_x_x * H6_1 - fb_y_x * H6_2 - fb_z_x * H6_3 - lambda[5] * H6_1_2;
+    H[5][9] = fb_x_y * H6_1 + fb_y_y * H6_2 + H6_3 * fb_z_y + H4_3_3 * H4_2_2;
+    H[5][10] = -fb_x_x * H6_1 - fb_y_x * H6_2 - H6_3 * fb_z_x - lambda[5] * H6_1_2;
     H[5][11] = H6_1_3;
     H[9][3] = H4_4_2;
-    H[9][4] = -fa_x_z * H10_3 - fa_y_z * H10_6 - fa_z_z * H10_9 - lambda[3] * H6_1_2;
-    H[9][5] = fa_x_y * H10_3 + fa_y_y * H10_6 + fa_z_y * H10_9 + H4_1_2 * H5_1_5;
+    H[9][4] = -fa_x_z * H10_3 - fa_y_z * H10_6 - H10_9 * fa_z_z - lambda[3] * H6_1_2;
+    H[9][5] = fa_x_y * H10_3 + fa_y_y * H10_6 + H10_9 * fa_z_y + H4_1_2 * H5_1_5;
     H[9][9] = H10_4_2 - H10_8_2;
-    H[9][10] = -lambda[1] * rb_x - fb_x_x * H10_3_2 - fb_y_x * H10_2_2 - fb_z_x * H10_1_2;
-    H[9][11] = fb_x_x * H10_7_2 - lambda[2] * rb_x + fb_y_x * H10_6_2 + fb_z_x * H10_5_2;
-    H[10][3] = fa_x_z * H11_2 + fa_y_z * H11_4 + fa_z_z * H11_6 + H4_1_3 * H4_2_2;
+    H[9][10] = -lambda[1] * rb_x - fb_x_x * H10_3_2 - fb_y_x * H10_2_2 - H10_1_2 * fb_z_x;
+    H[9][11] = fb_x_x * H10_7_2 - lambda[2] * rb_x + fb_y_x * H10_6_2 + H10_5_2 * fb_z_x;
+    H[10][3] = fa_x_z * H11_2 + fa_y_z * H11_4 + H11_6 * fa_z_z + H4_1_3 * H4_2_2;
     H[10][4] = H5_2_3;
-    H[10][5] = -fa_x_x * H11_2 - fa_y_x * H11_4 - fa_z_x * H11_6 - H4_1_3 * H4_1_4;
-    H[10][9] = fb_x_y * H11_1_2 - lambda[0] * rb_y + fb_y_y * H11_2_2 + fb_z_y * H11_3_2;
+    H[10][5] = -fa_x_x * H11_2 - fa_y_x * H11_4 - H11_6 * fa_z_x - H4_1_3 * H4_1_4;
+    H[10][9] = fb_x_y * H11_1_2 - lambda[0] * rb_y + fb_y_y * H11_2_2 + H11_3_2 * fb_z_y;
     H[10][10] = -H11_1_3 - H10_8_2;
-    H[10][11] = fb_x_y * H10_7_2 - lambda[2] * rb_y + fb_y_y * H10_6_2 + fb_z_y * H10_5_2;
-    H[11][3] = -fa_x_y * H12_1 - fa_y_y * H12_2 - fa_z_y * H12_3 - H4_3_3 * H4_3_2;
-    H[11][4] = fa_x_x * H12_1 + fa_y_x * H12_2 + fa_z_x * H12_3 + lambda[5] * H4_13;
+    H[10][11] = fb_x_y * H10_7_2 - lambda[2] * rb_y + fb_y_y * H10_6_2 + H10_5_2 * fb_z_y;
+    H[11][3] = -fa_x_y * H12_1 - fa_y_y * H12_2 - H12_3 * fa_z_y - H4_3_3 * H4_3_2;
+    H[11][4] = fa_x_x * H12_1 + fa_y_x * H12_2 + H12_3 * fa_z_x + lambda[5] * H4_13;
     H[11][5] = H6_1_3;
-    H[11][9] = fb_x_z * H11_1_2 - lambda[0] * rb_z + fb_y_z * H11_2_2 + fb_z_z * H11_3_2;
-    H[11][10] = -lambda[1] * rb_z - fb_x_z * H10_3_2 - fb_y_z * H10_2_2 - fb_z_z * H10_1_2;
+    H[11][9] = fb_x_z * H11_1_2 - lambda[0] * rb_z + fb_y_z * H11_2_2 + H11_3_2 * fb_z_z;
+    H[11][10] = -lambda[1] * rb_z - fb_x_z * H10_3_2 - fb_y_z * H10_2_2 - H10_1_2 * fb_z_z;
     H[11][11] = H10_4_2 - H11_1_3;
   }
 
@@ -1122,7 +1093,7 @@ struct fixed::a_immovable : fixed {
     T rb_z, rb_y, rb_x, wb_4_x, wb_4_y, wb_4_z, wb_5_x, wb_5_y, wb_5_z, wb_6_x, wb_6_y, wb_6_z;
   };
 
-  // C and J: 93 +, 111 *
+  // C and J: 75 +, 105 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[6],
       Jacobian<T>& J) {
@@ -1136,69 +1107,48 @@ struct fixed::a_immovable : fixed {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T C4_1 = fa_x_y * fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T C4_2 = fa_x_z * fb_x_y;
-    const T fa_x_x_fb_x_x = C4_1 - C4_2;
-    const T C4_3 = fa_x_x * fb_x_z;
-    const T C4_4 = fa_x_z * fb_x_x;
-    const T fa_x_x_fb_x_y = C4_4 - C4_3;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T C4_5 = fa_y_y * fb_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
     const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T C4_6 = fa_y_z * fb_y_y;
-    const T fa_y_x_fb_y_x = C4_5 - C4_6;
-    const T C4_7 = fa_y_x * fb_y_z;
-    const T C4_8 = fa_y_z * fb_y_x;
-    const T fa_y_x_fb_y_y = C4_8 - C4_7;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T C4_9 = fa_z_y * fb_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T C4_10 = fa_z_z * fb_z_y;
-    const T fa_z_x_fb_z_x = C4_9 - C4_10;
-    const T C4_11 = fa_z_x * fb_z_z;
-    const T C4_12 = fa_z_z * fb_z_x;
-    const T fa_z_x_fb_z_y = C4_12 - C4_11;
-    const T C6_1 = fa_x_x * fb_x_y;
-    const T C6_2 = fa_x_y * fb_x_x;
-    const T fa_x_x_fb_x_z = C6_1 - C6_2;
-    const T C6_3 = fa_y_x * fb_y_y;
-    const T C6_4 = fa_y_y * fb_y_x;
-    const T fa_y_x_fb_y_z = C6_3 - C6_4;
-    const T C6_5 = fa_z_x * fb_z_y;
-    const T C6_6 = fa_z_y * fb_z_x;
-    const T fa_z_x_fb_z_z = C6_5 - C6_6;
+    const T fb_z_z = fb_x_x * fb_y_y - fb_y_x * fb_x_y;
+    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+    const T C4_1 = fa_z_y * fb_z_z + fa_x_y * fb_x_z + fa_y_y * fb_y_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    const T fb_z_x = fb_x_y * fb_y_z - fb_y_y * fb_x_z;
+    const T fb_z_y = fb_y_x * fb_x_z - fb_x_x * fb_y_z;
+    const T C4_2 = fa_z_z * fb_z_y + fa_x_z * fb_x_y + fa_y_z * fb_y_y;
+    const T C5_1 = fa_z_x * fb_z_z + fa_x_x * fb_x_z + fa_y_x * fb_y_z;
+    const T C5_2 = fa_z_z * fb_z_x + fa_x_z * fb_x_x + fa_y_z * fb_y_x;
+    const T C6_1 = fa_z_x * fb_z_y + fa_x_x * fb_x_y + fa_y_x * fb_y_y;
+    const T C6_2 = fa_z_y * fb_z_x + fa_x_y * fb_x_x + fa_y_y * fb_y_x;
     const T wb_4_x_1 = fa_z_y * fb_z_y + fa_x_y * fb_x_y + fa_y_y * fb_y_y;
     const T wb_4_x_2 = fa_z_z * fb_z_z + fa_x_z * fb_x_z + fa_y_z * fb_y_z;
     const T wb_5_y_1 = fa_z_x * fb_z_x + fa_x_x * fb_x_x + fa_y_x * fb_y_x;
     C[0] = a.x - b.x + ra_x - rb_x;
     C[1] = a.y - b.y + ra_y - rb_y;
     C[2] = a.z - b.z + ra_z - rb_z;
-    C[3] = T(0.5) * (fa_x_x_fb_x_x + fa_y_x_fb_y_x + fa_z_x_fb_z_x);
-    C[4] = T(0.5) * (fa_x_x_fb_x_y + fa_y_x_fb_y_y + fa_z_x_fb_z_y);
-    C[5] = T(0.5) * (fa_x_x_fb_x_z + fa_y_x_fb_y_z + fa_z_x_fb_z_z);
+    C[3] = T(0.5) * (C4_1 - C4_2);
+    C[4] = T(0.5) * (C5_2 - C5_1);
+    C[5] = T(0.5) * (C6_1 - C6_2);
     J.rb_z = rb_z;
     J.rb_y = rb_y;
     J.rb_x = rb_x;
     J.wb_4_x = T(0.5) * (wb_4_x_1 + wb_4_x_2);
-    J.wb_4_y = T(-0.5) * (C6_2 + C6_4 + C6_6);
-    J.wb_4_z = T(-0.5) * (C4_4 + C4_8 + C4_12);
-    J.wb_5_x = T(-0.5) * (C6_1 + C6_3 + C6_5);
+    J.wb_4_y = T(-0.5) * C6_2;
+    J.wb_4_z = T(-0.5) * C5_2;
+    J.wb_5_x = T(-0.5) * C6_1;
     J.wb_5_y = T(0.5) * (wb_5_y_1 + wb_4_x_2);
-    J.wb_5_z = T(-0.5) * (C4_2 + C4_6 + C4_10);
-    J.wb_6_x = T(-0.5) * (C4_3 + C4_7 + C4_11);
-    J.wb_6_y = T(-0.5) * (C4_1 + C4_5 + C4_9);
+    J.wb_5_z = T(-0.5) * C4_2;
+    J.wb_6_x = T(-0.5) * C5_1;
+    J.wb_6_y = T(-0.5) * C4_1;
     J.wb_6_z = T(0.5) * (wb_4_x_1 + wb_5_y_1);
   }
 
@@ -1439,7 +1389,7 @@ struct fixed::b_immovable : fixed {
     T ra_z, ra_y, ra_x, wa_4_x, wa_4_y, wa_4_z, wa_5_x, wa_5_y, wa_5_z, wa_6_x, wa_6_y, wa_6_z;
   };
 
-  // C and J: 93 +, 111 *
+  // C and J: 75 +, 105 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[6],
       Jacobian<T>& J) {
@@ -1453,69 +1403,48 @@ struct fixed::b_immovable : fixed {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T C4_1 = fa_x_y * fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T C4_2 = fa_x_z * fb_x_y;
-    const T fa_x_x_fb_x_x = C4_1 - C4_2;
-    const T C4_3 = fa_x_x * fb_x_z;
-    const T C4_4 = fa_x_z * fb_x_x;
-    const T fa_x_x_fb_x_y = C4_4 - C4_3;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
     const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T C4_5 = fa_y_y * fb_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T C4_6 = fa_y_z * fb_y_y;
-    const T fa_y_x_fb_y_x = C4_5 - C4_6;
-    const T C4_7 = fa_y_x * fb_y_z;
-    const T C4_8 = fa_y_z * fb_y_x;
-    const T fa_y_x_fb_y_y = C4_8 - C4_7;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T C4_9 = fa_z_y * fb_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T C4_10 = fa_z_z * fb_z_y;
-    const T fa_z_x_fb_z_x = C4_9 - C4_10;
-    const T C4_11 = fa_z_x * fb_z_z;
-    const T C4_12 = fa_z_z * fb_z_x;
-    const T fa_z_x_fb_z_y = C4_12 - C4_11;
-    const T C6_1 = fa_x_x * fb_x_y;
-    const T C6_2 = fa_x_y * fb_x_x;
-    const T fa_x_x_fb_x_z = C6_1 - C6_2;
-    const T C6_3 = fa_y_x * fb_y_y;
-    const T C6_4 = fa_y_y * fb_y_x;
-    const T fa_y_x_fb_y_z = C6_3 - C6_4;
-    const T C6_5 = fa_z_x * fb_z_y;
-    const T C6_6 = fa_z_y * fb_z_x;
-    const T fa_z_x_fb_z_z = C6_5 - C6_6;
+    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+    const T fb_z_x = fb_x_y * fb_y_z - fb_y_y * fb_x_z;
+    const T fb_z_y = fb_y_x * fb_x_z - fb_x_x * fb_y_z;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T C4_1 = fa_z_z * fb_z_y + fa_x_z * fb_x_y + fa_y_z * fb_y_y;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+    const T fb_z_z = fb_x_x * fb_y_y - fb_y_x * fb_x_y;
+    const T C4_2 = fa_z_y * fb_z_z + fa_x_y * fb_x_z + fa_y_y * fb_y_z;
+    const T C5_1 = fa_z_z * fb_z_x + fa_x_z * fb_x_x + fa_y_z * fb_y_x;
+    const T C5_2 = fa_z_x * fb_z_z + fa_x_x * fb_x_z + fa_y_x * fb_y_z;
+    const T C6_1 = fa_z_y * fb_z_x + fa_x_y * fb_x_x + fa_y_y * fb_y_x;
+    const T C6_2 = fa_z_x * fb_z_y + fa_x_x * fb_x_y + fa_y_x * fb_y_y;
     const T wa_4_x_1 = fa_z_y * fb_z_y + fa_x_y * fb_x_y + fa_y_y * fb_y_y;
     const T wa_4_x_2 = fa_z_z * fb_z_z + fa_x_z * fb_x_z + fa_y_z * fb_y_z;
     const T wa_5_y_1 = fa_z_x * fb_z_x + fa_x_x * fb_x_x + fa_y_x * fb_y_x;
     C[0] = a.x - b.x + ra_x - rb_x;
     C[1] = a.y - b.y + ra_y - rb_y;
     C[2] = a.z - b.z + ra_z - rb_z;
-    C[3] = T(0.5) * (fa_x_x_fb_x_x + fa_y_x_fb_y_x + fa_z_x_fb_z_x);
-    C[4] = T(0.5) * (fa_x_x_fb_x_y + fa_y_x_fb_y_y + fa_z_x_fb_z_y);
-    C[5] = T(0.5) * (fa_x_x_fb_x_z + fa_y_x_fb_y_z + fa_z_x_fb_z_z);
+    C[3] = T(0.5) * (C4_2 - C4_1);
+    C[4] = T(0.5) * (C5_1 - C5_2);
+    C[5] = T(0.5) * (C6_2 - C6_1);
     J.ra_z = ra_z;
     J.ra_y = ra_y;
     J.ra_x = ra_x;
     J.wa_4_x = T(-0.5) * (wa_4_x_1 + wa_4_x_2);
-    J.wa_4_y = T(0.5) * (C6_1 + C6_3 + C6_5);
-    J.wa_4_z = T(0.5) * (C4_3 + C4_7 + C4_11);
-    J.wa_5_x = T(0.5) * (C6_2 + C6_4 + C6_6);
+    J.wa_4_y = T(0.5) * C6_2;
+    J.wa_4_z = T(0.5) * C5_2;
+    J.wa_5_x = T(0.5) * C6_1;
     J.wa_5_y = T(-0.5) * (wa_5_y_1 + wa_4_x_2);
-    J.wa_5_z = T(0.5) * (C4_1 + C4_5 + C4_9);
-    J.wa_6_x = T(0.5) * (C4_4 + C4_8 + C4_12);
-    J.wa_6_y = T(0.5) * (C4_2 + C4_6 + C4_10);
+    J.wa_5_z = T(0.5) * C4_2;
+    J.wa_6_x = T(0.5) * C5_1;
+    J.wa_6_y = T(0.5) * C4_1;
     J.wa_6_z = T(-0.5) * (wa_4_x_1 + wa_5_y_1);
   }
 

@@ -6,14 +6,11 @@
 // ub = pb - g
 // s = (e · ub)/radius
 // turned = sin(s) ga_z + cos(s) ga_y
+// s1 = cos(s) (ga_z · fa_z) - sin(s) (ga_y · fa_z)
 // C = fa_z · turned
-// J = [ 0
-//     | -(turned × fa_z)'
-//     | ((cos(s) (ga_z · fa_z) - sin(s) (ga_y · fa_z))/radius) e'
-//     | ((cos(s) (ga_z · fa_z) - sin(s) (ga_y · fa_z))/radius) (rb × e)' ]  (columns v_a | w_a |
-//         v_b | w_b)
-// K = inv_m_b (cos(s) (ga_z · fa_z) - sin(s) (ga_y · fa_z))^2/radius^2
-//     + (cos(s) (ga_z · fa_z) - sin(s) (ga_y · fa_z))^2 (rb × e)' inv_I_b (rb × e)/radius^2
+// J = [ 0 | -(turned × fa_z)' | (s1/radius) e' | (s1/radius) (rb × e)' ]  (columns v_a | w_a | v_b
+//     | w_b)
+// K = inv_m_b s1^2/radius^2 + s1^2 (rb × e)' inv_I_b (rb × e)/radius^2
 //     + (turned × fa_z)' inv_I_a (turned × fa_z)
 //
 // coordinate slide = e · ub

@@ -103,30 +103,29 @@ struct rolling_disc {
     C[2] = T(0);
   }
 
-  // C and J: 74 +, 112 *, 1 /, 1 sqrt, 4 <
+  // C and J: 71 +, 109 *, 1 /, 1 sqrt, 4 <
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[3],
       Jacobian<T>& J) {
     using std::sqrt;
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T u_x = b.x - a.x - ra_x;
-    const T u_y = b.y - a.y - ra_y;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T u_z = b.z - a.z - ra_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T dot_u_fa_x = u_x * fa_x_x + u_y * fa_x_y + u_z * fa_x_z;
     const T k_x = b.xx * p.k_x + b.xy * p.k_y + b.xz * p.k_z;
     const T k_y = b.yx * p.k_x + b.yy * p.k_y + b.yz * p.k_z;
     const T m_z = fa_x_x * k_y - fa_x_y * k_x;
     const T k_z = b.zx * p.k_x + b.zy * p.k_y + b.zz * p.k_z;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T m_x = fa_x_y * k_z - fa_x_z * k_y;
     const T m_y = fa_x_z * k_x - fa_x_x * k_z;
     const T m_len = sqrt(m_z * m_z + m_y * m_y + m_x * m_x);
+    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
+    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
+    const T u_x = b.x - a.x - ra_x;
+    const T u_y = b.y - a.y - ra_y;
+    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T u_z = b.z - a.z - ra_z;
     const T inv_m_len = inverse(m_len);
     const T dir_m_z = select(m_len > smallest<T>(), m_z * inv_m_len, T(0));
     const T dir_m_x = select(m_len > smallest<T>(), m_x * inv_m_len, T(1));
@@ -143,10 +142,10 @@ struct rolling_disc {
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    C[0] = dot_u_fa_x - p.radius * m_len;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    C[0] = u_x * fa_x_x - p.radius * m_len + u_y * fa_x_y + u_z * fa_x_z;
     C[1] = T(0);
     C[2] = T(0);
     J.fa_x_x = fa_x_x;
@@ -683,7 +682,7 @@ struct rolling_disc {
         J.k_x_dir_m_x_fa_z_z;
   }
 
-  // -Jdot v - d/dt(dC/dt): 172 +, 228 *, 1 /, 1 sqrt, 4 <
+  // -Jdot v - d/dt(dC/dt): 169 +, 225 *, 1 /, 1 sqrt, 4 <
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[3]) {
@@ -812,9 +811,9 @@ struct rolling_disc {
     const T w_a_x_arm_a_dot_y = va.wz * arm_a_dot_x - va.wx * arm_a_dot_z;
     const T g2_10 = g2_9 * vb.wx - w_a_x_arm_a_dot_y - g2_6 * vb.wz;
     const T g2_11 = g2_7 * vb.wz - w_a_x_arm_a_dot_x - g2_9 * vb.wy;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
     const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
     const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
     const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
@@ -834,7 +833,7 @@ struct rolling_disc {
     C_t[2] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 256 +, 383 *, 1 /, 1 sqrt, 4 <
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 241 +, 362 *, 1 /, 1 sqrt, 4 <
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[3],
       T (&H)[12][12]) {
@@ -845,17 +844,17 @@ struct rolling_disc {
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
     const T H1_1 = lambda[1] * fa_y_z + lambda[2] * fa_z_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T H1_2 = H1_1 + lambda[0] * fa_x_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
     const T H1_1_2 = lambda[1] * fa_y_y + lambda[2] * fa_z_y;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
     const T H1_2_2 = H1_1_2 + lambda[0] * fa_x_y;
     const T H2_1 = lambda[1] * fa_y_x + lambda[2] * fa_z_x;
     const T H2_2 = H2_1 + lambda[0] * fa_x_x;
@@ -884,140 +883,134 @@ struct rolling_disc {
     const T k_x_dir_m_y = H4_10 - H4_9;
     const T arm_a_x = b.x - a.x - p.radius * k_x_dir_m_x;
     const T arm_a_y = b.y - a.y - p.radius * k_x_dir_m_y;
-    const T H4_11 = arm_a_y * fa_y_y;
+    const T H4_11 = arm_a_y * H1_1_2;
     const T H4_12 = k_x * dir_m_y;
     const T H4_13 = k_y * dir_m_x;
     const T k_x_dir_m_z = H4_12 - H4_13;
     const T arm_a_z = b.z - a.z - p.radius * k_x_dir_m_z;
-    const T H4_14 = arm_a_z * fa_y_z;
-    const T H4_15 = arm_a_y * fa_z_y;
-    const T H4_16 = arm_a_z * fa_z_z;
-    const T H4_17 = lambda[0] * arm_a_y;
-    const T H4_18 = p.radius * inv_m_len;
-    const T H4_19 = k_x * H4_18;
-    const T H4_20 = k_y * H1_2_2;
-    const T H4_21 = k_z * H1_2;
-    const T H4_22 = H4_20 + H4_21;
-    const T H4_23 = H1_2_2 * dir_m_y;
-    const T H4_24 = H1_2 * dir_m_z;
-    const T H4_25 = H4_23 + H4_24;
-    const T H4_26 = H4_18 * (H4_22 * dir_m_x - k_x * H4_25);
-    const T H4_27 = H4_19 * H1_2_2 + H4_26 * dir_m_y;
-    const T H4_28 = H4_18 * H4_22 - H4_26 * dir_m_x;
-    const T H4_29 = H4_17 + k_x * H4_27 + k_y * H4_28;
-    const T H4_30 = lambda[0] * arm_a_z;
-    const T H4_31 = H4_19 * H1_2 + H4_26 * dir_m_z;
-    const T H4_32 = H4_30 + k_x * H4_31 + k_z * H4_28;
-    const T H4_1_2 = k_z * H4_27 - k_y * H4_31;
+    const T H4_14 = arm_a_z * H1_1;
+    const T H4_15 = lambda[0] * arm_a_y;
+    const T H4_16 = p.radius * inv_m_len;
+    const T H4_17 = k_x * H4_16;
+    const T H4_18 = k_y * H1_2_2;
+    const T H4_19 = k_z * H1_2;
+    const T H4_20 = H4_18 + H4_19;
+    const T H4_21 = H1_2_2 * dir_m_y;
+    const T H4_22 = H1_2 * dir_m_z;
+    const T H4_23 = H4_21 + H4_22;
+    const T H4_24 = H4_16 * (H4_20 * dir_m_x - k_x * H4_23);
+    const T H4_25 = H4_17 * H1_2_2 + H4_24 * dir_m_y;
+    const T H4_26 = H4_16 * H4_20 - H4_24 * dir_m_x;
+    const T H4_27 = H4_15 + k_x * H4_25 + k_y * H4_26;
+    const T H4_28 = lambda[0] * arm_a_z;
+    const T H4_29 = H4_17 * H1_2 + H4_24 * dir_m_z;
+    const T H4_30 = H4_28 + k_x * H4_29 + k_z * H4_26;
+    const T H4_1_2 = k_z * H4_25 - k_y * H4_29;
     const T H4_1_3 = p.radius * dir_m_x;
-    const T H4_2_2 = H4_1_3 * H1_2 + fa_x_x * H4_27 + fa_x_y * H4_28;
-    const T H4_3_2 = H4_1_3 * H1_2_2 - fa_x_x * H4_31 - fa_x_z * H4_28;
-    const T H4_1_4 = fa_x_y * H4_31 - p.radius * H4_25 - fa_x_z * H4_27;
+    const T H4_2_2 = H4_1_3 * H1_2 + fa_x_x * H4_25 + fa_x_y * H4_26;
+    const T H4_3_2 = H4_1_3 * H1_2_2 - fa_x_x * H4_29 - fa_x_z * H4_26;
+    const T H4_1_4 = fa_x_y * H4_29 - p.radius * H4_23 - fa_x_z * H4_25;
     const T H5_1 = lambda[0] * arm_a_x;
     const T H5_2 = k_x * H2_2;
-    const T H5_3 = H5_2 + H4_21;
+    const T H5_3 = H5_2 + H4_19;
     const T H5_4 = H2_2 * dir_m_x;
-    const T H5_5 = H5_4 + H4_24;
-    const T H5_6 = H4_18 * (H5_3 * dir_m_y - k_y * H5_5);
-    const T H5_7 = H5_6 * dir_m_y - H4_18 * H5_3;
-    const T H5_8 = k_y * H4_18;
+    const T H5_5 = H5_4 + H4_22;
+    const T H5_6 = H4_16 * (H5_3 * dir_m_y - k_y * H5_5);
+    const T H5_7 = H5_6 * dir_m_y - H4_16 * H5_3;
+    const T H5_8 = k_y * H4_16;
     const T H5_9 = H5_8 * H2_2 + H5_6 * dir_m_x;
     const T H5_10 = H5_1 - k_x * H5_7 + k_y * H5_9;
     const T H5_11 = H5_8 * H1_2 + H5_6 * dir_m_z;
     const T H5_12 = k_x * H5_11 - k_z * H5_9;
-    const T H5_1_2 = arm_a_x * fa_y_x;
-    const T H5_2_2 = arm_a_x * fa_z_x;
-    const T H5_3_2 = k_z * H5_7 - H4_30 - k_y * H5_11;
+    const T H5_1_2 = arm_a_x * H2_1;
+    const T H5_2_2 = k_z * H5_7 - H4_28 - k_y * H5_11;
     const T H5_1_3 = p.radius * dir_m_y;
     const T H5_2_3 = H5_1_3 * H1_2 + fa_x_x * H5_7 - fa_x_y * H5_9;
-    const T H5_3_3 = fa_x_z * H5_9 - p.radius * H5_5 - fa_x_x * H5_11;
+    const T H5_3_2 = fa_x_z * H5_9 - p.radius * H5_5 - fa_x_x * H5_11;
     const T H5_1_4 = H5_1_3 * H2_2 + fa_x_y * H5_11 - fa_x_z * H5_7;
-    const T H6_1 = k_z * H4_18;
-    const T H6_2 = H5_2 + H4_20;
-    const T H6_3 = H5_4 + H4_23;
-    const T H6_4 = H4_18 * (H6_2 * dir_m_z - k_z * H6_3);
+    const T H6_1 = k_z * H4_16;
+    const T H6_2 = H5_2 + H4_18;
+    const T H6_3 = H5_4 + H4_21;
+    const T H6_4 = H4_16 * (H6_2 * dir_m_z - k_z * H6_3);
     const T H6_5 = H6_1 * H1_2_2 + H6_4 * dir_m_y;
     const T H6_6 = H6_1 * H2_2 + H6_4 * dir_m_x;
     const T H6_7 = k_x * H6_5 - k_y * H6_6;
-    const T H6_8 = H4_18 * H6_2 - H6_4 * dir_m_z;
+    const T H6_8 = H4_16 * H6_2 - H6_4 * dir_m_z;
     const T H6_9 = H5_1 + k_x * H6_8 + k_z * H6_6;
-    const T H6_1_2 = H4_17 + k_y * H6_8 + k_z * H6_5;
+    const T H6_1_2 = H4_15 + k_y * H6_8 + k_z * H6_5;
     const T H6_1_3 = fa_x_x * H6_5 - p.radius * H6_3 - fa_x_y * H6_6;
     const T H6_2_2 = p.radius * dir_m_z;
     const T H6_3_2 = H6_2_2 * H1_2_2 + fa_x_x * H6_8 + fa_x_z * H6_6;
     const T H6_1_4 = H6_2_2 * H2_2 - fa_x_y * H6_8 - fa_x_z * H6_5;
-    const T H10_1 = lambda[1] * p.radius;
-    const T H10_2 = fa_y_y * k_x_dir_m_y;
-    const T H10_3 = fa_y_z * k_x_dir_m_z;
-    const T H10_4 = lambda[2] * p.radius;
-    const T H10_5 = fa_z_y * k_x_dir_m_y;
-    const T H10_6 = fa_z_z * k_x_dir_m_z;
-    const T H10_7 = lambda[0] * p.radius;
-    const T H10_8 = lambda[0] * H4_18;
-    const T H10_9 = k_x * inv_m_len;
-    const T H10_10 = fa_y_y * H10_1 + fa_z_y * H10_4;
-    const T H10_11 = H4_1 * H10_8 + H10_9 * H10_10;
-    const T H10_12 = fa_y_z * H10_1 + fa_z_z * H10_4;
-    const T H10_13 = H4_5 * H10_8 + H10_9 * H10_12;
-    const T H10_14 = fa_x_y * k_y;
-    const T H10_15 = fa_x_z * k_z;
-    const T H10_16 = k_y * H10_10;
-    const T H10_17 = k_z * H10_12;
-    const T H10_18 = H10_8 * (H10_14 + H10_15) + (H10_16 + H10_17) * inv_m_len;
-    const T H10_19 = H10_18 * dir_m_x - H10_11 * dir_m_y - H10_13 * dir_m_z;
-    const T H10_20 = H10_11 + H10_19 * dir_m_y;
-    const T H10_21 = H10_19 * dir_m_x - H10_18;
-    const T H10_22 = k_x * H10_20 - H4_10 * H10_7 - k_y * H10_21;
-    const T H10_23 = H10_13 + H10_19 * dir_m_z;
-    const T H10_24 = k_z * H10_21 - H4_13 * H10_7 - k_x * H10_23;
+    const T H10_1 = lambda[0] * p.radius;
+    const T H10_2 = lambda[0] * H4_16;
+    const T H10_3 = k_x * inv_m_len;
+    const T H10_4 = lambda[1] * p.radius;
+    const T H10_5 = lambda[2] * p.radius;
+    const T H10_6 = H10_4 * fa_y_y + H10_5 * fa_z_y;
+    const T H10_7 = H4_1 * H10_2 + H10_3 * H10_6;
+    const T H10_8 = H10_4 * fa_y_z + H10_5 * fa_z_z;
+    const T H10_9 = H4_5 * H10_2 + H10_3 * H10_8;
+    const T H10_10 = fa_x_y * k_y;
+    const T H10_11 = fa_x_z * k_z;
+    const T H10_12 = k_y * H10_6;
+    const T H10_13 = k_z * H10_8;
+    const T H10_14 = H10_2 * (H10_10 + H10_11) + (H10_12 + H10_13) * inv_m_len;
+    const T H10_15 = H10_14 * dir_m_x - H10_7 * dir_m_y - H10_9 * dir_m_z;
+    const T H10_16 = H10_7 + H10_15 * dir_m_y;
+    const T H10_17 = H10_15 * dir_m_x - H10_14;
+    const T H10_18 = k_x * H10_16 - H4_10 * H10_1 - k_y * H10_17;
+    const T H10_19 = H10_9 + H10_15 * dir_m_z;
+    const T H10_20 = k_z * H10_17 - H4_13 * H10_1 - k_x * H10_19;
+    const T H10_21 = H10_6 * k_x_dir_m_y;
+    const T H10_22 = H10_8 * k_x_dir_m_z;
     const T H10_1_2 = k_y * dir_m_y;
     const T H10_2_2 = k_z * dir_m_z;
-    const T H10_3_2 = H10_7 * (H10_1_2 + H10_2_2) + k_y * H10_23 - k_z * H10_20;
-    const T H10_4_2 = fa_y_x * H10_1 + fa_z_x * H10_4;
+    const T H10_3_2 = H10_1 * (H10_1_2 + H10_2_2) + k_y * H10_19 - k_z * H10_16;
+    const T H10_4_2 = H10_4 * fa_y_x + H10_5 * fa_z_x;
     const T fa_x_x_dir_m_x = fa_x_y * dir_m_z - fa_x_z * dir_m_y;
     const T fa_x_x_dir_m_y = fa_x_z * dir_m_x - fa_x_x * dir_m_z;
-    const T H10_1_3 = H10_7 * fa_x_x_dir_m_y;
-    const T H10_2_3 = fa_x_y * H10_21 - H10_1_3 - fa_x_x * H10_20 - H10_12 * dir_m_x;
+    const T H10_1_3 = H10_1 * fa_x_x_dir_m_y;
+    const T H10_2_3 = fa_x_y * H10_17 - H10_1_3 - fa_x_x * H10_16 - H10_8 * dir_m_x;
     const T fa_x_x_dir_m_z = fa_x_x * dir_m_y - fa_x_y * dir_m_x;
-    const T H10_3_3 = H10_7 * fa_x_x_dir_m_z;
-    const T H10_4_3 = H10_3_3 + fa_x_x * H10_23 - fa_x_z * H10_21 - H10_10 * dir_m_x;
-    const T H10_1_4 = H10_10 * dir_m_y;
-    const T H10_2_4 = H10_12 * dir_m_z;
-    const T H10_3_4 = fa_x_z * H10_20 - fa_x_y * H10_23 + H10_1_4 + H10_2_4;
+    const T H10_3_3 = H10_1 * fa_x_x_dir_m_z;
+    const T H10_4_3 = H10_3_3 + fa_x_x * H10_19 - fa_x_z * H10_17 - H10_6 * dir_m_x;
+    const T H10_1_4 = H10_6 * dir_m_y;
+    const T H10_2_4 = H10_8 * dir_m_z;
+    const T H10_3_4 = fa_x_z * H10_16 - fa_x_y * H10_19 + H10_1_4 + H10_2_4;
     const T H11_1 = fa_x_x * k_x;
     const T H11_2 = k_x * H10_4_2;
-    const T H11_3 = H10_8 * (H11_1 + H10_15) + (H11_2 + H10_17) * inv_m_len;
+    const T H11_3 = H10_2 * (H11_1 + H10_11) + (H11_2 + H10_13) * inv_m_len;
     const T H11_4 = k_y * inv_m_len;
-    const T H11_5 = H4_2 * H10_8 + H11_4 * H10_4_2;
-    const T H11_6 = H4_3 * H10_8 + H11_4 * H10_12;
+    const T H11_5 = H4_2 * H10_2 + H11_4 * H10_4_2;
+    const T H11_6 = H4_3 * H10_2 + H11_4 * H10_8;
     const T H11_7 = H11_3 * dir_m_y - H11_5 * dir_m_x - H11_6 * dir_m_z;
     const T H11_8 = H11_7 * dir_m_y - H11_3;
     const T H11_9 = H11_5 + H11_7 * dir_m_x;
-    const T H11_10 = k_x * H11_8 - H4_8 * H10_7 - k_y * H11_9;
+    const T H11_10 = k_x * H11_8 - H4_8 * H10_1 - k_y * H11_9;
     const T H11_11 = k_x * dir_m_x;
     const T H11_12 = H11_6 + H11_7 * dir_m_z;
-    const T H11_13 = H10_7 * (H11_11 + H10_2_2) - k_x * H11_12 + k_z * H11_9;
-    const T H11_1_2 = fa_y_x * k_x_dir_m_x;
-    const T H11_2_2 = fa_z_x * k_x_dir_m_x;
-    const T H11_3_2 = k_y * H11_12 - H4_12 * H10_7 - k_z * H11_8;
-    const T H11_1_3 = H10_7 * fa_x_x_dir_m_x;
-    const T H11_2_3 = H11_1_3 - fa_x_x * H11_8 + fa_x_y * H11_9 - H10_12 * dir_m_y;
-    const T H11_3_3 = H10_4_2 * dir_m_x;
-    const T H11_4_2 = fa_x_x * H11_12 - fa_x_z * H11_9 + H11_3_3 + H10_2_4;
+    const T H11_13 = H10_1 * (H11_11 + H10_2_2) - k_x * H11_12 + k_z * H11_9;
+    const T H11_1_2 = k_y * H11_12 - H4_12 * H10_1 - k_z * H11_8;
+    const T H11_2_2 = H10_4_2 * k_x_dir_m_x;
+    const T H11_1_3 = H10_1 * fa_x_x_dir_m_x;
+    const T H11_2_3 = H11_1_3 - fa_x_x * H11_8 + fa_x_y * H11_9 - H10_8 * dir_m_y;
+    const T H11_3_2 = H10_4_2 * dir_m_x;
+    const T H11_4_2 = fa_x_x * H11_12 - fa_x_z * H11_9 + H11_3_2 + H10_2_4;
     const T H11_1_4 = fa_x_z * H11_8 - H10_3_3 - fa_x_y * H11_12 - H10_4_2 * dir_m_y;
     const T H12_1 = k_z * inv_m_len;
-    const T H12_2 = H4_4 * H10_8 + H12_1 * H10_10;
-    const T H12_3 = H4_6 * H10_8 + H12_1 * H10_4_2;
-    const T H12_4 = H10_8 * (H11_1 + H10_14) + (H11_2 + H10_16) * inv_m_len;
+    const T H12_2 = H4_4 * H10_2 + H12_1 * H10_6;
+    const T H12_3 = H4_6 * H10_2 + H12_1 * H10_4_2;
+    const T H12_4 = H10_2 * (H11_1 + H10_10) + (H11_2 + H10_12) * inv_m_len;
     const T H12_5 = H12_4 * dir_m_z - H12_3 * dir_m_x - H12_2 * dir_m_y;
     const T H12_6 = H12_2 + H12_5 * dir_m_y;
     const T H12_7 = H12_3 + H12_5 * dir_m_x;
-    const T H12_8 = H10_7 * (H11_11 + H10_1_2) + k_x * H12_6 - k_y * H12_7;
+    const T H12_8 = H10_1 * (H11_11 + H10_1_2) + k_x * H12_6 - k_y * H12_7;
     const T H12_9 = H12_5 * dir_m_z - H12_4;
-    const T H12_10 = k_z * H12_7 - H4_7 * H10_7 - k_x * H12_9;
-    const T H12_1_2 = k_y * H12_9 - H4_9 * H10_7 - k_z * H12_6;
-    const T H12_1_3 = fa_x_y * H12_7 - fa_x_x * H12_6 + H11_3_3 + H10_1_4;
-    const T H12_2_2 = fa_x_x * H12_9 - H11_1_3 - fa_x_z * H12_7 - H10_10 * dir_m_z;
+    const T H12_10 = k_z * H12_7 - H4_7 * H10_1 - k_x * H12_9;
+    const T H12_1_2 = k_y * H12_9 - H4_9 * H10_1 - k_z * H12_6;
+    const T H12_1_3 = fa_x_y * H12_7 - fa_x_x * H12_6 + H11_3_2 + H10_1_4;
+    const T H12_2_2 = fa_x_x * H12_9 - H11_1_3 - fa_x_z * H12_7 - H10_6 * dir_m_z;
     const T H12_1_4 = H10_1_3 - fa_x_y * H12_9 + fa_x_z * H12_6 - H10_4_2 * dir_m_z;
     H[0][4] = -H1_2;
     H[0][5] = H1_2_2;
@@ -1027,10 +1020,9 @@ struct rolling_disc {
     H[2][4] = H2_2;
     H[3][1] = H1_2;
     H[3][2] = H[2][3];
-    H[3][3] = -lambda[1] * (H4_11 + H4_14) - lambda[2] * (H4_15 + H4_16) - fa_x_y * H4_29 -
-        fa_x_z * H4_32;
-    H[3][4] = fa_x_x * H4_29 + fa_x_z * H4_1_2 + arm_a_y * H2_1;
-    H[3][5] = fa_x_x * H4_32 - fa_x_y * H4_1_2 + arm_a_z * H2_1;
+    H[3][3] = -H4_11 - H4_14 - fa_x_y * H4_27 - fa_x_z * H4_30;
+    H[3][4] = arm_a_y * H2_1 + fa_x_x * H4_27 + fa_x_z * H4_1_2;
+    H[3][5] = arm_a_z * H2_1 + fa_x_x * H4_30 - fa_x_y * H4_1_2;
     H[3][7] = H[0][4];
     H[3][8] = H1_2_2;
     H[3][9] = k_y * H4_2_2 - k_z * H4_3_2;
@@ -1038,21 +1030,19 @@ struct rolling_disc {
     H[3][11] = k_x * H4_3_2 - k_y * H4_1_4;
     H[4][0] = H[0][4];
     H[4][2] = H2_2;
-    H[4][3] = fa_x_y * H5_10 - fa_x_z * H5_12 + arm_a_x * H1_1_2;
-    H[4][4] = fa_x_z * H5_3_2 - lambda[1] * (H5_1_2 + H4_14) - lambda[2] * (H5_2_2 + H4_16) -
-        fa_x_x * H5_10;
-    H[4][5] = fa_x_x * H5_12 - fa_x_y * H5_3_2 + arm_a_z * H1_1_2;
+    H[4][3] = arm_a_x * H1_1_2 + fa_x_y * H5_10 - fa_x_z * H5_12;
+    H[4][4] = fa_x_z * H5_2_2 - H5_1_2 - H4_14 - fa_x_x * H5_10;
+    H[4][5] = arm_a_z * H1_1_2 + fa_x_x * H5_12 - fa_x_y * H5_2_2;
     H[4][6] = H1_2;
     H[4][8] = H[1][5];
-    H[4][9] = k_y * H5_2_3 - k_z * H5_3_3;
+    H[4][9] = k_y * H5_2_3 - k_z * H5_3_2;
     H[4][10] = k_z * H5_1_4 - k_x * H5_2_3;
-    H[4][11] = k_x * H5_3_3 - k_y * H5_1_4;
+    H[4][11] = k_x * H5_3_2 - k_y * H5_1_4;
     H[5][0] = H1_2_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_x_z * H6_9 - fa_x_y * H6_7 + arm_a_x * H1_1;
-    H[5][4] = fa_x_x * H6_7 + fa_x_z * H6_1_2 + arm_a_y * H1_1;
-    H[5][5] = -lambda[1] * (H5_1_2 + H4_11) - lambda[2] * (H5_2_2 + H4_15) - fa_x_x * H6_9 -
-        fa_x_y * H6_1_2;
+    H[5][3] = arm_a_x * H1_1 - fa_x_y * H6_7 + fa_x_z * H6_9;
+    H[5][4] = arm_a_y * H1_1 + fa_x_x * H6_7 + fa_x_z * H6_1_2;
+    H[5][5] = -H5_1_2 - H4_11 - fa_x_x * H6_9 - fa_x_y * H6_1_2;
     H[5][6] = H[2][3];
     H[5][7] = H2_2;
     H[5][9] = k_y * H6_1_3 - k_z * H6_3_2;
@@ -1064,23 +1054,21 @@ struct rolling_disc {
     H[7][5] = H2_2;
     H[8][3] = H1_2_2;
     H[8][4] = H[1][5];
-    H[9][3] = fa_x_y * H10_22 - H10_1 * (H10_2 + H10_3) - H10_4 * (H10_5 + H10_6) - fa_x_z * H10_24;
-    H[9][4] = fa_x_z * H10_3_2 - fa_x_x * H10_22 + k_x_dir_m_y * H10_4_2;
-    H[9][5] = fa_x_x * H10_24 - fa_x_y * H10_3_2 + k_x_dir_m_z * H10_4_2;
+    H[9][3] = fa_x_y * H10_18 - fa_x_z * H10_20 - H10_21 - H10_22;
+    H[9][4] = fa_x_z * H10_3_2 - fa_x_x * H10_18 + H10_4_2 * k_x_dir_m_y;
+    H[9][5] = fa_x_x * H10_20 - fa_x_y * H10_3_2 + H10_4_2 * k_x_dir_m_z;
     H[9][9] = k_y * H10_2_3 - k_z * H10_4_3;
     H[9][10] = k_z * H10_3_4 - k_x * H10_2_3;
     H[9][11] = k_x * H10_4_3 - k_y * H10_3_4;
-    H[10][3] = fa_x_y * H11_10 - fa_x_z * H11_13 + k_x_dir_m_x * H10_10;
-    H[10][4] = fa_x_z * H11_3_2 - H10_1 * (H11_1_2 + H10_3) - H10_4 * (H11_2_2 + H10_6) - fa_x_x *
-        H11_10;
-    H[10][5] = fa_x_x * H11_13 - fa_x_y * H11_3_2 + k_x_dir_m_z * H10_10;
+    H[10][3] = fa_x_y * H11_10 - fa_x_z * H11_13 + H10_6 * k_x_dir_m_x;
+    H[10][4] = fa_x_z * H11_1_2 - fa_x_x * H11_10 - H11_2_2 - H10_22;
+    H[10][5] = fa_x_x * H11_13 - fa_x_y * H11_1_2 + H10_6 * k_x_dir_m_z;
     H[10][9] = k_y * H11_2_3 - k_z * H11_4_2;
     H[10][10] = k_z * H11_1_4 - k_x * H11_2_3;
     H[10][11] = k_x * H11_4_2 - k_y * H11_1_4;
-    H[11][3] = fa_x_y * H12_8 - fa_x_z * H12_10 + k_x_dir_m_x * H10_12;
-    H[11][4] = fa_x_z * H12_1_2 - fa_x_x * H12_8 + k_x_dir_m_y * H10_12;
-    H[11][5] = fa_x_x * H12_10 - H10_1 * (H11_1_2 + H10_2) - H10_4 * (H11_2_2 + H10_5) - fa_x_y *
-        H12_1_2;
+    H[11][3] = fa_x_y * H12_8 - fa_x_z * H12_10 + H10_8 * k_x_dir_m_x;
+    H[11][4] = fa_x_z * H12_1_2 - fa_x_x * H12_8 + H10_8 * k_x_dir_m_y;
+    H[11][5] = fa_x_x * H12_10 - fa_x_y * H12_1_2 - H11_2_2 - H10_21;
     H[11][9] = k_y * H12_1_3 - k_z * H12_2_2;
     H[11][10] = k_z * H12_1_4 - k_x * H12_1_3;
     H[11][11] = k_x * H12_2_2 - k_y * H12_1_4;
@@ -1141,30 +1129,29 @@ struct rolling_disc::a_immovable : rolling_disc {
         fa_z_y, fa_z_z, k_x_dir_m_x_fa_z_x, k_x_dir_m_x_fa_z_y, k_x_dir_m_x_fa_z_z;
   };
 
-  // C and J: 59 +, 91 *, 1 /, 1 sqrt, 4 <
+  // C and J: 56 +, 88 *, 1 /, 1 sqrt, 4 <
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[3],
       Jacobian<T>& J) {
     using std::sqrt;
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T u_x = b.x - a.x - ra_x;
-    const T u_y = b.y - a.y - ra_y;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T u_z = b.z - a.z - ra_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T dot_u_fa_x = u_x * fa_x_x + u_y * fa_x_y + u_z * fa_x_z;
     const T k_x = b.xx * p.k_x + b.xy * p.k_y + b.xz * p.k_z;
     const T k_y = b.yx * p.k_x + b.yy * p.k_y + b.yz * p.k_z;
     const T m_z = fa_x_x * k_y - fa_x_y * k_x;
     const T k_z = b.zx * p.k_x + b.zy * p.k_y + b.zz * p.k_z;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T m_x = fa_x_y * k_z - fa_x_z * k_y;
     const T m_y = fa_x_z * k_x - fa_x_x * k_z;
     const T m_len = sqrt(m_z * m_z + m_y * m_y + m_x * m_x);
+    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
+    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
+    const T u_x = b.x - a.x - ra_x;
+    const T u_y = b.y - a.y - ra_y;
+    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T u_z = b.z - a.z - ra_z;
     const T inv_m_len = inverse(m_len);
     const T dir_m_x = select(m_len > smallest<T>(), m_x * inv_m_len, T(1));
     const T dir_m_y = select(m_len > smallest<T>(), m_y * inv_m_len, T(0));
@@ -1178,10 +1165,10 @@ struct rolling_disc::a_immovable : rolling_disc {
     const T k_x_dir_m_z = k_x * dir_m_y - k_y * dir_m_x;
     const T k_x_dir_m_x = k_y * dir_m_z - k_z * dir_m_y;
     const T k_x_dir_m_y = k_z * dir_m_x - k_x * dir_m_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    C[0] = dot_u_fa_x - p.radius * m_len;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    C[0] = u_x * fa_x_x - p.radius * m_len + u_y * fa_x_y + u_z * fa_x_z;
     C[1] = T(0);
     C[2] = T(0);
     J.fa_x_x = fa_x_x;
@@ -1435,30 +1422,29 @@ struct rolling_disc::b_immovable : rolling_disc {
         arm_a_x_fa_z_z;
   };
 
-  // C and J: 62 +, 88 *, 1 /, 1 sqrt, 4 <
+  // C and J: 59 +, 85 *, 1 /, 1 sqrt, 4 <
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[3],
       Jacobian<T>& J) {
     using std::sqrt;
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T u_x = b.x - a.x - ra_x;
-    const T u_y = b.y - a.y - ra_y;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T u_z = b.z - a.z - ra_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T dot_u_fa_x = u_x * fa_x_x + u_y * fa_x_y + u_z * fa_x_z;
     const T k_x = b.xx * p.k_x + b.xy * p.k_y + b.xz * p.k_z;
     const T k_y = b.yx * p.k_x + b.yy * p.k_y + b.yz * p.k_z;
     const T m_z = fa_x_x * k_y - fa_x_y * k_x;
     const T k_z = b.zx * p.k_x + b.zy * p.k_y + b.zz * p.k_z;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T m_x = fa_x_y * k_z - fa_x_z * k_y;
     const T m_y = fa_x_z * k_x - fa_x_x * k_z;
     const T m_len = sqrt(m_z * m_z + m_y * m_y + m_x * m_x);
+    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
+    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
+    const T u_x = b.x - a.x - ra_x;
+    const T u_y = b.y - a.y - ra_y;
+    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T u_z = b.z - a.z - ra_z;
     const T inv_m_len = inverse(m_len);
     const T dir_m_z = select(m_len > smallest<T>(), m_z * inv_m_len, T(0));
     const T dir_m_x = select(m_len > smallest<T>(), m_x * inv_m_len, T(1));
@@ -1472,10 +1458,10 @@ struct rolling_disc::b_immovable : rolling_disc {
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    C[0] = dot_u_fa_x - p.radius * m_len;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    C[0] = u_x * fa_x_x - p.radius * m_len + u_y * fa_x_y + u_z * fa_x_z;
     C[1] = T(0);
     C[2] = T(0);
     J.fa_x_x = fa_x_x;

@@ -80,7 +80,7 @@ struct rolling_sphere {
     C[2] = T(0);
   }
 
-  // C and J: 51 +, 60 *
+  // C and J: 48 +, 57 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[3],
       Jacobian<T>& J) {
@@ -95,7 +95,6 @@ struct rolling_sphere {
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T u_z = b.z - a.z - ra_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T dot_u_fa_x = u_x * fa_x_x + u_y * fa_x_y + u_z * fa_x_z;
     const T ra_u_x = b.x - a.x;
     const T ra_u_y = b.y - a.y;
     const T ra_u_z = b.z - a.z;
@@ -105,10 +104,10 @@ struct rolling_sphere {
     const T arm_a_x = b.x - a.x - p.radius * fa_x_x;
     const T arm_a_y = b.y - a.y - p.radius * fa_x_y;
     const T arm_a_z = b.z - a.z - p.radius * fa_x_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    C[0] = dot_u_fa_x - p.radius;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    C[0] = u_x * fa_x_x - p.radius + u_y * fa_x_y + u_z * fa_x_z;
     C[1] = T(0);
     C[2] = T(0);
     J.fa_x_x = fa_x_x;
@@ -554,7 +553,7 @@ struct rolling_sphere {
     D[2][13] = D2_3 * J.fa_y_x - D2_2 * J.fa_y_y + D2_1_2 * J.fa_y_z;
   }
 
-  // -Jdot v - d/dt(dC/dt): 93 +, 113 *
+  // -Jdot v - d/dt(dC/dt): 90 +, 110 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[3]) {
@@ -601,9 +600,9 @@ struct rolling_sphere {
     const T dot_w_a_arm_a_x_w_a_x_fa_y_arm_a_dot_x_fa_y = va.wx *
         arm_a_x_w_a_x_fa_y_arm_a_dot_x_fa_y_x + va.wy * arm_a_x_w_a_x_fa_y_arm_a_dot_x_fa_y_y +
         va.wz * arm_a_x_w_a_x_fa_y_arm_a_dot_x_fa_y_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
     const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
     const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
     const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
@@ -639,7 +638,7 @@ struct rolling_sphere {
     C_t[2] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 67 +, 80 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 57 +, 68 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[3],
       T (&H)[12][12]) {
@@ -649,17 +648,17 @@ struct rolling_sphere {
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
     const T H1_1 = lambda[1] * fa_y_z + lambda[2] * fa_z_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T H1_2 = H1_1 + lambda[0] * fa_x_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
     const T H1_1_2 = lambda[1] * fa_y_y + lambda[2] * fa_z_y;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
     const T H1_2_2 = H1_1_2 + lambda[0] * fa_x_y;
     const T H2_1 = lambda[1] * fa_y_x + lambda[2] * fa_z_x;
     const T H2_2 = H2_1 + lambda[0] * fa_x_x;
@@ -667,20 +666,14 @@ struct rolling_sphere {
     const T arm_a_x = -H4_1 - p.radius * fa_x_x;
     const T H4_2 = a.y - b.y;
     const T arm_a_y = -H4_2 - p.radius * fa_x_y;
-    const T H4_3 = arm_a_y * fa_y_y;
-    const T H4_4 = a.z - b.z;
-    const T arm_a_z = -H4_4 - p.radius * fa_x_z;
-    const T H4_5 = arm_a_z * fa_y_z;
-    const T H4_6 = arm_a_y * fa_z_y;
-    const T H4_7 = arm_a_z * fa_z_z;
-    const T H4_8 = lambda[0] * H4_2 - p.radius * H1_1_2;
-    const T H4_9 = fa_x_y * H4_8;
-    const T H4_10 = p.radius * H1_1 - lambda[0] * H4_4;
-    const T H4_11 = fa_x_z * H4_10;
+    const T H4_3 = lambda[0] * H4_2 - p.radius * H1_1_2;
+    const T H4_4 = arm_a_y * H1_1_2 - fa_x_y * H4_3;
+    const T H4_5 = a.z - b.z;
+    const T arm_a_z = -H4_5 - p.radius * fa_x_z;
+    const T H4_6 = p.radius * H1_1 - lambda[0] * H4_5;
+    const T H4_7 = arm_a_z * H1_1 + fa_x_z * H4_6;
     const T H5_1 = p.radius * H2_1 - lambda[0] * H4_1;
-    const T H5_1_2 = arm_a_x * fa_y_x;
-    const T H5_2 = arm_a_x * fa_z_x;
-    const T H5_3 = fa_x_x * H5_1;
+    const T H5_1_2 = arm_a_x * H2_1 + fa_x_x * H5_1;
     const T H10_1 = lambda[1] * p.radius;
     const T H10_2 = lambda[2] * p.radius;
     const T H10_3 = H10_2 * fa_y_z - H10_1 * fa_z_z;
@@ -694,23 +687,23 @@ struct rolling_sphere {
     H[2][4] = H2_2;
     H[3][1] = H1_2;
     H[3][2] = H[2][3];
-    H[3][3] = H4_9 - lambda[1] * (H4_3 + H4_5) - lambda[2] * (H4_6 + H4_7) - H4_11;
-    H[3][4] = arm_a_y * H2_1 - fa_x_x * H4_8;
-    H[3][5] = fa_x_x * H4_10 + arm_a_z * H2_1;
+    H[3][3] = -H4_4 - H4_7;
+    H[3][4] = arm_a_y * H2_1 - fa_x_x * H4_3;
+    H[3][5] = arm_a_z * H2_1 + fa_x_x * H4_6;
     H[3][7] = H[0][4];
     H[3][8] = H1_2_2;
     H[4][0] = H[0][4];
     H[4][2] = H2_2;
-    H[4][3] = fa_x_y * H5_1 + arm_a_x * H1_1_2;
-    H[4][4] = -lambda[1] * (H5_1_2 + H4_5) - lambda[2] * (H5_2 + H4_7) - H5_3 - H4_11;
-    H[4][5] = fa_x_y * H4_10 + arm_a_z * H1_1_2;
+    H[4][3] = arm_a_x * H1_1_2 + fa_x_y * H5_1;
+    H[4][4] = -H5_1_2 - H4_7;
+    H[4][5] = arm_a_z * H1_1_2 + fa_x_y * H4_6;
     H[4][6] = H1_2;
     H[4][8] = H[1][5];
     H[5][0] = H1_2_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_x_z * H5_1 + arm_a_x * H1_1;
-    H[5][4] = arm_a_y * H1_1 - fa_x_z * H4_8;
-    H[5][5] = H4_9 - lambda[1] * (H5_1_2 + H4_3) - lambda[2] * (H5_2 + H4_6) - H5_3;
+    H[5][3] = arm_a_x * H1_1 + fa_x_z * H5_1;
+    H[5][4] = arm_a_y * H1_1 - fa_x_z * H4_3;
+    H[5][5] = -H4_4 - H5_1_2;
     H[5][6] = H[2][3];
     H[5][7] = H2_2;
     H[6][4] = H1_2;
@@ -765,7 +758,7 @@ struct rolling_sphere::a_immovable : rolling_sphere {
     T fa_x_x, fa_x_y, fa_x_z, fa_y_x, fa_y_y, fa_y_z, fa_z_x, radius, fa_z_y, fa_z_z;
   };
 
-  // C and J: 33 +, 39 *
+  // C and J: 30 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[3],
       Jacobian<T>& J) {
@@ -780,20 +773,22 @@ struct rolling_sphere::a_immovable : rolling_sphere {
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T u_z = b.z - a.z - ra_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T dot_u_fa_x = u_x * fa_x_x + u_y * fa_x_y + u_z * fa_x_z;
-    C[0] = dot_u_fa_x - p.radius;
+    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    C[0] = u_x * fa_x_x - p.radius + u_y * fa_x_y + u_z * fa_x_z;
     C[1] = T(0);
     C[2] = T(0);
     J.fa_x_x = fa_x_x;
     J.fa_x_y = fa_x_y;
     J.fa_x_z = fa_x_z;
-    J.fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    J.fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    J.fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    J.fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+    J.fa_y_x = fa_y_x;
+    J.fa_y_y = fa_y_y;
+    J.fa_y_z = fa_y_z;
+    J.fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
     J.radius = p.radius;
-    J.fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    J.fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+    J.fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+    J.fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 21 +, 31 *
@@ -990,7 +985,7 @@ struct rolling_sphere::b_immovable : rolling_sphere {
         arm_a_x_fa_z_y, arm_a_x_fa_z_z;
   };
 
-  // C and J: 51 +, 60 *
+  // C and J: 48 +, 57 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[3],
       Jacobian<T>& J) {
@@ -1005,7 +1000,6 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T u_z = b.z - a.z - ra_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T dot_u_fa_x = u_x * fa_x_x + u_y * fa_x_y + u_z * fa_x_z;
     const T ra_u_x = b.x - a.x;
     const T ra_u_y = b.y - a.y;
     const T ra_u_z = b.z - a.z;
@@ -1015,10 +1009,10 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     const T arm_a_x = b.x - a.x - p.radius * fa_x_x;
     const T arm_a_y = b.y - a.y - p.radius * fa_x_y;
     const T arm_a_z = b.z - a.z - p.radius * fa_x_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    C[0] = dot_u_fa_x - p.radius;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    C[0] = u_x * fa_x_x - p.radius + u_y * fa_x_y + u_z * fa_x_z;
     C[1] = T(0);
     C[2] = T(0);
     J.fa_x_x = fa_x_x;

@@ -7,6 +7,7 @@
 // rxz = fa_x · fb_z
 // ryz = fa_y · fb_z
 // rzz = fa_z · fb_z
+// s1 = (fa_x · fb_x)^2 + (fa_x · fb_y)^2
 //
 // coordinate slide_x = fa_x · d
 // J_slide_x = [ -fa_x' | -((ra + d) × fa_x)' | fa_x' | (rb × fa_x)' ]  (columns v_a | w_a | v_b |
@@ -27,158 +28,34 @@
 //             + ((ra + d) × fa_z)' inv_I_a ((ra + d) × fa_z)
 //
 // coordinate turn_x = atan2(-ryz, rzz)
-// J_turn_x = [ 0
-//            | ((ryz/(ryz^2 + rzz^2)) (fa_z × fb_z) - (rzz/(ryz^2 + rzz^2)) (fa_y × fb_z))'
-//            | 0
-//            | -(((ryz/(ryz^2 + rzz^2)) fa_z - (rzz/(ryz^2 + rzz^2)) fa_y) × fb_z)' ]  (columns
-//                v_a | w_a | v_b | w_b)
-// K_turn_x = ((ryz/(ryz^2 + rzz^2)) (fa_z × fb_z) - (rzz/(ryz^2 + rzz^2)) (fa_y × fb_z))' inv_I_a
-//     ((ryz/(ryz^2 + rzz^2)) (fa_z × fb_z) - (rzz/(ryz^2 + rzz^2)) (fa_y × fb_z))
-//            + (((ryz/(ryz^2 + rzz^2)) fa_z - (rzz/(ryz^2 + rzz^2)) fa_y) × fb_z)' inv_I_b
-//                (((ryz/(ryz^2 + rzz^2)) fa_z - (rzz/(ryz^2 + rzz^2)) fa_y) × fb_z)
+// axis_turn_x = ((ryz fa_z - rzz fa_y)/(ryz^2 + rzz^2)) × fb_z
+// J_turn_x = [ 0 | axis_turn_x' | 0 | -axis_turn_x' ]             (columns v_a | w_a | v_b | w_b)
+// K_turn_x = axis_turn_x' inv_I_a axis_turn_x + axis_turn_x' inv_I_b axis_turn_x
 //
 // coordinate turn_y = atan2(rxz, sqrt(ryz^2 + rzz^2))
-// J_turn_y = [ 0
-//            | ((sqrt(ryz^2 + rzz^2)/(sqrt(ryz^2 + rzz^2)^2 + rxz^2)) (fa_x × fb_z) - (rxz
-//                ryz/((sqrt(ryz^2 + rzz^2)^2 + rxz^2) sqrt(ryz^2 + rzz^2))) (fa_y × fb_z) - (rxz
-//                rzz/((sqrt(ryz^2 + rzz^2)^2 + rxz^2) sqrt(ryz^2 + rzz^2))) (fa_z × fb_z))'
-//            | 0
-//            | -(((sqrt(ryz^2 + rzz^2)/(sqrt(ryz^2 + rzz^2)^2 + rxz^2)) fa_x - (rxz
-//                ryz/((sqrt(ryz^2 + rzz^2)^2 + rxz^2) sqrt(ryz^2 + rzz^2))) fa_y - (rxz
-//                rzz/((sqrt(ryz^2 + rzz^2)^2 + rxz^2) sqrt(ryz^2 + rzz^2))) fa_z) × fb_z)' ]
-//              (columns v_a | w_a | v_b | w_b)
-// K_turn_y = ((sqrt(ryz^2 + rzz^2)/(sqrt(ryz^2 + rzz^2)^2 + rxz^2)) (fa_x × fb_z) - (rxz
-//     ryz/((sqrt(ryz^2 + rzz^2)^2 + rxz^2) sqrt(ryz^2 + rzz^2))) (fa_y × fb_z) - (rxz
-//     rzz/((sqrt(ryz^2 + rzz^2)^2 + rxz^2) sqrt(ryz^2 + rzz^2))) (fa_z × fb_z))' inv_I_a
-//     ((sqrt(ryz^2 + rzz^2)/(sqrt(ryz^2 + rzz^2)^2 + rxz^2)) (fa_x × fb_z) - (rxz ryz/((sqrt(ryz^2
-//     + rzz^2)^2 + rxz^2) sqrt(ryz^2 + rzz^2))) (fa_y × fb_z) - (rxz rzz/((sqrt(ryz^2 + rzz^2)^2 +
-//     rxz^2) sqrt(ryz^2 + rzz^2))) (fa_z × fb_z))
-//            + (((sqrt(ryz^2 + rzz^2)/(sqrt(ryz^2 + rzz^2)^2 + rxz^2)) fa_x - (rxz
-//                ryz/((sqrt(ryz^2 + rzz^2)^2 + rxz^2) sqrt(ryz^2 + rzz^2))) fa_y - (rxz
-//                rzz/((sqrt(ryz^2 + rzz^2)^2 + rxz^2) sqrt(ryz^2 + rzz^2))) fa_z) × fb_z)' inv_I_b
-//                (((sqrt(ryz^2 + rzz^2)/(sqrt(ryz^2 + rzz^2)^2 + rxz^2)) fa_x - (rxz
-//                ryz/((sqrt(ryz^2 + rzz^2)^2 + rxz^2) sqrt(ryz^2 + rzz^2))) fa_y - (rxz
-//                rzz/((sqrt(ryz^2 + rzz^2)^2 + rxz^2) sqrt(ryz^2 + rzz^2))) fa_z) × fb_z)
+// axis_turn_y = (1/sqrt(ryz^2 + rzz^2)) (fa_x × fb_z)
+// J_turn_y = [ 0 | axis_turn_y' | 0 | -axis_turn_y' ]             (columns v_a | w_a | v_b | w_b)
+// K_turn_y = axis_turn_y' inv_I_a axis_turn_y + axis_turn_y' inv_I_b axis_turn_y
 //
 // coordinate turn_z = atan2(-fa_x · fb_y, fa_x · fb_x)
-// J_turn_z = [ 0
-//            | -((((fa_x · fb_y)/((fa_x · fb_x)^2 + (fa_x · fb_y)^2)) fb_x - ((fa_x · fb_x)/((fa_x
-//                · fb_x)^2 + (fa_x · fb_y)^2)) fb_y) × fa_x)'
-//            | 0
-//            | (((fa_x · fb_x)/((fa_x · fb_x)^2 + (fa_x · fb_y)^2)) (fa_x × fb_y) - ((fa_x ·
-//                fb_y)/((fa_x · fb_x)^2 + (fa_x · fb_y)^2)) (fa_x × fb_x))' ]
-//              (columns v_a | w_a | v_b | w_b)
-// K_turn_z = (((fa_x · fb_x)/((fa_x · fb_x)^2 + (fa_x · fb_y)^2)) (fa_x × fb_y) - ((fa_x ·
-//     fb_y)/((fa_x · fb_x)^2 + (fa_x · fb_y)^2)) (fa_x × fb_x))' inv_I_b (((fa_x · fb_x)/((fa_x ·
-//     fb_x)^2 + (fa_x · fb_y)^2)) (fa_x × fb_y) - ((fa_x · fb_y)/((fa_x · fb_x)^2 + (fa_x ·
-//     fb_y)^2)) (fa_x × fb_x))
-//            + ((((fa_x · fb_y)/((fa_x · fb_x)^2 + (fa_x · fb_y)^2)) fb_x - ((fa_x · fb_x)/((fa_x
-//                · fb_x)^2 + (fa_x · fb_y)^2)) fb_y) × fa_x)' inv_I_a ((((fa_x · fb_y)/((fa_x ·
-//                fb_x)^2 + (fa_x · fb_y)^2)) fb_x - ((fa_x · fb_x)/((fa_x · fb_x)^2 + (fa_x ·
-//                fb_y)^2)) fb_y) × fa_x)
+// axis_turn_z = (((fa_x · fb_x) fb_y - (fa_x · fb_y) fb_x)/s1) × fa_x
+// J_turn_z = [ 0 | axis_turn_z' | 0 | -axis_turn_z' ]             (columns v_a | w_a | v_b | w_b)
+// K_turn_z = axis_turn_z' inv_I_a axis_turn_z + axis_turn_z' inv_I_b axis_turn_z
 //
 // coordinate twist_x = atan2(fa_z · fb_y - ryz, fa_y · fb_y + rzz)
-// J_twist_x = [ 0
-//             | (-((((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fb_y -
-//                 ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fb_z) ×
-//                 fa_z) - ((-((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2))
-//                 fb_z - ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2))
-//                 fb_y) × fa_y))'
-//             | 0
-//             | (-((-((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_y -
-//                 ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_z) ×
-//                 fb_z) - ((((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2))
-//                 fa_z - ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2))
-//                 fa_y) × fb_y))' ]
-//               (columns v_a | w_a | v_b | w_b)
-// K_twist_x = (-((-((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_y -
-//     ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_z) × fb_z) -
-//     ((((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_z - ((fa_z · fb_y
-//     - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_y) × fb_y))' inv_I_b (-((-((fa_y
-//     · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_y - ((fa_z · fb_y -
-//     ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_z) × fb_z) - ((((fa_y · fb_y +
-//     rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_z - ((fa_z · fb_y - ryz)/((fa_y ·
-//     fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_y) × fb_y))
-//             + (-((((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fb_y -
-//                 ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fb_z) ×
-//                 fa_z) - ((-((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2))
-//                 fb_z - ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2))
-//                 fb_y) × fa_y))' inv_I_a (-((((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z
-//                 · fb_y - ryz)^2)) fb_y - ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z ·
-//                 fb_y - ryz)^2)) fb_z) × fa_z) - ((-((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 +
-//                 (fa_z · fb_y - ryz)^2)) fb_z - ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 +
-//                 (fa_z · fb_y - ryz)^2)) fb_y) × fa_y))
+// axis_twist_x = (1/(fa_x · fb_x + 1)) (fa_x + fb_x)
+// J_twist_x = [ 0 | -axis_twist_x' | 0 | axis_twist_x' ]          (columns v_a | w_a | v_b | w_b)
+// K_twist_x = axis_twist_x' inv_I_a axis_twist_x + axis_twist_x' inv_I_b axis_twist_x
 //
 // coordinate twist_y = atan2(rxz - fa_z · fb_x, fa_x · fb_x + rzz)
-// J_twist_y = [ 0
-//             | (-((-((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fb_x -
-//                 ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fb_z) ×
-//                 fa_z) - ((((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2))
-//                 fb_z - ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2))
-//                 fb_x) × fa_x))'
-//             | 0
-//             | (-((((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_x -
-//                 ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_z) ×
-//                 fb_z) - ((-((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2))
-//                 fa_z - ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2))
-//                 fa_x) × fb_x))' ]
-//               (columns v_a | w_a | v_b | w_b)
-// K_twist_y = (-((((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_x -
-//     ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_z) × fb_z) -
-//     ((-((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_z - ((rxz - fa_z
-//     · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_x) × fb_x))' inv_I_b (-((((fa_x
-//     · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_x - ((rxz - fa_z ·
-//     fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_z) × fb_z) - ((-((fa_x · fb_x +
-//     rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_z - ((rxz - fa_z · fb_x)/((fa_x ·
-//     fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_x) × fb_x))
-//             + (-((-((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fb_x -
-//                 ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fb_z) ×
-//                 fa_z) - ((((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2))
-//                 fb_z - ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2))
-//                 fb_x) × fa_x))' inv_I_a (-((-((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz
-//                 - fa_z · fb_x)^2)) fb_x - ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz -
-//                 fa_z · fb_x)^2)) fb_z) × fa_z) - ((((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 +
-//                 (rxz - fa_z · fb_x)^2)) fb_z - ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 +
-//                 (rxz - fa_z · fb_x)^2)) fb_x) × fa_x))
+// axis_twist_y = (1/(fa_y · fb_y + 1)) (fa_y + fb_y)
+// J_twist_y = [ 0 | -axis_twist_y' | 0 | axis_twist_y' ]          (columns v_a | w_a | v_b | w_b)
+// K_twist_y = axis_twist_y' inv_I_a axis_twist_y + axis_twist_y' inv_I_b axis_twist_y
 //
 // coordinate twist_z = atan2(fa_y · fb_x - fa_x · fb_y, fa_x · fb_x + fa_y · fb_y)
-// J_twist_z = [ 0
-//             | (-((((fa_x · fb_x + fa_y · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x -
-//                 fa_x · fb_y)^2)) fb_x - ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y ·
-//                 fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fb_y) × fa_y) - ((-((fa_x · fb_x +
-//                 fa_y · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2))
-//                 fb_y - ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y ·
-//                 fb_x - fa_x · fb_y)^2)) fb_x) × fa_x))'
-//             | 0
-//             | (-((-((fa_x · fb_x + fa_y · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x -
-//                 fa_x · fb_y)^2)) fa_x - ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y ·
-//                 fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fa_y) × fb_y) - ((((fa_x · fb_x + fa_y
-//                 · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fa_y -
-//                 ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x -
-//                 fa_x · fb_y)^2)) fa_x) × fb_x))' ]
-//               (columns v_a | w_a | v_b | w_b)
-// K_twist_z = (-((-((fa_x · fb_x + fa_y · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x -
-//     fa_x · fb_y)^2)) fa_x - ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y
-//     · fb_x - fa_x · fb_y)^2)) fa_y) × fb_y) - ((((fa_x · fb_x + fa_y · fb_y)/((fa_x · fb_x +
-//     fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fa_y - ((fa_y · fb_x - fa_x · fb_y)/((fa_x
-//     · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fa_x) × fb_x))' inv_I_b
-//     (-((-((fa_x · fb_x + fa_y · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x - fa_x ·
-//     fb_y)^2)) fa_x - ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x
-//     - fa_x · fb_y)^2)) fa_y) × fb_y) - ((((fa_x · fb_x + fa_y · fb_y)/((fa_x · fb_x + fa_y ·
-//     fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fa_y - ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x
-//     + fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fa_x) × fb_x))
-//             + (-((((fa_x · fb_x + fa_y · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x -
-//                 fa_x · fb_y)^2)) fb_x - ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y ·
-//                 fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fb_y) × fa_y) - ((-((fa_x · fb_x +
-//                 fa_y · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2))
-//                 fb_y - ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y ·
-//                 fb_x - fa_x · fb_y)^2)) fb_x) × fa_x))' inv_I_a (-((((fa_x · fb_x + fa_y ·
-//                 fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fb_x -
-//                 ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x -
-//                 fa_x · fb_y)^2)) fb_y) × fa_y) - ((-((fa_x · fb_x + fa_y · fb_y)/((fa_x · fb_x +
-//                 fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fb_y - ((fa_y · fb_x - fa_x ·
-//                 fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fb_x) ×
-//                 fa_x))
+// axis_twist_z = (1/(rzz + 1)) (fa_z + fb_z)
+// J_twist_z = [ 0 | -axis_twist_z' | 0 | axis_twist_z' ]          (columns v_a | w_a | v_b | w_b)
+// K_twist_z = axis_twist_z' inv_I_a axis_twist_z + axis_twist_z' inv_I_b axis_twist_z
 #pragma once
 
 #include <cdot/kernel.hpp>
@@ -1616,7 +1493,7 @@ struct six_dof {
 
     template <class T>
     struct Jacobian {
-      T wa_x, wa_y, wa_z, wb_x, wb_y, wb_z;
+      T axis_turn_x_x, axis_turn_x_y, axis_turn_x_z;
     };
 
     // C: 23 +, 33 *, 1 call
@@ -1639,7 +1516,7 @@ struct six_dof {
       C[0] = atan2(-ryz, rzz);
     }
 
-    // C and J: 39 +, 67 *, 1 /, 1 <, 1 call
+    // C and J: 30 +, 49 *, 1 /, 1 <, 1 call
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -1657,39 +1534,28 @@ struct six_dof {
       const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
       const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
       const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-      const T wa_x_1 = inverse(ryz * ryz + rzz * rzz);
-      const T wa_x_2 = ryz * wa_x_1;
-      const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
-      const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-      const T wa_x_3 = rzz * wa_x_1;
-      const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
-      const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
-      const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
-      const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
-      const T wb_x_1 = wa_x_2 * fa_z_z - wa_x_3 * fa_y_z;
-      const T wb_x_2 = wa_x_2 * fa_z_y - wa_x_3 * fa_y_y;
-      const T wb_y_1 = wa_x_2 * fa_z_x - wa_x_3 * fa_y_x;
+      const T axis_turn_x_x_1 = inverse(ryz * ryz + rzz * rzz);
+      const T axis_turn_x_x_2 = rzz * axis_turn_x_x_1;
+      const T axis_turn_x_x_3 = ryz * axis_turn_x_x_1;
+      const T axis_turn_x_x_4 = axis_turn_x_x_3 * fa_z_z - axis_turn_x_x_2 * fa_y_z;
+      const T axis_turn_x_x_5 = axis_turn_x_x_3 * fa_z_y - axis_turn_x_x_2 * fa_y_y;
+      const T axis_turn_x_y_1 = axis_turn_x_x_3 * fa_z_x - axis_turn_x_x_2 * fa_y_x;
       C[0] = atan2(-ryz, rzz);
-      J.wa_x = wa_x_2 * fa_z_x_fb_z_x - wa_x_3 * fa_y_x_fb_z_x;
-      J.wa_y = wa_x_2 * fa_z_x_fb_z_y - wa_x_3 * fa_y_x_fb_z_y;
-      J.wa_z = wa_x_2 * fa_z_x_fb_z_z - wa_x_3 * fa_y_x_fb_z_z;
-      J.wb_x = fb_z_y * wb_x_1 - fb_z_z * wb_x_2;
-      J.wb_y = fb_z_z * wb_y_1 - fb_z_x * wb_x_1;
-      J.wb_z = fb_z_x * wb_x_2 - fb_z_y * wb_y_1;
+      J.axis_turn_x_x = fb_z_z * axis_turn_x_x_5 - fb_z_y * axis_turn_x_x_4;
+      J.axis_turn_x_y = fb_z_x * axis_turn_x_x_4 - fb_z_z * axis_turn_x_y_1;
+      J.axis_turn_x_z = fb_z_y * axis_turn_x_y_1 - fb_z_x * axis_turn_x_x_5;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 11 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      const T K11_1 = J.wa_z * T(2);
-      const T K11_2 = J.wb_z * T(2);
-      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
-          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
-          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
+      const T K11_1 = J.axis_turn_x_z * T(2);
+      K[0] = J.axis_turn_x_z * J.axis_turn_x_z * (ma.Izz + mb.Izz) + J.axis_turn_x_x *
+          (J.axis_turn_x_x * (ma.Ixx + mb.Ixx) + J.axis_turn_x_y * T(2) * (ma.Ixy + mb.Ixy) +
+          K11_1 * (ma.Ixz + mb.Ixz)) + J.axis_turn_x_y *
+          (J.axis_turn_x_y * (ma.Iyy + mb.Iyy) + K11_1 * (ma.Iyz + mb.Iyz));
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1704,16 +1570,16 @@ struct six_dof {
       lambda[0] = F[0] * rhs[0];
     }
 
-    // J v: 5 +, 6 *
+    // J v: 5 +, 3 *
     template <class T>
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.wb_x * vb.wx + J.wb_y * vb.wy +
-          J.wb_z * vb.wz;
+      Jv[0] = J.axis_turn_x_x * (va.wx - vb.wx) + J.axis_turn_x_y * (va.wy - vb.wy) +
+          J.axis_turn_x_z * (va.wz - vb.wz);
     }
 
-    // v += M^-1 J^T lambda: 18 +, 24 *
+    // v += M^-1 J^T lambda: 18 +, 21 *
     template <class T>
     static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
         Velocity<T> (&v)[2]) {
@@ -1721,35 +1587,32 @@ struct six_dof {
       const InverseMass<T>& ma = m[0];
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
-      const T v1_1 = J.wa_x * lambda[0];
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
-      const T v2_1 = lambda[0] * J.wb_x;
-      const T v2_2 = lambda[0] * J.wb_y;
-      const T v2_3 = lambda[0] * J.wb_z;
+      const T v1_1 = J.axis_turn_x_x * lambda[0];
+      const T v1_2 = lambda[0] * J.axis_turn_x_y;
+      const T v1_3 = lambda[0] * J.axis_turn_x_z;
       v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
       v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
       v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
-      v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
-      v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
-      v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+      v[1].wx = vb.wx - v1_1 * mb.Ixx - v1_2 * mb.Ixy - v1_3 * mb.Ixz;
+      v[1].wy = vb.wy - v1_1 * mb.Ixy - v1_2 * mb.Iyy - v1_3 * mb.Iyz;
+      v[1].wz = vb.wz - v1_1 * mb.Ixz - v1_2 * mb.Iyz - v1_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: nothing
+    // J with its zeros: v, w of each body: 3 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
         for (T& entry : row) entry = T(0);
       }
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
-      D[0][9] = J.wb_x;
-      D[0][10] = J.wb_y;
-      D[0][11] = J.wb_z;
+      D[0][3] = J.axis_turn_x_x;
+      D[0][4] = J.axis_turn_x_y;
+      D[0][5] = J.axis_turn_x_z;
+      D[0][9] = -J.axis_turn_x_x;
+      D[0][10] = -J.axis_turn_x_y;
+      D[0][11] = -J.axis_turn_x_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 12 +, 18 *
+    // (M^-1 J^T)^T, laid out like dense: 15 +, 18 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1758,22 +1621,23 @@ struct six_dof {
       }
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
-      D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
-      D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
-      D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+      D[0][3] = ma.Ixx * J.axis_turn_x_x + ma.Ixy * J.axis_turn_x_y + ma.Ixz * J.axis_turn_x_z;
+      D[0][4] = ma.Ixy * J.axis_turn_x_x + ma.Iyy * J.axis_turn_x_y + ma.Iyz * J.axis_turn_x_z;
+      D[0][5] = ma.Ixz * J.axis_turn_x_x + ma.Iyz * J.axis_turn_x_y + ma.Izz * J.axis_turn_x_z;
+      D[0][9] = -mb.Ixx * J.axis_turn_x_x - mb.Ixy * J.axis_turn_x_y - mb.Ixz * J.axis_turn_x_z;
+      D[0][10] = -mb.Ixy * J.axis_turn_x_x - mb.Iyy * J.axis_turn_x_y - mb.Iyz * J.axis_turn_x_z;
+      D[0][11] = -mb.Ixz * J.axis_turn_x_x - mb.Iyz * J.axis_turn_x_y - mb.Izz * J.axis_turn_x_z;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
+    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+      const T dot_axis_turn_x_axis_turn_x = J.axis_turn_x_x * J.axis_turn_x_x + J.axis_turn_x_y *
+          J.axis_turn_x_y + J.axis_turn_x_z * J.axis_turn_x_z;
+      K[0] = dot_axis_turn_x_axis_turn_x * (ma.I + mb.I);
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -1786,15 +1650,15 @@ struct six_dof {
       const IsotropicInverseMass<T>& mb = m[1];
       const T v1_1 = ma.I * lambda[0];
       const T v2_1 = lambda[0] * mb.I;
-      v[0].wx = va.wx + v1_1 * J.wa_x;
-      v[0].wy = va.wy + v1_1 * J.wa_y;
-      v[0].wz = va.wz + v1_1 * J.wa_z;
-      v[1].wx = vb.wx + v2_1 * J.wb_x;
-      v[1].wy = vb.wy + v2_1 * J.wb_y;
-      v[1].wz = vb.wz + v2_1 * J.wb_z;
+      v[0].wx = va.wx + v1_1 * J.axis_turn_x_x;
+      v[0].wy = va.wy + v1_1 * J.axis_turn_x_y;
+      v[0].wz = va.wz + v1_1 * J.axis_turn_x_z;
+      v[1].wx = vb.wx - v2_1 * J.axis_turn_x_x;
+      v[1].wy = vb.wy - v2_1 * J.axis_turn_x_y;
+      v[1].wz = vb.wz - v2_1 * J.axis_turn_x_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1803,15 +1667,15 @@ struct six_dof {
       }
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
-      D[0][9] = mb.I * J.wb_x;
-      D[0][10] = mb.I * J.wb_y;
-      D[0][11] = mb.I * J.wb_z;
+      D[0][3] = ma.I * J.axis_turn_x_x;
+      D[0][4] = ma.I * J.axis_turn_x_y;
+      D[0][5] = ma.I * J.axis_turn_x_z;
+      D[0][9] = -mb.I * J.axis_turn_x_x;
+      D[0][10] = -mb.I * J.axis_turn_x_y;
+      D[0][11] = -mb.I * J.axis_turn_x_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -1819,15 +1683,15 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-      D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-      D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-      D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+      D[0][3] = J.axis_turn_x_x * a.xx + J.axis_turn_x_y * a.yx + J.axis_turn_x_z * a.zx;
+      D[0][4] = J.axis_turn_x_x * a.xy + J.axis_turn_x_y * a.yy + J.axis_turn_x_z * a.zy;
+      D[0][5] = J.axis_turn_x_x * a.xz + J.axis_turn_x_y * a.yz + J.axis_turn_x_z * a.zz;
+      D[0][9] = -J.axis_turn_x_x * b.xx - J.axis_turn_x_y * b.yx - J.axis_turn_x_z * b.zx;
+      D[0][10] = -J.axis_turn_x_x * b.xy - J.axis_turn_x_y * b.yy - J.axis_turn_x_z * b.zy;
+      D[0][11] = -J.axis_turn_x_x * b.xz - J.axis_turn_x_y * b.yz - J.axis_turn_x_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 27 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -1835,17 +1699,20 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-      D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-      D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-      D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+      const T D1_1 = J.axis_turn_x_x * T(2);
+      const T D1_2 = J.axis_turn_x_y * T(2);
+      const T D1_3 = J.axis_turn_x_z * T(2);
+      D[0][3] = -D1_1 * a.e1 - D1_2 * a.e2 - D1_3 * a.e3;
+      D[0][4] = D1_1 * a.e0 + D1_2 * a.e3 - D1_3 * a.e2;
+      D[0][5] = D1_2 * a.e0 - D1_1 * a.e3 + D1_3 * a.e1;
+      D[0][6] = D1_1 * a.e2 - D1_2 * a.e1 + D1_3 * a.e0;
+      D[0][10] = D1_1 * b.e1 + D1_2 * b.e2 + D1_3 * b.e3;
+      D[0][11] = D1_3 * b.e2 - D1_1 * b.e0 - D1_2 * b.e3;
+      D[0][12] = D1_1 * b.e3 - D1_2 * b.e0 - D1_3 * b.e1;
+      D[0][13] = D1_2 * b.e1 - D1_1 * b.e2 - D1_3 * b.e0;
     }
 
-    // -Jdot v - d/dt(dC/dt): 71 +, 112 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 71 +, 108 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1853,29 +1720,16 @@ struct six_dof {
       const Velocity<T>& va = v[0];
       const Pose<T>& b = q[1];
       const Velocity<T>& vb = v[1];
-      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
       const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
       const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
       const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-      const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
       const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
       const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-      const T g1_1 = inverse(ryz * ryz + rzz * rzz);
+      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
       const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
       const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
+      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
       const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
-      const T dot_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_fb_z_x + fa_y_y * w_b_x_fb_z_y + fa_y_z *
-          w_b_x_fb_z_z;
-      const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
-      const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-      const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
-      const T dot_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_fa_y_x + fb_z_y * w_a_x_fa_y_y + fb_z_z *
-          w_a_x_fa_y_z;
-      const T ryz_dot = dot_w_b_x_fb_z_fa_y + dot_w_a_x_fa_y_fb_z;
       const T dot_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_fb_z_x + fa_z_y * w_b_x_fb_z_y + fa_z_z *
           w_b_x_fb_z_z;
       const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
@@ -1884,33 +1738,38 @@ struct six_dof {
       const T dot_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_fa_z_x + fb_z_y * w_a_x_fa_z_y + fb_z_z *
           w_a_x_fa_z_z;
       const T rzz_dot = dot_w_b_x_fb_z_fa_z + dot_w_a_x_fa_z_fb_z;
-      const T g1_2 = T(2) * (rzz_dot * ryz - ryz_dot * rzz) * g1_1;
-      const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
-      const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
-      const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-      const T dot_w_b_x_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_w_b_x_fb_z_x + fa_z_y *
-          w_b_x_w_b_x_fb_z_y + fa_z_z * w_b_x_w_b_x_fb_z_z;
-      const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-      const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-      const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-      const T dot_w_a_x_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_w_a_x_fa_z_x + fb_z_y *
-          w_a_x_w_a_x_fa_z_y + fb_z_z * w_a_x_w_a_x_fa_z_z;
-      const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
-          w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
-      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z +
-          dot_w_a_x_fa_z_w_b_x_fb_z * T(2);
-      const T dot_w_b_x_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_w_b_x_fb_z_x + fa_y_y *
-          w_b_x_w_b_x_fb_z_y + fa_y_z * w_b_x_w_b_x_fb_z_z;
-      const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-      const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-      const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-      const T dot_w_a_x_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_w_a_x_fa_y_x + fb_z_y *
-          w_a_x_w_a_x_fa_y_y + fb_z_z * w_a_x_w_a_x_fa_y_z;
-      const T dot_w_a_x_fa_y_w_b_x_fb_z = w_a_x_fa_y_z * w_b_x_fb_z_z + w_a_x_fa_y_y *
-          w_b_x_fb_z_y + w_a_x_fa_y_x * w_b_x_fb_z_x;
-      const T ryz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_y + dot_w_a_x_w_a_x_fa_y_fb_z +
-          dot_w_a_x_fa_y_w_b_x_fb_z * T(2);
-      g[0] = g1_1 * (ryz * (g1_2 * ryz_dot - rzz_dot_dot) + rzz * (g1_2 * rzz_dot + ryz_dot_dot));
+      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
+      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+      const T g1_1 = inverse(ryz * ryz + rzz * rzz);
+      const T dot_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_fb_z_x + fa_y_y * w_b_x_fb_z_y + fa_y_z *
+          w_b_x_fb_z_z;
+      const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
+      const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
+      const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
+      const T dot_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_fa_y_x + fb_z_y * w_a_x_fa_y_y + fb_z_z *
+          w_a_x_fa_y_z;
+      const T ryz_dot = dot_w_b_x_fb_z_fa_y + dot_w_a_x_fa_y_fb_z;
+      const T g1_2 = g1_1 * T(2) * (ryz_dot * ryz + rzz_dot * rzz);
+      const T g1_3 = rzz * g1_1;
+      const T g1_4 = rzz_dot * g1_1 - g1_2 * g1_3;
+      const T g1_5 = ryz * g1_1;
+      const T g1_6 = ryz_dot * g1_1 - g1_2 * g1_5;
+      const T g1_7 = fa_z_z * g1_6 - fa_y_z * g1_4 - g1_3 * w_a_x_fa_y_z + g1_5 * w_a_x_fa_z_z;
+      const T g1_8 = fa_z_y * g1_6 - fa_y_y * g1_4 - g1_3 * w_a_x_fa_y_y + g1_5 * w_a_x_fa_z_y;
+      const T g1_9 = g1_5 * fa_z_y - g1_3 * fa_y_y;
+      const T g1_10 = g1_5 * fa_z_z - g1_3 * fa_y_z;
+      const T axis_turn_x_dot_x = fb_z_z * g1_8 - fb_z_y * g1_7 + w_b_x_fb_z_z * g1_9 -
+          w_b_x_fb_z_y * g1_10;
+      const T g1_11 = fa_z_x * g1_6 - fa_y_x * g1_4 - g1_3 * w_a_x_fa_y_x + g1_5 * w_a_x_fa_z_x;
+      const T g1_12 = g1_5 * fa_z_x - g1_3 * fa_y_x;
+      const T axis_turn_x_dot_y = fb_z_x * g1_7 - fb_z_z * g1_11 - w_b_x_fb_z_z * g1_12 +
+          w_b_x_fb_z_x * g1_10;
+      const T axis_turn_x_dot_z = fb_z_y * g1_11 - fb_z_x * g1_8 + w_b_x_fb_z_y * g1_12 -
+          w_b_x_fb_z_x * g1_9;
+      g[0] = axis_turn_x_dot_x * (vb.wx - va.wx) + axis_turn_x_dot_y * (vb.wy - va.wy) +
+          axis_turn_x_dot_z * (vb.wz - va.wz);
     }
 
     // dC/dt at fixed q: nothing
@@ -1919,7 +1778,7 @@ struct six_dof {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 163 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 166 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -1943,107 +1802,107 @@ struct six_dof {
       const T H4_2 = lambda[0] * H4_1;
       const T H4_3 = rzz * H4_2;
       const T H4_4 = H4_3 * fb_z_y;
-      const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
-      const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-      const T H4_5 = T(2) * H4_1 * H4_2;
-      const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
-      const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
-      const T H4_6 = H4_5 * (rzz * fa_y_x_fb_z_x - ryz * fa_z_x_fb_z_x);
-      const T H4_7 = H4_2 * fa_z_x_fb_z_x + H4_6 * ryz;
-      const T H4_8 = H4_4 + fb_z_z * H4_7;
-      const T H4_9 = ryz * H4_2;
-      const T H4_10 = H4_9 * fb_z_y;
-      const T H4_11 = H4_6 * rzz - H4_2 * fa_y_x_fb_z_x;
-      const T H4_12 = fb_z_z * H4_11 - H4_10;
-      const T H4_13 = H4_3 * fb_z_z;
-      const T H4_14 = fb_z_y * H4_7 - H4_13;
-      const T H4_15 = H4_9 * fb_z_z;
-      const T H4_16 = H4_15 + fb_z_y * H4_11;
-      const T H4_17 = fa_y_y * H4_8 + fa_z_y * H4_12 - fa_y_z * H4_14 - fa_z_z * H4_16;
-      const T H4_1_2 = fa_y_z * H4_7 + fa_z_z * H4_11;
-      const T H4_2_2 = fb_z_x * H4_1_2 - fa_y_x * H4_8 - fa_z_x * H4_12;
-      const T H4_1_3 = fa_y_y * H4_7 + fa_z_y * H4_11;
-      const T H4_2_3 = fa_y_x * H4_14 + fa_z_x * H4_16 - fb_z_x * H4_1_3;
-      const T H4_1_4 = H4_3 * fa_y_y - H4_9 * fa_z_y;
+      const T H4_5 = fa_z_z * fb_z_y - fa_z_y * fb_z_z;
+      const T H4_6 = T(2) * H4_1 * H4_2;
+      const T H4_7 = fa_y_z * fb_z_y - fa_y_y * fb_z_z;
+      const T H4_8 = H4_6 * (ryz * H4_5 - rzz * H4_7);
+      const T H4_9 = H4_8 * ryz - H4_2 * H4_5;
+      const T H4_10 = H4_4 + fb_z_z * H4_9;
+      const T H4_11 = ryz * H4_2;
+      const T H4_12 = H4_11 * fb_z_y;
+      const T H4_13 = H4_2 * H4_7 + H4_8 * rzz;
+      const T H4_14 = fb_z_z * H4_13 - H4_12;
+      const T H4_15 = H4_3 * fb_z_z;
+      const T H4_16 = fb_z_y * H4_9 - H4_15;
+      const T H4_17 = H4_11 * fb_z_z;
+      const T H4_18 = H4_17 + fb_z_y * H4_13;
+      const T H4_19 = fa_y_y * H4_10 + fa_z_y * H4_14 - fa_y_z * H4_16 - fa_z_z * H4_18;
+      const T H4_1_2 = fa_y_z * H4_9 + fa_z_z * H4_13;
+      const T H4_2_2 = fb_z_x * H4_1_2 - fa_y_x * H4_10 - fa_z_x * H4_14;
+      const T H4_1_3 = fa_y_y * H4_9 + fa_z_y * H4_13;
+      const T H4_2_3 = fa_y_x * H4_16 + fa_z_x * H4_18 - fb_z_x * H4_1_3;
+      const T H4_1_4 = H4_2 * (fa_y_y * rzz - fa_z_y * ryz);
       const T H4_2_4 = H4_1_2 - H4_1_4;
-      const T H4_3_2 = H4_3 * fa_y_z - H4_9 * fa_z_z;
-      const T H4_4_2 = H4_1_3 + H4_3_2;
+      const T H4_3_2 = H4_2 * (fa_z_z * ryz - fa_y_z * rzz);
+      const T H4_4_2 = H4_1_3 - H4_3_2;
       const T H4_5_2 = fb_z_y * H4_2_4 - fb_z_z * H4_4_2;
-      const T H4_1_5 = fa_y_x * H4_7 + fa_z_x * H4_11;
+      const T H4_1_5 = fa_y_x * H4_9 + fa_z_x * H4_13;
       const T H4_2_5 = fb_z_z * H4_1_5 - fb_z_x * H4_2_4;
       const T H4_1_6 = fb_z_x * H4_4_2 - fb_z_y * H4_1_5;
       const T H5_1 = H4_3 * fb_z_x;
-      const T H5_2 = H4_5 * (fa_y_x_fb_z_y * rzz - ryz * fa_z_x_fb_z_y);
-      const T H5_3 = H4_2 * fa_z_x_fb_z_y + H5_2 * ryz;
-      const T H5_4 = fb_z_z * H5_3 - H5_1;
-      const T H5_5 = H4_9 * fb_z_x;
-      const T H5_6 = H5_2 * rzz - H4_2 * fa_y_x_fb_z_y;
-      const T H5_7 = H5_5 + fb_z_z * H5_6;
-      const T H5_8 = fa_y_z * H5_3 + fa_z_z * H5_6;
-      const T H5_9 = fa_y_y * H5_4 + fa_z_y * H5_7 - fb_z_y * H5_8;
-      const T H5_1_2 = H4_13 + fb_z_x * H5_3;
-      const T H5_2_2 = fb_z_x * H5_6 - H4_15;
-      const T H5_3_2 = fa_y_z * H5_1_2 - fa_y_x * H5_4 - fa_z_x * H5_7 + fa_z_z * H5_2_2;
-      const T H5_1_3 = fa_y_x * H5_3 + fa_z_x * H5_6;
+      const T H5_2 = fa_z_x * fb_z_z - fa_z_z * fb_z_x;
+      const T H5_3 = fa_y_x * fb_z_z - fa_y_z * fb_z_x;
+      const T H5_4 = H4_6 * (ryz * H5_2 - H5_3 * rzz);
+      const T H5_5 = H5_4 * ryz - H4_2 * H5_2;
+      const T H5_6 = fb_z_z * H5_5 - H5_1;
+      const T H5_7 = H4_11 * fb_z_x;
+      const T H5_8 = H4_2 * H5_3 + H5_4 * rzz;
+      const T H5_9 = H5_7 + fb_z_z * H5_8;
+      const T H5_10 = fa_y_z * H5_5 + fa_z_z * H5_8;
+      const T H5_11 = fa_y_y * H5_6 + fa_z_y * H5_9 - fb_z_y * H5_10;
+      const T H5_1_2 = H4_15 + fb_z_x * H5_5;
+      const T H5_2_2 = fb_z_x * H5_8 - H4_17;
+      const T H5_3_2 = fa_y_z * H5_1_2 - fa_y_x * H5_6 - fa_z_x * H5_9 + fa_z_z * H5_2_2;
+      const T H5_1_3 = fa_y_x * H5_5 + fa_z_x * H5_8;
       const T H5_2_3 = fb_z_y * H5_1_3 - fa_y_y * H5_1_2 - fa_z_y * H5_2_2;
-      const T H5_1_4 = H4_3 * fa_y_x - H4_9 * fa_z_x;
-      const T H5_2_4 = H5_8 + H5_1_4;
-      const T H5_3_3 = fa_y_y * H5_3 + fa_z_y * H5_6;
+      const T H5_1_4 = H4_2 * (fa_z_x * ryz - fa_y_x * rzz);
+      const T H5_2_4 = H5_10 - H5_1_4;
+      const T H5_3_3 = fa_y_y * H5_5 + fa_z_y * H5_8;
       const T H5_4_2 = fb_z_y * H5_2_4 - fb_z_z * H5_3_3;
-      const T H5_1_5 = H5_1_3 - H4_3_2;
+      const T H5_1_5 = H5_1_3 + H4_3_2;
       const T H5_2_5 = fb_z_z * H5_1_5 - fb_z_x * H5_2_4;
       const T H5_1_6 = fb_z_x * H5_3_3 - fb_z_y * H5_1_5;
-      const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
-      const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
-      const T H6_1 = H4_5 * (fa_y_x_fb_z_z * rzz - ryz * fa_z_x_fb_z_z);
-      const T H6_2 = H4_2 * fa_z_x_fb_z_z + H6_1 * ryz;
-      const T H6_3 = H5_1 + fb_z_y * H6_2;
-      const T H6_4 = H6_1 * rzz - H4_2 * fa_y_x_fb_z_z;
-      const T H6_5 = fb_z_y * H6_4 - H5_5;
-      const T H6_6 = fa_y_y * H6_2 + fa_z_y * H6_4;
-      const T H6_7 = fb_z_z * H6_6 - fa_y_z * H6_3 - fa_z_z * H6_5;
-      const T H6_1_2 = fb_z_x * H6_2 - H4_4;
-      const T H6_2_2 = H4_10 + fb_z_x * H6_4;
-      const T H6_3_2 = fa_y_x * H6_2 + fa_z_x * H6_4;
+      const T H6_1 = fa_z_y * fb_z_x - fa_z_x * fb_z_y;
+      const T H6_2 = fa_y_y * fb_z_x - fa_y_x * fb_z_y;
+      const T H6_3 = H4_6 * (ryz * H6_1 - H6_2 * rzz);
+      const T H6_4 = H6_3 * ryz - H4_2 * H6_1;
+      const T H6_5 = H5_1 + fb_z_y * H6_4;
+      const T H6_6 = H4_2 * H6_2 + H6_3 * rzz;
+      const T H6_7 = fb_z_y * H6_6 - H5_7;
+      const T H6_8 = fa_y_y * H6_4 + fa_z_y * H6_6;
+      const T H6_9 = fb_z_z * H6_8 - fa_y_z * H6_5 - fa_z_z * H6_7;
+      const T H6_1_2 = fb_z_x * H6_4 - H4_4;
+      const T H6_2_2 = H4_12 + fb_z_x * H6_6;
+      const T H6_3_2 = fa_y_x * H6_4 + fa_z_x * H6_6;
       const T H6_4_2 = fa_y_z * H6_1_2 + fa_z_z * H6_2_2 - fb_z_z * H6_3_2;
-      const T H6_1_3 = fa_y_x * H6_3 + fa_z_x * H6_5 - fa_y_y * H6_1_2 - fa_z_y * H6_2_2;
-      const T H6_1_4 = fa_y_z * H6_2 + fa_z_z * H6_4;
-      const T H6_2_3 = H6_6 - H5_1_4;
+      const T H6_1_3 = fa_y_x * H6_5 + fa_z_x * H6_7 - fa_y_y * H6_1_2 - fa_z_y * H6_2_2;
+      const T H6_1_4 = fa_y_z * H6_4 + fa_z_z * H6_6;
+      const T H6_2_3 = H6_8 + H5_1_4;
       const T H6_3_3 = fb_z_y * H6_1_4 - fb_z_z * H6_2_3;
       const T H6_1_5 = H6_3_2 + H4_1_4;
       const T H6_2_4 = fb_z_z * H6_1_5 - fb_z_x * H6_1_4;
       const T H6_1_6 = fb_z_x * H6_2_3 - fb_z_y * H6_1_5;
-      H[3][3] = H4_17;
+      H[3][3] = H4_19;
       H[3][4] = H4_2_2;
       H[3][5] = H4_2_3;
       H[3][9] = H4_5_2;
       H[3][10] = H4_2_5;
       H[3][11] = H4_1_6;
-      H[4][3] = H5_9;
+      H[4][3] = H5_11;
       H[4][4] = H5_3_2;
       H[4][5] = H5_2_3;
       H[4][9] = H5_4_2;
       H[4][10] = H5_2_5;
       H[4][11] = H5_1_6;
-      H[5][3] = H6_7;
+      H[5][3] = H6_9;
       H[5][4] = H6_4_2;
       H[5][5] = H6_1_3;
       H[5][9] = H6_3_3;
       H[5][10] = H6_2_4;
       H[5][11] = H6_1_6;
-      H[9][3] = -H4_17;
+      H[9][3] = -H4_19;
       H[9][4] = -H4_2_2;
       H[9][5] = -H4_2_3;
       H[9][9] = -H4_5_2;
       H[9][10] = -H4_2_5;
       H[9][11] = -H4_1_6;
-      H[10][3] = -H5_9;
+      H[10][3] = -H5_11;
       H[10][4] = -H5_3_2;
       H[10][5] = -H5_2_3;
       H[10][9] = -H5_4_2;
       H[10][10] = -H5_2_5;
       H[10][11] = -H5_1_6;
-      H[11][3] = -H6_7;
+      H[11][3] = -H6_9;
       H[11][4] = -H6_4_2;
       H[11][5] = -H6_1_3;
       H[11][9] = -H6_3_3;
@@ -2068,10 +1927,10 @@ struct six_dof {
 
     template <class T>
     struct Jacobian {
-      T wa_x, wa_y, wa_z, wb_x, wb_y, wb_z;
+      T wa_x, wa_y, wa_z;
     };
 
-    // C: 31 +, 47 *, 1 sqrt, 1 call
+    // C: 28 +, 44 *, 1 sqrt, 1 call
     template <class T>
     static void position(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1]) {
       using std::atan2;
@@ -2089,14 +1948,14 @@ struct six_dof {
       const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
       const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
       const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
-      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+      const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+      const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+      const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+      const T rzz = fb_z_x * fa_z_x + fb_z_y * fa_z_y + fb_z_z * fa_z_z;
       C[0] = atan2(rxz, sqrt(ryz * ryz + rzz * rzz));
     }
 
-    // C and J: 56 +, 96 *, 2 /, 1 sqrt, 2 <, 1 call
+    // C and J: 31 +, 53 *, 1 /, 1 sqrt, 1 <, 1 call
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -2115,49 +1974,30 @@ struct six_dof {
       const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
       const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
       const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
-      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+      const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+      const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+      const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+      const T rzz = fb_z_x * fa_z_x + fb_z_y * fa_z_y + fb_z_z * fa_z_z;
       const T C1_1 = sqrt(ryz * ryz + rzz * rzz);
-      const T wa_x_1 = inverse(rxz * rxz + C1_1 * C1_1);
-      const T wa_x_2 = inverse(C1_1) * rxz * wa_x_1;
-      const T wa_x_3 = ryz * wa_x_2;
-      const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
-      const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
-      const T wa_x_4 = rzz * wa_x_2;
-      const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
-      const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-      const T wa_x_5 = C1_1 * wa_x_1;
       const T fa_x_x_fb_z_x = fa_x_y * fb_z_z - fa_x_z * fb_z_y;
       const T fa_x_x_fb_z_y = fa_x_z * fb_z_x - fa_x_x * fb_z_z;
-      const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
-      const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
+      const T wa_x_1 = inverse(C1_1);
       const T fa_x_x_fb_z_z = fa_x_x * fb_z_y - fa_x_y * fb_z_x;
-      const T wb_x_1 = wa_x_5 * fa_x_z - wa_x_3 * fa_y_z - wa_x_4 * fa_z_z;
-      const T wb_x_2 = wa_x_5 * fa_x_y - wa_x_3 * fa_y_y - wa_x_4 * fa_z_y;
-      const T wb_y_1 = wa_x_5 * fa_x_x - wa_x_3 * fa_y_x - wa_x_4 * fa_z_x;
       C[0] = atan2(rxz, C1_1);
-      J.wa_x = wa_x_5 * fa_x_x_fb_z_x - wa_x_3 * fa_y_x_fb_z_x - wa_x_4 * fa_z_x_fb_z_x;
-      J.wa_y = wa_x_5 * fa_x_x_fb_z_y - wa_x_3 * fa_y_x_fb_z_y - wa_x_4 * fa_z_x_fb_z_y;
-      J.wa_z = wa_x_5 * fa_x_x_fb_z_z - wa_x_3 * fa_y_x_fb_z_z - wa_x_4 * fa_z_x_fb_z_z;
-      J.wb_x = fb_z_y * wb_x_1 - fb_z_z * wb_x_2;
-      J.wb_y = fb_z_z * wb_y_1 - fb_z_x * wb_x_1;
-      J.wb_z = fb_z_x * wb_x_2 - fb_z_y * wb_y_1;
+      J.wa_x = fa_x_x_fb_z_x * wa_x_1;
+      J.wa_y = fa_x_x_fb_z_y * wa_x_1;
+      J.wa_z = fa_x_x_fb_z_z * wa_x_1;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 11 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
       const T K11_1 = J.wa_z * T(2);
-      const T K11_2 = J.wb_z * T(2);
-      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
-          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
-          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
+      K[0] = J.wa_z * J.wa_z * (ma.Izz + mb.Izz) + J.wa_x *
+          (J.wa_x * (ma.Ixx + mb.Ixx) + J.wa_y * T(2) * (ma.Ixy + mb.Ixy) + K11_1 *
+          (ma.Ixz + mb.Ixz)) + J.wa_y * (J.wa_y * (ma.Iyy + mb.Iyy) + K11_1 * (ma.Iyz + mb.Iyz));
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -2172,16 +2012,15 @@ struct six_dof {
       lambda[0] = F[0] * rhs[0];
     }
 
-    // J v: 5 +, 6 *
+    // J v: 5 +, 3 *
     template <class T>
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.wb_x * vb.wx + J.wb_y * vb.wy +
-          J.wb_z * vb.wz;
+      Jv[0] = J.wa_x * (va.wx - vb.wx) + J.wa_y * (va.wy - vb.wy) + J.wa_z * (va.wz - vb.wz);
     }
 
-    // v += M^-1 J^T lambda: 18 +, 24 *
+    // v += M^-1 J^T lambda: 18 +, 21 *
     template <class T>
     static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
         Velocity<T> (&v)[2]) {
@@ -2192,18 +2031,15 @@ struct six_dof {
       const T v1_1 = J.wa_x * lambda[0];
       const T v1_2 = lambda[0] * J.wa_y;
       const T v1_3 = lambda[0] * J.wa_z;
-      const T v2_1 = lambda[0] * J.wb_x;
-      const T v2_2 = lambda[0] * J.wb_y;
-      const T v2_3 = lambda[0] * J.wb_z;
       v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
       v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
       v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
-      v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
-      v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
-      v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+      v[1].wx = vb.wx - v1_1 * mb.Ixx - v1_2 * mb.Ixy - v1_3 * mb.Ixz;
+      v[1].wy = vb.wy - v1_1 * mb.Ixy - v1_2 * mb.Iyy - v1_3 * mb.Iyz;
+      v[1].wz = vb.wz - v1_1 * mb.Ixz - v1_2 * mb.Iyz - v1_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: nothing
+    // J with its zeros: v, w of each body: 3 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -2212,12 +2048,12 @@ struct six_dof {
       D[0][3] = J.wa_x;
       D[0][4] = J.wa_y;
       D[0][5] = J.wa_z;
-      D[0][9] = J.wb_x;
-      D[0][10] = J.wb_y;
-      D[0][11] = J.wb_z;
+      D[0][9] = -J.wa_x;
+      D[0][10] = -J.wa_y;
+      D[0][11] = -J.wa_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 12 +, 18 *
+    // (M^-1 J^T)^T, laid out like dense: 15 +, 18 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -2229,19 +2065,18 @@ struct six_dof {
       D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
       D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
       D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
-      D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
-      D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
-      D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+      D[0][9] = -mb.Ixx * J.wa_x - mb.Ixy * J.wa_y - mb.Ixz * J.wa_z;
+      D[0][10] = -mb.Ixy * J.wa_x - mb.Iyy * J.wa_y - mb.Iyz * J.wa_z;
+      D[0][11] = -mb.Ixz * J.wa_x - mb.Iyz * J.wa_y - mb.Izz * J.wa_z;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
+    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+      K[0] = (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) * (ma.I + mb.I);
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -2257,12 +2092,12 @@ struct six_dof {
       v[0].wx = va.wx + v1_1 * J.wa_x;
       v[0].wy = va.wy + v1_1 * J.wa_y;
       v[0].wz = va.wz + v1_1 * J.wa_z;
-      v[1].wx = vb.wx + v2_1 * J.wb_x;
-      v[1].wy = vb.wy + v2_1 * J.wb_y;
-      v[1].wz = vb.wz + v2_1 * J.wb_z;
+      v[1].wx = vb.wx - v2_1 * J.wa_x;
+      v[1].wy = vb.wy - v2_1 * J.wa_y;
+      v[1].wz = vb.wz - v2_1 * J.wa_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -2274,12 +2109,12 @@ struct six_dof {
       D[0][3] = ma.I * J.wa_x;
       D[0][4] = ma.I * J.wa_y;
       D[0][5] = ma.I * J.wa_z;
-      D[0][9] = mb.I * J.wb_x;
-      D[0][10] = mb.I * J.wb_y;
-      D[0][11] = mb.I * J.wb_z;
+      D[0][9] = -mb.I * J.wa_x;
+      D[0][10] = -mb.I * J.wa_y;
+      D[0][11] = -mb.I * J.wa_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -2290,12 +2125,12 @@ struct six_dof {
       D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
       D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
       D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-      D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-      D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-      D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+      D[0][9] = -J.wa_x * b.xx - J.wa_y * b.yx - J.wa_z * b.zx;
+      D[0][10] = -J.wa_x * b.xy - J.wa_y * b.yy - J.wa_z * b.zy;
+      D[0][11] = -J.wa_x * b.xz - J.wa_y * b.yz - J.wa_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 27 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -2303,17 +2138,20 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-      D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-      D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-      D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+      const T D1_1 = J.wa_x * T(2);
+      const T D1_2 = J.wa_y * T(2);
+      const T D1_3 = J.wa_z * T(2);
+      D[0][3] = -D1_1 * a.e1 - D1_2 * a.e2 - D1_3 * a.e3;
+      D[0][4] = D1_1 * a.e0 + D1_2 * a.e3 - D1_3 * a.e2;
+      D[0][5] = D1_2 * a.e0 - D1_1 * a.e3 + D1_3 * a.e1;
+      D[0][6] = D1_1 * a.e2 - D1_2 * a.e1 + D1_3 * a.e0;
+      D[0][10] = D1_1 * b.e1 + D1_2 * b.e2 + D1_3 * b.e3;
+      D[0][11] = D1_3 * b.e2 - D1_1 * b.e0 - D1_2 * b.e3;
+      D[0][12] = D1_1 * b.e3 - D1_2 * b.e0 - D1_3 * b.e1;
+      D[0][13] = D1_2 * b.e1 - D1_1 * b.e2 - D1_3 * b.e0;
     }
 
-    // -Jdot v - d/dt(dC/dt): 104 +, 163 *, 2 /, 1 sqrt, 2 <
+    // -Jdot v - d/dt(dC/dt): 70 +, 106 *, 1 /, 1 sqrt, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -2322,28 +2160,31 @@ struct six_dof {
       const Velocity<T>& va = v[0];
       const Pose<T>& b = q[1];
       const Velocity<T>& vb = v[1];
-      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-      const T rxz = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
       const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
       const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
       const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
       const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
-      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-      const T g1_1 = sqrt(ryz * ryz + rzz * rzz);
-      const T g1_2 = inverse(rxz * rxz + g1_1 * g1_1);
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+      const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+      const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+      const T rzz = fb_z_x * fa_z_x + fb_z_y * fa_z_y + fb_z_z * fa_z_z;
+      const T g1_1 = inverse(sqrt(ryz * ryz + rzz * rzz));
+      const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
       const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
       const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
-      const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
-      const T dot_w_b_x_fb_z_fa_x = fa_x_x * w_b_x_fb_z_x + fa_x_y * w_b_x_fb_z_y + fa_x_z *
-          w_b_x_fb_z_z;
+      const T w_b_x_fb_z_x_fa_x_x = fa_x_z * w_b_x_fb_z_y - fa_x_y * w_b_x_fb_z_z;
+      const T w_b_x_fb_z_x_fa_x_y = fa_x_x * w_b_x_fb_z_z - fa_x_z * w_b_x_fb_z_x;
+      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
+      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
+      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
+      const T w_a_x_fa_x_x_fb_z_x = fb_z_z * w_a_x_fa_x_y - fb_z_y * w_a_x_fa_x_z;
+      const T w_a_x_fa_x_x_fb_z_y = fb_z_x * w_a_x_fa_x_z - fb_z_z * w_a_x_fa_x_x;
       const T dot_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_fb_z_x + fa_y_y * w_b_x_fb_z_y + fa_y_z *
           w_b_x_fb_z_z;
       const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
@@ -2352,63 +2193,24 @@ struct six_dof {
       const T dot_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_fa_y_x + fb_z_y * w_a_x_fa_y_y + fb_z_z *
           w_a_x_fa_y_z;
       const T ryz_dot = dot_w_b_x_fb_z_fa_y + dot_w_a_x_fa_y_fb_z;
-      const T dot_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_fb_z_x + fa_z_y * w_b_x_fb_z_y + fa_z_z *
-          w_b_x_fb_z_z;
       const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
       const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
       const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
       const T dot_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_fa_z_x + fb_z_y * w_a_x_fa_z_y + fb_z_z *
           w_a_x_fa_z_z;
-      const T rzz_dot = dot_w_b_x_fb_z_fa_z + dot_w_a_x_fa_z_fb_z;
-      const T g1_3 = ryz_dot * ryz + rzz_dot * rzz;
-      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-      const T dot_w_a_x_fa_x_fb_z = fb_z_x * w_a_x_fa_x_x + fb_z_y * w_a_x_fa_x_y + fb_z_z *
-          w_a_x_fa_x_z;
-      const T rxz_dot = dot_w_b_x_fb_z_fa_x + dot_w_a_x_fa_x_fb_z;
-      const T g1_4 = inverse(g1_1);
-      const T g1_5 = g1_3 * g1_4;
-      const T g1_6 = rxz * g1_5;
-      const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
-      const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
-      const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-      const T dot_w_b_x_w_b_x_fb_z_fa_x = fa_x_x * w_b_x_w_b_x_fb_z_x + fa_x_y *
-          w_b_x_w_b_x_fb_z_y + fa_x_z * w_b_x_w_b_x_fb_z_z;
-      const T dot_w_b_x_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_w_b_x_fb_z_x + fa_y_y *
-          w_b_x_w_b_x_fb_z_y + fa_y_z * w_b_x_w_b_x_fb_z_z;
-      const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-      const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-      const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-      const T dot_w_a_x_w_a_x_fa_x_fb_z = fb_z_x * w_a_x_w_a_x_fa_x_x + fb_z_y *
-          w_a_x_w_a_x_fa_x_y + fb_z_z * w_a_x_w_a_x_fa_x_z;
-      const T dot_w_a_x_fa_x_w_b_x_fb_z = w_a_x_fa_x_z * w_b_x_fb_z_z + w_a_x_fa_x_y *
-          w_b_x_fb_z_y + w_a_x_fa_x_x * w_b_x_fb_z_x;
-      const T rxz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_x + dot_w_a_x_w_a_x_fa_x_fb_z + T(2) *
-          dot_w_a_x_fa_x_w_b_x_fb_z;
-      const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-      const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-      const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-      const T dot_w_a_x_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_w_a_x_fa_y_x + fb_z_y *
-          w_a_x_w_a_x_fa_y_y + fb_z_z * w_a_x_w_a_x_fa_y_z;
-      const T dot_w_a_x_fa_y_w_b_x_fb_z = w_a_x_fa_y_z * w_b_x_fb_z_z + w_a_x_fa_y_y *
-          w_b_x_fb_z_y + w_a_x_fa_y_x * w_b_x_fb_z_x;
-      const T ryz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_y + dot_w_a_x_w_a_x_fa_y_fb_z + T(2) *
-          dot_w_a_x_fa_y_w_b_x_fb_z;
-      const T dot_w_b_x_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_w_b_x_fb_z_x + fa_z_y *
-          w_b_x_w_b_x_fb_z_y + fa_z_z * w_b_x_w_b_x_fb_z_z;
-      const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-      const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-      const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-      const T dot_w_a_x_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_w_a_x_fa_z_x + fb_z_y *
-          w_a_x_w_a_x_fa_z_y + fb_z_z * w_a_x_w_a_x_fa_z_z;
-      const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
-          w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
-      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z + T(2) *
-          dot_w_a_x_fa_z_w_b_x_fb_z;
-      g[0] = g1_2 * (T(2) * (g1_3 + rxz_dot * rxz) * (rxz_dot * g1_1 - g1_6) * g1_2 - rxz_dot_dot *
-          g1_1 - g1_4 * (g1_6 * g1_5 -
-          (ryz_dot * ryz_dot + ryz_dot_dot * ryz + rzz_dot * rzz_dot + rzz_dot_dot * rzz) * rxz));
+      const T dot_w_b_x_fb_z_fa_z = w_b_x_fb_z_z * fa_z_z + w_b_x_fb_z_y * fa_z_y + w_b_x_fb_z_x *
+          fa_z_x;
+      const T rzz_dot = dot_w_a_x_fa_z_fb_z + dot_w_b_x_fb_z_fa_z;
+      const T g1_2 = g1_1 * g1_1 * (ryz_dot * ryz + rzz_dot * rzz);
+      const T fa_x_x_fb_z_x = fa_x_y * fb_z_z - fa_x_z * fb_z_y;
+      const T fa_x_x_fb_z_y = fa_x_z * fb_z_x - fa_x_x * fb_z_z;
+      const T w_b_x_fb_z_x_fa_x_z = fa_x_y * w_b_x_fb_z_x - fa_x_x * w_b_x_fb_z_y;
+      const T w_a_x_fa_x_x_fb_z_z = fb_z_y * w_a_x_fa_x_x - fb_z_x * w_a_x_fa_x_y;
+      const T fa_x_x_fb_z_z = fa_x_x * fb_z_y - fa_x_y * fb_z_x;
+      g[0] = -g1_1 * ((va.wx - vb.wx) *
+          (w_a_x_fa_x_x_fb_z_x - w_b_x_fb_z_x_fa_x_x - g1_2 * fa_x_x_fb_z_x) + (va.wy - vb.wy) *
+          (w_a_x_fa_x_x_fb_z_y - w_b_x_fb_z_x_fa_x_y - g1_2 * fa_x_x_fb_z_y) + (va.wz - vb.wz) *
+          (w_a_x_fa_x_x_fb_z_z - w_b_x_fb_z_x_fa_x_z - g1_2 * fa_x_x_fb_z_z));
     }
 
     // dC/dt at fixed q: nothing
@@ -2417,7 +2219,7 @@ struct six_dof {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 182 +, 252 *, 2 /, 1 sqrt, 2 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 92 +, 121 *, 1 /, 1 sqrt, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -2427,8 +2229,6 @@ struct six_dof {
       using std::sqrt;
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
       const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
       const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
       const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
@@ -2436,167 +2236,106 @@ struct six_dof {
       const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
       const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
       const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
-      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-      const T H4_1 = sqrt(ryz * ryz + rzz * rzz);
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
       const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T rxz = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
-      const T H4_2 = inverse(rxz * rxz + H4_1 * H4_1);
-      const T H4_3 = lambda[0] * H4_2;
-      const T H4_4 = H4_1 * H4_3;
-      const T H4_5 = H4_4 * fb_z_y;
-      const T H4_6 = inverse(H4_1);
-      const T H4_7 = H4_3 * H4_6;
-      const T H4_8 = ryz * H4_7;
-      const T H4_9 = fa_y_y * fb_z_z;
-      const T H4_10 = fb_z_y * fa_y_z;
-      const T fa_y_x_fb_z_x = H4_9 - H4_10;
-      const T H4_11 = fa_y_x * fb_z_z;
-      const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - H4_11;
-      const T H4_12 = rzz * H4_7;
-      const T H4_13 = fb_z_z * fa_z_y;
-      const T H4_14 = fb_z_y * fa_z_z;
-      const T fa_z_x_fb_z_x = H4_13 - H4_14;
-      const T H4_15 = fb_z_z * fa_z_x;
-      const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - H4_15;
-      const T H4_16 = H4_2 * T(2);
-      const T H4_17 = rxz * H4_16;
-      const T H4_18 = H4_4 * H4_17;
-      const T H4_19 = fa_x_y * fb_z_z;
-      const T H4_20 = fb_z_y * fa_x_z;
-      const T fa_x_x_fb_z_x = H4_19 - H4_20;
-      const T H4_21 = fb_z_z * fa_x_x;
-      const T fa_x_x_fb_z_y = fa_x_z * fb_z_x - H4_21;
-      const T H4_22 = rxz * H4_7;
-      const T H4_23 = ryz * H4_22;
-      const T H4_24 = rzz * H4_22;
-      const T H4_25 = fa_y_x_fb_z_x * H4_23 + fa_z_x_fb_z_x * H4_24;
-      const T H4_26 = H4_17 * H4_25 - H4_8 * fa_y_x_fb_z_x - H4_12 * fa_z_x_fb_z_x - H4_18 *
-          fa_x_x_fb_z_x;
-      const T H4_27 = fb_z_z * H4_26 - H4_5;
-      const T H4_28 = H4_23 * fb_z_y;
-      const T H4_29 = H4_7 - H4_4 * H4_16;
-      const T H4_30 = H4_16 + H4_6 * H4_6;
-      const T H4_31 = fa_x_x_fb_z_x * H4_29 + H4_25 * H4_30;
-      const T H4_32 = H4_31 * ryz - H4_22 * fa_y_x_fb_z_x;
-      const T H4_33 = H4_28 + fb_z_z * H4_32;
-      const T H4_34 = H4_24 * fb_z_y;
-      const T H4_35 = H4_31 * rzz - H4_22 * fa_z_x_fb_z_x;
-      const T H4_36 = H4_34 + fb_z_z * H4_35;
-      const T H4_37 = H4_4 * fb_z_z;
-      const T H4_38 = H4_37 + fb_z_y * H4_26;
-      const T H4_39 = H4_23 * fb_z_z;
-      const T H4_40 = fb_z_y * H4_32 - H4_39;
-      const T H4_41 = H4_24 * fb_z_z;
-      const T H4_42 = fb_z_y * H4_35 - H4_41;
-      const T H4_43 = fa_x_y * H4_27 + fa_y_y * H4_33 + fa_z_y * H4_36 - fa_x_z * H4_38 - fa_y_z *
-          H4_40 - fa_z_z * H4_42;
-      const T H4_1_2 = fb_z_x * H4_26;
-      const T H4_2_2 = fb_z_x * H4_32;
-      const T H4_3_2 = fb_z_x * H4_35;
-      const T H4_4_2 = H4_1_2 * fa_x_z - fa_x_x * H4_27 - fa_y_x * H4_33 - fa_z_x * H4_36 +
-          H4_2_2 * fa_y_z + H4_3_2 * fa_z_z;
-      const T H4_1_3 = fa_x_x * H4_38 + fa_y_x * H4_40 + fa_z_x * H4_42 - H4_1_2 * fa_x_y -
-          H4_2_2 * fa_y_y - H4_3_2 * fa_z_y;
-      const T H4_1_4 = H4_24 * fa_z_y - H4_4 * fa_x_y + H4_23 * fa_y_y;
-      const T H4_2_3 = fa_x_z * H4_26 - H4_1_4 + fa_y_z * H4_32 + fa_z_z * H4_35;
-      const T H4_3_3 = H4_24 * fa_z_z - H4_4 * fa_x_z + H4_23 * fa_y_z;
-      const T H4_4_3 = H4_3_3 + fa_x_y * H4_26 + fa_y_y * H4_32 + fa_z_y * H4_35;
-      const T H4_5_2 = fb_z_y * H4_2_3 - fb_z_z * H4_4_3;
-      const T H4_1_5 = fa_x_x * H4_26 + fa_y_x * H4_32 + fa_z_x * H4_35;
-      const T H4_2_4 = fb_z_z * H4_1_5 - fb_z_x * H4_2_3;
-      const T H4_1_6 = fb_z_x * H4_4_3 - fb_z_y * H4_1_5;
-      const T H5_1 = H4_4 * fb_z_x;
-      const T H5_2 = H4_23 * fa_y_x_fb_z_y + H4_24 * fa_z_x_fb_z_y;
-      const T H5_3 = H4_17 * H5_2 - H4_8 * fa_y_x_fb_z_y - H4_12 * fa_z_x_fb_z_y - H4_18 *
-          fa_x_x_fb_z_y;
-      const T H5_4 = H5_1 + fb_z_z * H5_3;
-      const T H5_5 = H4_23 * fb_z_x;
-      const T H5_6 = fa_x_x_fb_z_y * H4_29 + H5_2 * H4_30;
-      const T H5_7 = H5_6 * ryz - H4_22 * fa_y_x_fb_z_y;
-      const T H5_8 = fb_z_z * H5_7 - H5_5;
-      const T H5_9 = H4_24 * fb_z_x;
-      const T H5_10 = H5_6 * rzz - H4_22 * fa_z_x_fb_z_y;
-      const T H5_11 = fb_z_z * H5_10 - H5_9;
-      const T H5_12 = fa_x_y * H5_4 + fa_y_y * H5_8 + fa_z_y * H5_11 - H4_20 * H5_3 - H4_10 *
-          H5_7 - H4_14 * H5_10;
-      const T H5_1_2 = fb_z_x * H5_3 - H4_37;
-      const T H5_2_2 = H4_39 + fb_z_x * H5_7;
-      const T H5_3_2 = H4_41 + fb_z_x * H5_10;
-      const T H5_4_2 = fa_x_z * H5_1_2 - fa_x_x * H5_4 - fa_y_x * H5_8 - fa_z_x * H5_11 + fa_y_z *
-          H5_2_2 + fa_z_z * H5_3_2;
-      const T H5_1_3 = fa_z_x * H5_10 + fa_x_x * H5_3 + fa_y_x * H5_7;
-      const T H5_2_3 = fb_z_y * H5_1_3 - fa_x_y * H5_1_2 - fa_y_y * H5_2_2 - fa_z_y * H5_3_2;
-      const T H5_1_4 = H4_24 * fa_z_x - H4_4 * fa_x_x + H4_23 * fa_y_x;
-      const T H5_2_4 = H5_1_4 + fa_x_z * H5_3 + fa_y_z * H5_7 + fa_z_z * H5_10;
-      const T H5_3_3 = fa_x_y * H5_3 + fa_y_y * H5_7 + fa_z_y * H5_10;
-      const T H5_4_3 = fb_z_y * H5_2_4 - fb_z_z * H5_3_3;
-      const T H5_1_5 = H5_1_3 - H4_3_3;
-      const T H5_2_5 = fb_z_z * H5_1_5 - fb_z_x * H5_2_4;
-      const T H5_1_6 = fb_z_x * H5_3_3 - fb_z_y * H5_1_5;
-      const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
-      const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
+      const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+      const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+      const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+      const T rzz = fb_z_x * fa_z_x + fb_z_y * fa_z_y + fb_z_z * fa_z_z;
+      const T H4_1 = inverse(sqrt(ryz * ryz + rzz * rzz));
+      const T H4_2 = lambda[0] * H4_1;
+      const T H4_3 = fa_x_y * fb_z_y;
+      const T H4_4 = fa_x_z * fb_z_z;
+      const T fa_x_x_fb_z_x = fa_x_y * fb_z_z - fa_x_z * fb_z_y;
+      const T fa_x_x_fb_z_y = fa_x_z * fb_z_x - fa_x_x * fb_z_z;
+      const T H4_5 = H4_1 * H4_1 * H4_2;
+      const T H4_6 = ryz * H4_5;
+      const T H4_7 = fa_x_x_fb_z_x * H4_6;
+      const T H4_8 = rzz * H4_5;
+      const T H4_9 = fa_x_x_fb_z_x * H4_8;
+      const T H4_10 = H4_7 * fa_y_z + H4_9 * fa_z_z;
+      const T H4_11 = H4_7 * fa_y_y + H4_9 * fa_z_y;
+      const T H4_12 = fb_z_y * H4_10 - H4_2 * (H4_3 + H4_4) - fb_z_z * H4_11;
+      const T H4_1_2 = fa_x_x * H4_2;
+      const T H4_2_2 = H4_7 * fa_y_x + H4_9 * fa_z_x;
+      const T H4_3_2 = fb_z_z * H4_2_2;
+      const T H4_4_2 = H4_1_2 * fb_z_y - fb_z_x * H4_10 + H4_3_2;
+      const T H4_1_3 = fb_z_y * H4_2_2;
+      const T H4_2_3 = H4_1_2 * fb_z_z + fb_z_x * H4_11 - H4_1_3;
+      const T H4_1_4 = fa_x_y * H4_2;
+      const T H4_2_4 = H4_1_4 - H4_10;
+      const T H4_3_3 = fa_x_z * H4_2;
+      const T H4_4_3 = H4_11 + H4_3_3;
+      const T H4_5_2 = fb_z_y * H4_2_4 + fb_z_z * H4_4_3;
+      const T H4_1_5 = fb_z_x * H4_2_4 + H4_3_2;
+      const T H4_1_6 = H4_1_3 - fb_z_x * H4_4_3;
+      const T H5_1 = H4_6 * fa_x_x_fb_z_y;
+      const T H5_2 = H4_8 * fa_x_x_fb_z_y;
+      const T H5_3 = H5_1 * fa_y_z + H5_2 * fa_z_z;
+      const T H5_4 = H5_1 * fa_y_y + H5_2 * fa_z_y;
+      const T H5_5 = fb_z_z * H5_4;
+      const T H5_6 = H4_1_4 * fb_z_x + fb_z_y * H5_3 - H5_5;
+      const T H5_1_2 = fa_x_x * fb_z_x;
+      const T H5_2_2 = H5_1 * fa_y_x + H5_2 * fa_z_x;
+      const T H5_3_2 = fb_z_z * H5_2_2 - H4_2 * (H5_1_2 + H4_4) - fb_z_x * H5_3;
+      const T H5_1_3 = fb_z_x * H5_4;
+      const T H5_2_3 = H4_1_4 * fb_z_z + H5_1_3 - fb_z_y * H5_2_2;
+      const T H5_1_4 = H5_3 + H4_1_2;
+      const T H5_2_4 = H5_5 - fb_z_y * H5_1_4;
+      const T H5_1_5 = H4_3_3 - H5_2_2;
+      const T H5_2_5 = fb_z_x * H5_1_4 + fb_z_z * H5_1_5;
+      const T H5_1_6 = H5_1_3 + fb_z_y * H5_1_5;
       const T fa_x_x_fb_z_z = fa_x_x * fb_z_y - fa_x_y * fb_z_x;
-      const T H6_1 = H4_23 * fa_y_x_fb_z_z + H4_24 * fa_z_x_fb_z_z;
-      const T H6_2 = H4_17 * H6_1 - H4_8 * fa_y_x_fb_z_z - H4_12 * fa_z_x_fb_z_z - H4_18 *
-          fa_x_x_fb_z_z;
-      const T H6_3 = fa_x_x_fb_z_z * H4_29 + H6_1 * H4_30;
-      const T H6_4 = H6_3 * ryz - H4_22 * fa_y_x_fb_z_z;
-      const T H6_5 = H6_3 * rzz - H4_22 * fa_z_x_fb_z_z;
-      const T H6_6 = fb_z_y * H6_2 - H5_1;
-      const T H6_7 = H5_5 + fb_z_y * H6_4;
-      const T H6_8 = H5_9 + fb_z_y * H6_5;
-      const T H6_9 = H4_19 * H6_2 + H4_9 * H6_4 + H4_13 * H6_5 - fa_x_z * H6_6 - fa_y_z * H6_7 -
-          fa_z_z * H6_8;
-      const T H6_1_2 = H4_5 + fb_z_x * H6_2;
-      const T H6_2_2 = fb_z_x * H6_4 - H4_28;
-      const T H6_3_2 = fb_z_x * H6_5 - H4_34;
-      const T H6_4_2 = fa_x_z * H6_1_2 - H4_21 * H6_2 - H4_11 * H6_4 - H4_15 * H6_5 + fa_y_z *
-          H6_2_2 + fa_z_z * H6_3_2;
-      const T H6_1_3 = fa_x_x * H6_6 + fa_y_x * H6_7 + fa_z_x * H6_8 - fa_x_y * H6_1_2 - fa_y_y *
-          H6_2_2 - fa_z_y * H6_3_2;
-      const T H6_1_4 = fa_x_z * H6_2 + fa_y_z * H6_4 + fa_z_z * H6_5;
-      const T H6_2_3 = fa_x_y * H6_2 - H5_1_4 + fa_y_y * H6_4 + fa_z_y * H6_5;
-      const T H6_3_3 = fb_z_y * H6_1_4 - fb_z_z * H6_2_3;
-      const T H6_1_5 = H4_1_4 + fa_x_x * H6_2 + fa_y_x * H6_4 + fa_z_x * H6_5;
-      const T H6_2_4 = fb_z_z * H6_1_5 - fb_z_x * H6_1_4;
-      const T H6_1_6 = fb_z_x * H6_2_3 - fb_z_y * H6_1_5;
-      H[3][3] = H4_43;
+      const T H6_1 = H4_6 * fa_x_x_fb_z_z;
+      const T H6_2 = H4_8 * fa_x_x_fb_z_z;
+      const T H6_3 = H6_1 * fa_y_z + H6_2 * fa_z_z;
+      const T H6_4 = fb_z_y * H6_3;
+      const T H6_5 = H6_1 * fa_y_y + H6_2 * fa_z_y;
+      const T H6_6 = H4_3_3 * fb_z_x + H6_4 - fb_z_z * H6_5;
+      const T H6_1_2 = fb_z_x * H6_3;
+      const T H6_2_2 = H6_1 * fa_y_x + H6_2 * fa_z_x;
+      const T H6_3_2 = H4_3_3 * fb_z_y - H6_1_2 + fb_z_z * H6_2_2;
+      const T H6_1_3 = fb_z_x * H6_5 - H4_2 * (H5_1_2 + H4_3) - fb_z_y * H6_2_2;
+      const T H6_1_4 = H4_1_2 - H6_5;
+      const T H6_2_3 = H6_4 + fb_z_z * H6_1_4;
+      const T H6_1_5 = H6_2_2 + H4_1_4;
+      const T H6_2_4 = H6_1_2 - fb_z_z * H6_1_5;
+      const T H6_1_6 = fb_z_x * H6_1_4 + fb_z_y * H6_1_5;
+      H[3][3] = H4_12;
       H[3][4] = H4_4_2;
-      H[3][5] = H4_1_3;
+      H[3][5] = H4_2_3;
       H[3][9] = H4_5_2;
-      H[3][10] = H4_2_4;
+      H[3][10] = -H4_1_5;
       H[3][11] = H4_1_6;
-      H[4][3] = H5_12;
-      H[4][4] = H5_4_2;
+      H[4][3] = H5_6;
+      H[4][4] = H5_3_2;
       H[4][5] = H5_2_3;
-      H[4][9] = H5_4_3;
+      H[4][9] = H5_2_4;
       H[4][10] = H5_2_5;
-      H[4][11] = H5_1_6;
-      H[5][3] = H6_9;
-      H[5][4] = H6_4_2;
+      H[4][11] = -H5_1_6;
+      H[5][3] = H6_6;
+      H[5][4] = H6_3_2;
       H[5][5] = H6_1_3;
-      H[5][9] = H6_3_3;
+      H[5][9] = -H6_2_3;
       H[5][10] = H6_2_4;
       H[5][11] = H6_1_6;
-      H[9][3] = -H4_43;
+      H[9][3] = -H4_12;
       H[9][4] = -H4_4_2;
-      H[9][5] = -H4_1_3;
+      H[9][5] = -H4_2_3;
       H[9][9] = -H4_5_2;
-      H[9][10] = -H4_2_4;
+      H[9][10] = H4_1_5;
       H[9][11] = -H4_1_6;
-      H[10][3] = -H5_12;
-      H[10][4] = -H5_4_2;
+      H[10][3] = -H5_6;
+      H[10][4] = -H5_3_2;
       H[10][5] = -H5_2_3;
-      H[10][9] = -H5_4_3;
+      H[10][9] = -H5_2_4;
       H[10][10] = -H5_2_5;
-      H[10][11] = -H5_1_6;
-      H[11][3] = -H6_9;
-      H[11][4] = -H6_4_2;
+      H[10][11] = H5_1_6;
+      H[11][3] = -H6_6;
+      H[11][4] = -H6_3_2;
       H[11][5] = -H6_1_3;
-      H[11][9] = -H6_3_3;
+      H[11][9] = H6_2_3;
       H[11][10] = -H6_2_4;
       H[11][11] = -H6_1_6;
     }
@@ -2619,7 +2358,7 @@ struct six_dof {
 
     template <class T>
     struct Jacobian {
-      T wa_x, wa_y, wa_z, wb_x, wb_y, wb_z;
+      T axis_turn_z_x, axis_turn_z_y, axis_turn_z_z;
     };
 
     // C: 23 +, 33 *, 1 call
@@ -2642,7 +2381,7 @@ struct six_dof {
       C[0] = atan2(-dot_fa_x_fb_y, dot_fa_x_fb_x);
     }
 
-    // C and J: 39 +, 67 *, 1 /, 1 <, 1 call
+    // C and J: 30 +, 49 *, 1 /, 1 <, 1 call
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -2660,39 +2399,29 @@ struct six_dof {
       const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
       const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
       const T dot_fa_x_fb_y = fa_x_x * fb_y_x + fa_x_y * fb_y_y + fa_x_z * fb_y_z;
-      const T wa_x_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_x_fb_y * dot_fa_x_fb_y);
-      const T wa_x_2 = dot_fa_x_fb_y * wa_x_1;
-      const T wa_x_3 = dot_fa_x_fb_x * wa_x_1;
-      const T wa_x_4 = wa_x_2 * fb_x_z - wa_x_3 * fb_y_z;
-      const T wa_x_5 = wa_x_2 * fb_x_y - wa_x_3 * fb_y_y;
-      const T wa_y_1 = wa_x_2 * fb_x_x - wa_x_3 * fb_y_x;
-      const T fa_x_x_fb_y_x = fa_x_y * fb_y_z - fa_x_z * fb_y_y;
-      const T fa_x_x_fb_y_y = fa_x_z * fb_y_x - fa_x_x * fb_y_z;
-      const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
-      const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
-      const T fa_x_x_fb_y_z = fa_x_x * fb_y_y - fa_x_y * fb_y_x;
-      const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
+      const T axis_turn_z_x_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_x_fb_y *
+          dot_fa_x_fb_y);
+      const T axis_turn_z_x_2 = dot_fa_x_fb_y * axis_turn_z_x_1;
+      const T axis_turn_z_x_3 = dot_fa_x_fb_x * axis_turn_z_x_1;
+      const T axis_turn_z_x_4 = axis_turn_z_x_3 * fb_y_z - axis_turn_z_x_2 * fb_x_z;
+      const T axis_turn_z_x_5 = axis_turn_z_x_3 * fb_y_y - axis_turn_z_x_2 * fb_x_y;
+      const T axis_turn_z_y_1 = axis_turn_z_x_3 * fb_y_x - axis_turn_z_x_2 * fb_x_x;
       C[0] = atan2(-dot_fa_x_fb_y, dot_fa_x_fb_x);
-      J.wa_x = fa_x_y * wa_x_4 - fa_x_z * wa_x_5;
-      J.wa_y = fa_x_z * wa_y_1 - fa_x_x * wa_x_4;
-      J.wa_z = fa_x_x * wa_x_5 - fa_x_y * wa_y_1;
-      J.wb_x = wa_x_3 * fa_x_x_fb_y_x - wa_x_2 * fa_x_x_fb_x_x;
-      J.wb_y = wa_x_3 * fa_x_x_fb_y_y - wa_x_2 * fa_x_x_fb_x_y;
-      J.wb_z = wa_x_3 * fa_x_x_fb_y_z - wa_x_2 * fa_x_x_fb_x_z;
+      J.axis_turn_z_x = fa_x_z * axis_turn_z_x_5 - fa_x_y * axis_turn_z_x_4;
+      J.axis_turn_z_y = fa_x_x * axis_turn_z_x_4 - fa_x_z * axis_turn_z_y_1;
+      J.axis_turn_z_z = fa_x_y * axis_turn_z_y_1 - fa_x_x * axis_turn_z_x_5;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 11 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      const T K11_1 = J.wa_z * T(2);
-      const T K11_2 = J.wb_z * T(2);
-      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
-          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
-          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
+      const T K11_1 = J.axis_turn_z_z * T(2);
+      K[0] = J.axis_turn_z_z * J.axis_turn_z_z * (ma.Izz + mb.Izz) + J.axis_turn_z_x *
+          (J.axis_turn_z_x * (ma.Ixx + mb.Ixx) + J.axis_turn_z_y * T(2) * (ma.Ixy + mb.Ixy) +
+          K11_1 * (ma.Ixz + mb.Ixz)) + J.axis_turn_z_y *
+          (J.axis_turn_z_y * (ma.Iyy + mb.Iyy) + K11_1 * (ma.Iyz + mb.Iyz));
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -2707,16 +2436,16 @@ struct six_dof {
       lambda[0] = F[0] * rhs[0];
     }
 
-    // J v: 5 +, 6 *
+    // J v: 5 +, 3 *
     template <class T>
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.wb_x * vb.wx + J.wb_y * vb.wy +
-          J.wb_z * vb.wz;
+      Jv[0] = J.axis_turn_z_x * (va.wx - vb.wx) + J.axis_turn_z_y * (va.wy - vb.wy) +
+          J.axis_turn_z_z * (va.wz - vb.wz);
     }
 
-    // v += M^-1 J^T lambda: 18 +, 24 *
+    // v += M^-1 J^T lambda: 18 +, 21 *
     template <class T>
     static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
         Velocity<T> (&v)[2]) {
@@ -2724,35 +2453,32 @@ struct six_dof {
       const InverseMass<T>& ma = m[0];
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
-      const T v1_1 = J.wa_x * lambda[0];
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
-      const T v2_1 = lambda[0] * J.wb_x;
-      const T v2_2 = lambda[0] * J.wb_y;
-      const T v2_3 = lambda[0] * J.wb_z;
+      const T v1_1 = J.axis_turn_z_x * lambda[0];
+      const T v1_2 = lambda[0] * J.axis_turn_z_y;
+      const T v1_3 = lambda[0] * J.axis_turn_z_z;
       v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
       v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
       v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
-      v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
-      v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
-      v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+      v[1].wx = vb.wx - v1_1 * mb.Ixx - v1_2 * mb.Ixy - v1_3 * mb.Ixz;
+      v[1].wy = vb.wy - v1_1 * mb.Ixy - v1_2 * mb.Iyy - v1_3 * mb.Iyz;
+      v[1].wz = vb.wz - v1_1 * mb.Ixz - v1_2 * mb.Iyz - v1_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: nothing
+    // J with its zeros: v, w of each body: 3 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
         for (T& entry : row) entry = T(0);
       }
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
-      D[0][9] = J.wb_x;
-      D[0][10] = J.wb_y;
-      D[0][11] = J.wb_z;
+      D[0][3] = J.axis_turn_z_x;
+      D[0][4] = J.axis_turn_z_y;
+      D[0][5] = J.axis_turn_z_z;
+      D[0][9] = -J.axis_turn_z_x;
+      D[0][10] = -J.axis_turn_z_y;
+      D[0][11] = -J.axis_turn_z_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 12 +, 18 *
+    // (M^-1 J^T)^T, laid out like dense: 15 +, 18 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -2761,22 +2487,23 @@ struct six_dof {
       }
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
-      D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
-      D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
-      D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+      D[0][3] = ma.Ixx * J.axis_turn_z_x + ma.Ixy * J.axis_turn_z_y + ma.Ixz * J.axis_turn_z_z;
+      D[0][4] = ma.Ixy * J.axis_turn_z_x + ma.Iyy * J.axis_turn_z_y + ma.Iyz * J.axis_turn_z_z;
+      D[0][5] = ma.Ixz * J.axis_turn_z_x + ma.Iyz * J.axis_turn_z_y + ma.Izz * J.axis_turn_z_z;
+      D[0][9] = -mb.Ixx * J.axis_turn_z_x - mb.Ixy * J.axis_turn_z_y - mb.Ixz * J.axis_turn_z_z;
+      D[0][10] = -mb.Ixy * J.axis_turn_z_x - mb.Iyy * J.axis_turn_z_y - mb.Iyz * J.axis_turn_z_z;
+      D[0][11] = -mb.Ixz * J.axis_turn_z_x - mb.Iyz * J.axis_turn_z_y - mb.Izz * J.axis_turn_z_z;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
+    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+      const T dot_axis_turn_z_axis_turn_z = J.axis_turn_z_x * J.axis_turn_z_x + J.axis_turn_z_y *
+          J.axis_turn_z_y + J.axis_turn_z_z * J.axis_turn_z_z;
+      K[0] = dot_axis_turn_z_axis_turn_z * (ma.I + mb.I);
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -2789,15 +2516,15 @@ struct six_dof {
       const IsotropicInverseMass<T>& mb = m[1];
       const T v1_1 = ma.I * lambda[0];
       const T v2_1 = lambda[0] * mb.I;
-      v[0].wx = va.wx + v1_1 * J.wa_x;
-      v[0].wy = va.wy + v1_1 * J.wa_y;
-      v[0].wz = va.wz + v1_1 * J.wa_z;
-      v[1].wx = vb.wx + v2_1 * J.wb_x;
-      v[1].wy = vb.wy + v2_1 * J.wb_y;
-      v[1].wz = vb.wz + v2_1 * J.wb_z;
+      v[0].wx = va.wx + v1_1 * J.axis_turn_z_x;
+      v[0].wy = va.wy + v1_1 * J.axis_turn_z_y;
+      v[0].wz = va.wz + v1_1 * J.axis_turn_z_z;
+      v[1].wx = vb.wx - v2_1 * J.axis_turn_z_x;
+      v[1].wy = vb.wy - v2_1 * J.axis_turn_z_y;
+      v[1].wz = vb.wz - v2_1 * J.axis_turn_z_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -2806,15 +2533,15 @@ struct six_dof {
       }
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
-      D[0][9] = mb.I * J.wb_x;
-      D[0][10] = mb.I * J.wb_y;
-      D[0][11] = mb.I * J.wb_z;
+      D[0][3] = ma.I * J.axis_turn_z_x;
+      D[0][4] = ma.I * J.axis_turn_z_y;
+      D[0][5] = ma.I * J.axis_turn_z_z;
+      D[0][9] = -mb.I * J.axis_turn_z_x;
+      D[0][10] = -mb.I * J.axis_turn_z_y;
+      D[0][11] = -mb.I * J.axis_turn_z_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -2822,15 +2549,15 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-      D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-      D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-      D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+      D[0][3] = J.axis_turn_z_x * a.xx + J.axis_turn_z_y * a.yx + J.axis_turn_z_z * a.zx;
+      D[0][4] = J.axis_turn_z_x * a.xy + J.axis_turn_z_y * a.yy + J.axis_turn_z_z * a.zy;
+      D[0][5] = J.axis_turn_z_x * a.xz + J.axis_turn_z_y * a.yz + J.axis_turn_z_z * a.zz;
+      D[0][9] = -J.axis_turn_z_x * b.xx - J.axis_turn_z_y * b.yx - J.axis_turn_z_z * b.zx;
+      D[0][10] = -J.axis_turn_z_x * b.xy - J.axis_turn_z_y * b.yy - J.axis_turn_z_z * b.zy;
+      D[0][11] = -J.axis_turn_z_x * b.xz - J.axis_turn_z_y * b.yz - J.axis_turn_z_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 27 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -2838,17 +2565,20 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-      D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-      D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-      D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+      const T D1_1 = J.axis_turn_z_x * T(2);
+      const T D1_2 = J.axis_turn_z_y * T(2);
+      const T D1_3 = J.axis_turn_z_z * T(2);
+      D[0][3] = -D1_1 * a.e1 - D1_2 * a.e2 - D1_3 * a.e3;
+      D[0][4] = D1_1 * a.e0 + D1_2 * a.e3 - D1_3 * a.e2;
+      D[0][5] = D1_2 * a.e0 - D1_1 * a.e3 + D1_3 * a.e1;
+      D[0][6] = D1_1 * a.e2 - D1_2 * a.e1 + D1_3 * a.e0;
+      D[0][10] = D1_1 * b.e1 + D1_2 * b.e2 + D1_3 * b.e3;
+      D[0][11] = D1_3 * b.e2 - D1_1 * b.e0 - D1_2 * b.e3;
+      D[0][12] = D1_1 * b.e3 - D1_2 * b.e0 - D1_3 * b.e1;
+      D[0][13] = D1_2 * b.e1 - D1_1 * b.e2 - D1_3 * b.e0;
     }
 
-    // -Jdot v - d/dt(dC/dt): 71 +, 112 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 71 +, 108 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -2858,62 +2588,54 @@ struct six_dof {
       const Velocity<T>& vb = v[1];
       const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
       const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
       const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
       const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
       const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-      const T dot_fa_x_fb_y = fa_x_x * fb_y_x + fa_x_y * fb_y_y + fa_x_z * fb_y_z;
-      const T g1_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_x_fb_y * dot_fa_x_fb_y);
-      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
-      const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
-      const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-      const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-      const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-      const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-      const T dot_w_b_x_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_w_b_x_fb_x_x + fa_x_y *
-          w_b_x_w_b_x_fb_x_y + fa_x_z * w_b_x_w_b_x_fb_x_z;
-      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-      const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-      const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-      const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-      const T dot_w_a_x_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_w_a_x_fa_x_x + fb_x_y *
-          w_a_x_w_a_x_fa_x_y + fb_x_z * w_a_x_w_a_x_fa_x_z;
-      const T dot_w_a_x_w_a_x_fa_x_fb_y = fb_y_x * w_a_x_w_a_x_fa_x_x + fb_y_y *
-          w_a_x_w_a_x_fa_x_y + fb_y_z * w_a_x_w_a_x_fa_x_z;
-      const T dot_w_a_x_fa_x_w_b_x_fb_x = w_a_x_fa_x_z * w_b_x_fb_x_z + w_a_x_fa_x_y *
-          w_b_x_fb_x_y + w_a_x_fa_x_x * w_b_x_fb_x_x;
-      const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
       const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
       const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
-      const T dot_w_a_x_fa_x_w_b_x_fb_y = w_a_x_fa_x_z * w_b_x_fb_y_z + w_a_x_fa_x_y *
-          w_b_x_fb_y_y + w_a_x_fa_x_x * w_b_x_fb_y_x;
-      const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
-          w_b_x_fb_x_z;
+      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
+      const T dot_w_b_x_fb_y_fa_x = fa_x_x * w_b_x_fb_y_x + fa_x_y * w_b_x_fb_y_y + fa_x_z *
+          w_b_x_fb_y_z;
+      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
+      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
+      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
       const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
           w_a_x_fa_x_z;
       const T dot_w_a_x_fa_x_fb_y = fb_y_x * w_a_x_fa_x_x + fb_y_y * w_a_x_fa_x_y + fb_y_z *
           w_a_x_fa_x_z;
-      const T g1_2 = dot_w_b_x_fb_x_fa_x + dot_w_a_x_fa_x_fb_x;
-      const T dot_w_b_x_fb_y_fa_x = fa_x_x * w_b_x_fb_y_x + fa_x_y * w_b_x_fb_y_y + fa_x_z *
-          w_b_x_fb_y_z;
-      const T g1_3 = dot_w_b_x_fb_y_fa_x + dot_w_a_x_fa_x_fb_y;
-      const T g1_4 = T(2) * g1_1 * (g1_2 * dot_fa_x_fb_y - g1_3 * dot_fa_x_fb_x);
-      const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
-      const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
-      const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
-      const T dot_w_b_x_w_b_x_fb_y_fa_x = fa_x_x * w_b_x_w_b_x_fb_y_x + fa_x_y *
-          w_b_x_w_b_x_fb_y_y + fa_x_z * w_b_x_w_b_x_fb_y_z;
-      g[0] = g1_1 * (dot_fa_x_fb_y *
-          (g1_4 * g1_3 - dot_w_b_x_w_b_x_fb_x_fa_x - dot_w_a_x_w_a_x_fa_x_fb_x -
-          dot_w_a_x_fa_x_w_b_x_fb_x * T(2)) + dot_fa_x_fb_x *
-          (dot_w_b_x_w_b_x_fb_y_fa_x + dot_w_a_x_w_a_x_fa_x_fb_y + dot_w_a_x_fa_x_w_b_x_fb_y *
-          T(2) + g1_4 * g1_2));
+      const T g1_1 = dot_w_b_x_fb_y_fa_x + dot_w_a_x_fa_x_fb_y;
+      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+      const T dot_fa_x_fb_y = fa_x_x * fb_y_x + fa_x_y * fb_y_y + fa_x_z * fb_y_z;
+      const T g1_2 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_x_fb_y * dot_fa_x_fb_y);
+      const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
+      const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
+      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
+      const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
+          w_b_x_fb_x_z;
+      const T g1_3 = dot_w_b_x_fb_x_fa_x + dot_w_a_x_fa_x_fb_x;
+      const T g1_4 = g1_2 * T(2) * (g1_3 * dot_fa_x_fb_x + g1_1 * dot_fa_x_fb_y);
+      const T g1_5 = dot_fa_x_fb_y * g1_2;
+      const T g1_6 = g1_1 * g1_2 - g1_4 * g1_5;
+      const T g1_7 = dot_fa_x_fb_x * g1_2;
+      const T g1_8 = g1_3 * g1_2 - g1_4 * g1_7;
+      const T g1_9 = fb_y_z * g1_8 - fb_x_z * g1_6 - g1_5 * w_b_x_fb_x_z + g1_7 * w_b_x_fb_y_z;
+      const T g1_10 = fb_y_y * g1_8 - fb_x_y * g1_6 - g1_5 * w_b_x_fb_x_y + g1_7 * w_b_x_fb_y_y;
+      const T g1_11 = g1_7 * fb_y_y - g1_5 * fb_x_y;
+      const T g1_12 = g1_7 * fb_y_z - g1_5 * fb_x_z;
+      const T axis_turn_z_dot_x = fa_x_z * g1_10 - fa_x_y * g1_9 + w_a_x_fa_x_z * g1_11 -
+          w_a_x_fa_x_y * g1_12;
+      const T g1_13 = fb_y_x * g1_8 - fb_x_x * g1_6 - g1_5 * w_b_x_fb_x_x + g1_7 * w_b_x_fb_y_x;
+      const T g1_14 = g1_7 * fb_y_x - g1_5 * fb_x_x;
+      const T axis_turn_z_dot_y = fa_x_x * g1_9 - fa_x_z * g1_13 - w_a_x_fa_x_z * g1_14 +
+          w_a_x_fa_x_x * g1_12;
+      const T axis_turn_z_dot_z = fa_x_y * g1_13 - fa_x_x * g1_10 + w_a_x_fa_x_y * g1_14 -
+          w_a_x_fa_x_x * g1_11;
+      g[0] = axis_turn_z_dot_x * (vb.wx - va.wx) + axis_turn_z_dot_y * (vb.wy - va.wy) +
+          axis_turn_z_dot_z * (vb.wz - va.wz);
     }
 
     // dC/dt at fixed q: nothing
@@ -2922,7 +2644,7 @@ struct six_dof {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 166 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 119 +, 164 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -2933,10 +2655,10 @@ struct six_dof {
       const Pose<T>& b = q[1];
       const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
       const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
       const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
       const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
       const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
       const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
       const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
       const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
@@ -2944,113 +2666,118 @@ struct six_dof {
       const T dot_fa_x_fb_y = fa_x_x * fb_y_x + fa_x_y * fb_y_y + fa_x_z * fb_y_z;
       const T H4_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_x_fb_y * dot_fa_x_fb_y);
       const T H4_2 = lambda[0] * H4_1;
-      const T H4_3 = H4_2 * (fb_y_y * dot_fa_x_fb_x - fb_x_y * dot_fa_x_fb_y);
-      const T fa_x_x_fb_y_x = fa_x_y * fb_y_z - fa_x_z * fb_y_y;
-      const T fa_x_x_fb_y_y = fa_x_z * fb_y_x - fa_x_x * fb_y_z;
-      const T H4_4 = T(2) * H4_1 * H4_2;
-      const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
-      const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
-      const T H4_5 = H4_4 * (dot_fa_x_fb_x * fa_x_x_fb_y_x - dot_fa_x_fb_y * fa_x_x_fb_x_x);
-      const T H4_6 = H4_5 * dot_fa_x_fb_x - H4_2 * fa_x_x_fb_y_x;
-      const T H4_7 = H4_2 * fa_x_x_fb_x_x + H4_5 * dot_fa_x_fb_y;
-      const T H4_8 = fb_x_z * H4_6 + fb_y_z * H4_7;
-      const T H4_9 = H4_3 + H4_8;
-      const T H4_10 = H4_2 * (fb_x_z * dot_fa_x_fb_y - fb_y_z * dot_fa_x_fb_x);
-      const T H4_11 = fb_x_y * H4_6 + fb_y_y * H4_7;
-      const T H4_12 = H4_10 + H4_11;
-      const T H4_13 = fa_x_y * H4_9 - fa_x_z * H4_12;
-      const T H4_1_2 = fb_x_x * H4_6 + fb_y_x * H4_7;
-      const T H4_2_2 = fa_x_z * H4_1_2 - fa_x_x * H4_9;
-      const T H4_1_3 = fa_x_x * H4_12 - fa_x_y * H4_1_2;
-      const T H4_1_4 = dot_fa_x_fb_y * H4_2;
-      const T H4_2_3 = H4_1_4 * fa_x_y;
-      const T H4_3_2 = H4_2_3 + fa_x_z * H4_6;
-      const T H4_4_2 = dot_fa_x_fb_x * H4_2;
-      const T H4_5_2 = H4_4_2 * fa_x_y;
-      const T H4_6_2 = fa_x_z * H4_7 - H4_5_2;
-      const T H4_7_2 = H4_1_4 * fa_x_z;
-      const T H4_8_2 = fa_x_y * H4_6 - H4_7_2;
-      const T H4_9_2 = H4_4_2 * fa_x_z;
-      const T H4_10_2 = H4_9_2 + fa_x_y * H4_7;
-      const T H4_11_2 = fb_x_y * H4_3_2 + fb_y_y * H4_6_2 - fb_x_z * H4_8_2 - fb_y_z * H4_10_2;
-      const T H4_1_5 = fa_x_x * H4_8 - fb_x_x * H4_3_2 - fb_y_x * H4_6_2;
-      const T H4_1_6 = fb_x_x * H4_8_2 + fb_y_x * H4_10_2 - fa_x_x * H4_11;
-      const T H5_1 = H4_2 * (fb_x_x * dot_fa_x_fb_y - fb_y_x * dot_fa_x_fb_x);
-      const T H5_2 = H4_4 * (dot_fa_x_fb_x * fa_x_x_fb_y_y - dot_fa_x_fb_y * fa_x_x_fb_x_y);
-      const T H5_3 = H5_2 * dot_fa_x_fb_x - H4_2 * fa_x_x_fb_y_y;
-      const T H5_4 = H4_2 * fa_x_x_fb_x_y + H5_2 * dot_fa_x_fb_y;
-      const T H5_5 = fb_x_z * H5_3 + fb_y_z * H5_4;
-      const T H5_6 = H5_1 + H5_5;
-      const T H5_7 = fb_x_y * H5_3 + fb_y_y * H5_4;
-      const T H5_8 = fa_x_y * H5_6 - fa_x_z * H5_7;
-      const T H5_1_2 = fb_x_x * H5_3 + fb_y_x * H5_4;
-      const T H5_2_2 = H5_1_2 - H4_10;
-      const T H5_3_2 = fa_x_z * H5_2_2 - fa_x_x * H5_6;
-      const T H5_1_3 = fa_x_x * H5_7 - fa_x_y * H5_2_2;
-      const T H5_1_4 = H4_1_4 * fa_x_x;
-      const T H5_2_3 = fa_x_z * H5_3 - H5_1_4;
-      const T H5_3_3 = H4_4_2 * fa_x_x;
-      const T H5_4_2 = H5_3_3 + fa_x_z * H5_4;
-      const T H5_5_2 = fb_x_y * H5_2_3 + fb_y_y * H5_4_2 - fa_x_y * H5_5;
-      const T H5_1_5 = H4_7_2 + fa_x_x * H5_3;
-      const T H5_2_4 = fa_x_x * H5_4 - H4_9_2;
+      const T H4_3 = fa_x_y * fb_y_z;
+      const T H4_4 = fb_y_y * fa_x_z;
+      const T H4_5 = H4_3 - H4_4;
+      const T H4_6 = dot_fa_x_fb_x * H4_2;
+      const T H4_7 = H4_1 * T(2);
+      const T H4_8 = H4_6 * H4_7;
+      const T H4_9 = dot_fa_x_fb_y * H4_2;
+      const T H4_10 = H4_9 * H4_7;
+      const T H4_11 = fa_x_y * fb_x_z;
+      const T H4_12 = fb_x_y * fa_x_z;
+      const T H4_13 = H4_11 - H4_12;
+      const T H4_14 = H4_8 * H4_5 - H4_10 * H4_13;
+      const T H4_15 = H4_14 * dot_fa_x_fb_x - H4_2 * H4_5;
+      const T H4_16 = H4_2 * H4_13 + H4_14 * dot_fa_x_fb_y;
+      const T H4_17 = fb_x_z * H4_15 + fb_y_z * H4_16;
+      const T H4_18 = H4_9 * fb_x_y - H4_6 * fb_y_y;
+      const T H4_19 = H4_17 - H4_18;
+      const T H4_20 = fb_x_y * H4_15 + fb_y_y * H4_16;
+      const T H4_21 = H4_6 * fb_y_z - H4_9 * fb_x_z;
+      const T H4_22 = H4_20 - H4_21;
+      const T H4_23 = fa_x_y * H4_19 - fa_x_z * H4_22;
+      const T H4_1_2 = fb_x_x * H4_15 + fb_y_x * H4_16;
+      const T H4_2_2 = fa_x_z * H4_1_2 - fa_x_x * H4_19;
+      const T H4_1_3 = fa_x_x * H4_22 - fa_x_y * H4_1_2;
+      const T H4_1_4 = H4_9 * fa_x_y;
+      const T H4_2_3 = H4_1_4 + fa_x_z * H4_15;
+      const T H4_3_2 = H4_6 * fa_x_y;
+      const T H4_4_2 = fa_x_z * H4_16 - H4_3_2;
+      const T H4_5_2 = H4_9 * fa_x_z;
+      const T H4_6_2 = fa_x_y * H4_15 - H4_5_2;
+      const T H4_7_2 = H4_6 * fa_x_z;
+      const T H4_8_2 = H4_7_2 + fa_x_y * H4_16;
+      const T H4_9_2 = fb_x_y * H4_2_3 + fb_y_y * H4_4_2 - fb_x_z * H4_6_2 - fb_y_z * H4_8_2;
+      const T H4_1_5 = fa_x_x * H4_17 - fb_x_x * H4_2_3 - fb_y_x * H4_4_2;
+      const T H4_1_6 = fb_x_x * H4_6_2 + fb_y_x * H4_8_2 - fa_x_x * H4_20;
+      const T H5_1 = H4_6 * fb_y_x - H4_9 * fb_x_x;
+      const T H5_2 = fb_y_x * fa_x_z;
+      const T H5_3 = H5_2 - fa_x_x * fb_y_z;
+      const T H5_4 = fa_x_z * fb_x_x;
+      const T H5_5 = H5_4 - fa_x_x * fb_x_z;
+      const T H5_6 = H4_8 * H5_3 - H4_10 * H5_5;
+      const T H5_7 = H5_6 * dot_fa_x_fb_x - H4_2 * H5_3;
+      const T H5_8 = H4_2 * H5_5 + H5_6 * dot_fa_x_fb_y;
+      const T H5_9 = fb_x_z * H5_7 - H5_1 + fb_y_z * H5_8;
+      const T H5_10 = fb_x_y * H5_7 + fb_y_y * H5_8;
+      const T H5_11 = fa_x_y * H5_9 - fa_x_z * H5_10;
+      const T H5_1_2 = fb_x_x * H5_7 + fb_y_x * H5_8;
+      const T H5_2_2 = H5_1_2 + H4_21;
+      const T H5_3_2 = fa_x_z * H5_2_2 - fa_x_x * H5_9;
+      const T H5_1_3 = fa_x_x * H5_10 - fa_x_y * H5_2_2;
+      const T H5_1_4 = H4_9 * fa_x_x;
+      const T H5_2_3 = fa_x_z * H5_7 - H5_1_4;
+      const T H5_3_3 = H4_6 * fa_x_x;
+      const T H5_4_2 = H5_3_3 + fa_x_z * H5_8;
+      const T H5_5_2 = fb_x_y * H5_2_3 - H4_11 * H5_7 - H4_3 * H5_8 + fb_y_y * H5_4_2;
+      const T H5_1_5 = H4_5_2 + fa_x_x * H5_7;
+      const T H5_2_4 = fa_x_x * H5_8 - H4_7_2;
       const T H5_3_4 = fb_x_z * H5_1_5 - fb_x_x * H5_2_3 - fb_y_x * H5_4_2 + fb_y_z * H5_2_4;
       const T H5_1_6 = fa_x_y * H5_1_2 - fb_x_y * H5_1_5 - fb_y_y * H5_2_4;
-      const T fa_x_x_fb_y_z = fa_x_x * fb_y_y - fa_x_y * fb_y_x;
-      const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
-      const T H6_1 = H4_4 * (dot_fa_x_fb_x * fa_x_x_fb_y_z - dot_fa_x_fb_y * fa_x_x_fb_x_z);
-      const T H6_2 = H6_1 * dot_fa_x_fb_x - H4_2 * fa_x_x_fb_y_z;
-      const T H6_3 = H4_2 * fa_x_x_fb_x_z + H6_1 * dot_fa_x_fb_y;
-      const T H6_4 = fb_x_z * H6_2 + fb_y_z * H6_3;
-      const T H6_5 = fb_x_y * H6_2 + fb_y_y * H6_3;
-      const T H6_6 = H6_5 - H5_1;
-      const T H6_7 = fa_x_y * H6_4 - fa_x_z * H6_6;
-      const T H6_1_2 = fb_x_x * H6_2 + fb_y_x * H6_3;
-      const T H6_2_2 = H6_1_2 - H4_3;
-      const T H6_3_2 = fa_x_z * H6_2_2 - fa_x_x * H6_4;
-      const T H6_1_3 = fa_x_x * H6_6 - fa_x_y * H6_2_2;
-      const T H6_1_4 = H5_1_4 + fa_x_y * H6_2;
-      const T H6_2_3 = fa_x_y * H6_3 - H5_3_3;
-      const T H6_3_3 = fa_x_z * H6_5 - fb_x_z * H6_1_4 - fb_y_z * H6_2_3;
-      const T H6_1_5 = fa_x_x * H6_2 - H4_2_3;
-      const T H6_2_4 = H4_5_2 + fa_x_x * H6_3;
-      const T H6_3_4 = fb_x_z * H6_1_5 + fb_y_z * H6_2_4 - fa_x_z * H6_1_2;
+      const T H6_1 = fa_x_x * fb_y_y - fa_x_y * fb_y_x;
+      const T H6_2 = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
+      const T H6_3 = H4_8 * H6_1 - H4_10 * H6_2;
+      const T H6_4 = H6_3 * dot_fa_x_fb_x - H4_2 * H6_1;
+      const T H6_5 = H4_2 * H6_2 + H6_3 * dot_fa_x_fb_y;
+      const T H6_6 = fb_x_z * H6_4 + fb_y_z * H6_5;
+      const T H6_7 = H5_1 + fb_x_y * H6_4 + fb_y_y * H6_5;
+      const T H6_8 = fa_x_y * H6_6 - fa_x_z * H6_7;
+      const T H6_1_2 = H4_18 + fb_x_x * H6_4 + fb_y_x * H6_5;
+      const T H6_2_2 = fa_x_z * H6_1_2 - fa_x_x * H6_6;
+      const T H6_1_3 = fa_x_x * H6_7 - fa_x_y * H6_1_2;
+      const T H6_1_4 = H5_1_4 + fa_x_y * H6_4;
+      const T H6_2_3 = fa_x_y * H6_5 - H5_3_3;
+      const T H6_3_2 = H4_12 * H6_4 + H4_4 * H6_5 - fb_x_z * H6_1_4 - fb_y_z * H6_2_3;
+      const T H6_1_5 = fa_x_x * H6_4 - H4_1_4;
+      const T H6_2_4 = H4_3_2 + fa_x_x * H6_5;
+      const T H6_3_3 = fb_x_z * H6_1_5 - H5_4 * H6_4 - H5_2 * H6_5 + fb_y_z * H6_2_4;
       const T H6_1_6 = fb_x_x * H6_1_4 + fb_y_x * H6_2_3 - fb_x_y * H6_1_5 - fb_y_y * H6_2_4;
-      H[3][3] = H4_13;
+      H[3][3] = H4_23;
       H[3][4] = H4_2_2;
       H[3][5] = H4_1_3;
-      H[3][9] = H4_11_2;
+      H[3][9] = H4_9_2;
       H[3][10] = H4_1_5;
       H[3][11] = H4_1_6;
-      H[4][3] = H5_8;
+      H[4][3] = H5_11;
       H[4][4] = H5_3_2;
       H[4][5] = H5_1_3;
       H[4][9] = H5_5_2;
       H[4][10] = H5_3_4;
       H[4][11] = H5_1_6;
-      H[5][3] = H6_7;
-      H[5][4] = H6_3_2;
+      H[5][3] = H6_8;
+      H[5][4] = H6_2_2;
       H[5][5] = H6_1_3;
-      H[5][9] = H6_3_3;
-      H[5][10] = H6_3_4;
+      H[5][9] = H6_3_2;
+      H[5][10] = H6_3_3;
       H[5][11] = H6_1_6;
-      H[9][3] = -H4_13;
+      H[9][3] = -H4_23;
       H[9][4] = -H4_2_2;
       H[9][5] = -H4_1_3;
-      H[9][9] = -H4_11_2;
+      H[9][9] = -H4_9_2;
       H[9][10] = -H4_1_5;
       H[9][11] = -H4_1_6;
-      H[10][3] = -H5_8;
+      H[10][3] = -H5_11;
       H[10][4] = -H5_3_2;
       H[10][5] = -H5_1_3;
       H[10][9] = -H5_5_2;
       H[10][10] = -H5_3_4;
       H[10][11] = -H5_1_6;
-      H[11][3] = -H6_7;
-      H[11][4] = -H6_3_2;
+      H[11][3] = -H6_8;
+      H[11][4] = -H6_2_2;
       H[11][5] = -H6_1_3;
-      H[11][9] = -H6_3_3;
-      H[11][10] = -H6_3_4;
+      H[11][9] = -H6_3_2;
+      H[11][10] = -H6_3_3;
       H[11][11] = -H6_1_6;
     }
 
@@ -3072,7 +2799,7 @@ struct six_dof {
 
     template <class T>
     struct Jacobian {
-      T wa_x, wa_y, wa_z, wb_x, wb_y, wb_z;
+      T wa_x, wa_y, wa_z;
     };
 
     // C: 34 +, 48 *, 1 call
@@ -3100,7 +2827,7 @@ struct six_dof {
       C[0] = atan2(dot_fa_z_fb_y - ryz, dot_fa_y_fb_y + rzz);
     }
 
-    // C and J: 65 +, 100 *, 1 /, 1 <, 1 call
+    // C and J: 46 +, 66 *, 1 /, 1 <, 1 call
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -3109,58 +2836,46 @@ struct six_dof {
       const Pose<T>& b = q[1];
       const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
       const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-      const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
-      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
       const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
       const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-      const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
-      const T C1_1 = dot_fa_z_fb_y - ryz;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+      const T fb_z_x = fb_x_y * fb_y_z - fb_y_y * fb_x_z;
+      const T fb_z_y = fb_y_x * fb_x_z - fb_x_x * fb_y_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T fb_z_z = fb_x_x * fb_y_y - fb_y_x * fb_x_y;
+      const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+      const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+      const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+      const T dot_fa_z_fb_y = fb_y_x * fa_z_x + fb_y_y * fa_z_y + fb_y_z * fa_z_z;
       const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-      const T C1_2 = dot_fa_y_fb_y + rzz;
-      const T wa_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
-      const T wa_x_2 = C1_2 * wa_x_1;
-      const T wa_x_3 = C1_1 * wa_x_1;
-      const T wa_x_4 = wa_x_2 * fb_z_z + wa_x_3 * fb_y_z;
-      const T wa_x_5 = wa_x_2 * fb_y_z - wa_x_3 * fb_z_z;
-      const T wa_x_6 = wa_x_2 * fb_z_y + wa_x_3 * fb_y_y;
-      const T wa_x_7 = wa_x_2 * fb_y_y - wa_x_3 * fb_z_y;
-      const T wa_y_1 = wa_x_2 * fb_z_x + wa_x_3 * fb_y_x;
-      const T wa_y_2 = wa_x_2 * fb_y_x - wa_x_3 * fb_z_x;
-      const T wb_x_1 = wa_x_2 * fa_z_z - wa_x_3 * fa_y_z;
-      const T wb_x_2 = wa_x_2 * fa_y_z + wa_x_3 * fa_z_z;
-      const T wb_x_3 = wa_x_2 * fa_z_y - wa_x_3 * fa_y_y;
-      const T wb_x_4 = wa_x_2 * fa_y_y + wa_x_3 * fa_z_y;
-      const T wb_y_1 = wa_x_2 * fa_z_x - wa_x_3 * fa_y_x;
-      const T wb_y_2 = wa_x_2 * fa_y_x + wa_x_3 * fa_z_x;
-      C[0] = atan2(C1_1, C1_2);
-      J.wa_x = fa_z_y * wa_x_5 - fa_y_y * wa_x_4 + fa_y_z * wa_x_6 - fa_z_z * wa_x_7;
-      J.wa_y = fa_y_x * wa_x_4 - fa_z_x * wa_x_5 - fa_y_z * wa_y_1 + fa_z_z * wa_y_2;
-      J.wa_z = fa_z_x * wa_x_7 - fa_y_x * wa_x_6 + fa_y_y * wa_y_1 - fa_z_y * wa_y_2;
-      J.wb_x = fb_y_y * wb_x_1 - fb_z_y * wb_x_2 - fb_y_z * wb_x_3 + fb_z_z * wb_x_4;
-      J.wb_y = fb_z_x * wb_x_2 - fb_y_x * wb_x_1 + fb_y_z * wb_y_1 - fb_z_z * wb_y_2;
-      J.wb_z = fb_y_x * wb_x_3 - fb_z_x * wb_x_4 - fb_y_y * wb_y_1 + fb_z_y * wb_y_2;
+      const T rzz = fa_z_z * fb_z_z + fa_z_y * fb_z_y + fa_z_x * fb_z_x;
+      const T fa_x_fb_x_x = fa_x_x + fb_x_x;
+      const T fa_x_fb_x_y = fa_x_y + fb_x_y;
+      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+      const T wa_x_1 = inverse(dot_fa_x_fb_x + T(1));
+      const T fa_x_fb_x_z = fa_x_z + fb_x_z;
+      C[0] = atan2(dot_fa_z_fb_y - ryz, dot_fa_y_fb_y + rzz);
+      J.wa_x = fa_x_fb_x_x * wa_x_1;
+      J.wa_y = fa_x_fb_x_y * wa_x_1;
+      J.wa_z = fa_x_fb_x_z * wa_x_1;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 11 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
       const T K11_1 = J.wa_z * T(2);
-      const T K11_2 = J.wb_z * T(2);
-      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
-          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
-          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
+      K[0] = J.wa_z * J.wa_z * (ma.Izz + mb.Izz) + J.wa_x *
+          (J.wa_x * (ma.Ixx + mb.Ixx) + J.wa_y * T(2) * (ma.Ixy + mb.Ixy) + K11_1 *
+          (ma.Ixz + mb.Ixz)) + J.wa_y * (J.wa_y * (ma.Iyy + mb.Iyy) + K11_1 * (ma.Iyz + mb.Iyz));
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -3175,16 +2890,15 @@ struct six_dof {
       lambda[0] = F[0] * rhs[0];
     }
 
-    // J v: 5 +, 6 *
+    // J v: 5 +, 3 *
     template <class T>
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.wb_x * vb.wx + J.wb_y * vb.wy +
-          J.wb_z * vb.wz;
+      Jv[0] = J.wa_x * (vb.wx - va.wx) + J.wa_y * (vb.wy - va.wy) + J.wa_z * (vb.wz - va.wz);
     }
 
-    // v += M^-1 J^T lambda: 18 +, 24 *
+    // v += M^-1 J^T lambda: 18 +, 21 *
     template <class T>
     static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
         Velocity<T> (&v)[2]) {
@@ -3195,32 +2909,29 @@ struct six_dof {
       const T v1_1 = J.wa_x * lambda[0];
       const T v1_2 = lambda[0] * J.wa_y;
       const T v1_3 = lambda[0] * J.wa_z;
-      const T v2_1 = lambda[0] * J.wb_x;
-      const T v2_2 = lambda[0] * J.wb_y;
-      const T v2_3 = lambda[0] * J.wb_z;
-      v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-      v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-      v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
-      v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
-      v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
-      v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+      v[0].wx = va.wx - v1_1 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+      v[0].wy = va.wy - v1_1 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+      v[0].wz = va.wz - v1_1 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
+      v[1].wx = vb.wx + v1_1 * mb.Ixx + v1_2 * mb.Ixy + v1_3 * mb.Ixz;
+      v[1].wy = vb.wy + v1_1 * mb.Ixy + v1_2 * mb.Iyy + v1_3 * mb.Iyz;
+      v[1].wz = vb.wz + v1_1 * mb.Ixz + v1_2 * mb.Iyz + v1_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: nothing
+    // J with its zeros: v, w of each body: 3 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
         for (T& entry : row) entry = T(0);
       }
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
-      D[0][9] = J.wb_x;
-      D[0][10] = J.wb_y;
-      D[0][11] = J.wb_z;
+      D[0][3] = -J.wa_x;
+      D[0][4] = -J.wa_y;
+      D[0][5] = -J.wa_z;
+      D[0][9] = J.wa_x;
+      D[0][10] = J.wa_y;
+      D[0][11] = J.wa_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 12 +, 18 *
+    // (M^-1 J^T)^T, laid out like dense: 15 +, 18 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -3229,22 +2940,21 @@ struct six_dof {
       }
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
-      D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
-      D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
-      D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+      D[0][3] = -ma.Ixx * J.wa_x - ma.Ixy * J.wa_y - ma.Ixz * J.wa_z;
+      D[0][4] = -ma.Ixy * J.wa_x - ma.Iyy * J.wa_y - ma.Iyz * J.wa_z;
+      D[0][5] = -ma.Ixz * J.wa_x - ma.Iyz * J.wa_y - ma.Izz * J.wa_z;
+      D[0][9] = mb.Ixx * J.wa_x + mb.Ixy * J.wa_y + mb.Ixz * J.wa_z;
+      D[0][10] = mb.Ixy * J.wa_x + mb.Iyy * J.wa_y + mb.Iyz * J.wa_z;
+      D[0][11] = mb.Ixz * J.wa_x + mb.Iyz * J.wa_y + mb.Izz * J.wa_z;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
+    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+      K[0] = (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) * (ma.I + mb.I);
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -3257,15 +2967,15 @@ struct six_dof {
       const IsotropicInverseMass<T>& mb = m[1];
       const T v1_1 = ma.I * lambda[0];
       const T v2_1 = lambda[0] * mb.I;
-      v[0].wx = va.wx + v1_1 * J.wa_x;
-      v[0].wy = va.wy + v1_1 * J.wa_y;
-      v[0].wz = va.wz + v1_1 * J.wa_z;
-      v[1].wx = vb.wx + v2_1 * J.wb_x;
-      v[1].wy = vb.wy + v2_1 * J.wb_y;
-      v[1].wz = vb.wz + v2_1 * J.wb_z;
+      v[0].wx = va.wx - v1_1 * J.wa_x;
+      v[0].wy = va.wy - v1_1 * J.wa_y;
+      v[0].wz = va.wz - v1_1 * J.wa_z;
+      v[1].wx = vb.wx + v2_1 * J.wa_x;
+      v[1].wy = vb.wy + v2_1 * J.wa_y;
+      v[1].wz = vb.wz + v2_1 * J.wa_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -3274,15 +2984,15 @@ struct six_dof {
       }
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
-      D[0][9] = mb.I * J.wb_x;
-      D[0][10] = mb.I * J.wb_y;
-      D[0][11] = mb.I * J.wb_z;
+      D[0][3] = -ma.I * J.wa_x;
+      D[0][4] = -ma.I * J.wa_y;
+      D[0][5] = -ma.I * J.wa_z;
+      D[0][9] = mb.I * J.wa_x;
+      D[0][10] = mb.I * J.wa_y;
+      D[0][11] = mb.I * J.wa_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -3290,15 +3000,15 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-      D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-      D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-      D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+      D[0][3] = -J.wa_x * a.xx - J.wa_y * a.yx - J.wa_z * a.zx;
+      D[0][4] = -J.wa_x * a.xy - J.wa_y * a.yy - J.wa_z * a.zy;
+      D[0][5] = -J.wa_x * a.xz - J.wa_y * a.yz - J.wa_z * a.zz;
+      D[0][9] = J.wa_x * b.xx + J.wa_y * b.yx + J.wa_z * b.zx;
+      D[0][10] = J.wa_x * b.xy + J.wa_y * b.yy + J.wa_z * b.zy;
+      D[0][11] = J.wa_x * b.xz + J.wa_y * b.yz + J.wa_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 27 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -3306,17 +3016,20 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-      D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-      D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-      D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+      const T D1_1 = J.wa_x * T(2);
+      const T D1_2 = J.wa_y * T(2);
+      const T D1_3 = J.wa_z * T(2);
+      D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+      D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+      D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+      D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
+      D[0][10] = -D1_1 * b.e1 - D1_2 * b.e2 - D1_3 * b.e3;
+      D[0][11] = D1_1 * b.e0 + D1_2 * b.e3 - D1_3 * b.e2;
+      D[0][12] = D1_2 * b.e0 - D1_1 * b.e3 + D1_3 * b.e1;
+      D[0][13] = D1_1 * b.e2 - D1_2 * b.e1 + D1_3 * b.e0;
     }
 
-    // -Jdot v - d/dt(dC/dt): 119 +, 171 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 41 +, 47 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -3324,102 +3037,34 @@ struct six_dof {
       const Velocity<T>& va = v[0];
       const Pose<T>& b = q[1];
       const Velocity<T>& vb = v[1];
-      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-      const T g1_1 = dot_fa_y_fb_y + rzz;
-      const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
-      const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
-      const T g1_2 = dot_fa_z_fb_y - ryz;
-      const T g1_3 = inverse(g1_1 * g1_1 + g1_2 * g1_2);
-      const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
-      const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
-      const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
-      const T dot_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_fb_z_x + fa_y_y * w_b_x_fb_z_y + fa_y_z *
-          w_b_x_fb_z_z;
-      const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
-      const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-      const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
-      const T dot_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_fa_y_x + fb_z_y * w_a_x_fa_y_y + fb_z_z *
-          w_a_x_fa_y_z;
-      const T ryz_dot = dot_w_b_x_fb_z_fa_y + dot_w_a_x_fa_y_fb_z;
-      const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
-      const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
-      const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
-      const T dot_w_b_x_fb_y_fa_z = fa_z_x * w_b_x_fb_y_x + fa_z_y * w_b_x_fb_y_y + fa_z_z *
-          w_b_x_fb_y_z;
-      const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
-      const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-      const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-      const T dot_w_a_x_fa_z_fb_y = fb_y_x * w_a_x_fa_z_x + fb_y_y * w_a_x_fa_z_y + fb_y_z *
-          w_a_x_fa_z_z;
-      const T g1_4 = dot_w_b_x_fb_y_fa_z - ryz_dot + dot_w_a_x_fa_z_fb_y;
-      const T dot_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_fb_z_x + fa_z_y * w_b_x_fb_z_y + fa_z_z *
-          w_b_x_fb_z_z;
-      const T dot_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_fa_z_x + fb_z_y * w_a_x_fa_z_y + fb_z_z *
-          w_a_x_fa_z_z;
-      const T rzz_dot = dot_w_b_x_fb_z_fa_z + dot_w_a_x_fa_z_fb_z;
-      const T dot_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_fb_y_x + fa_y_y * w_b_x_fb_y_y + fa_y_z *
-          w_b_x_fb_y_z;
-      const T dot_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_fa_y_x + fb_y_y * w_a_x_fa_y_y + fb_y_z *
-          w_a_x_fa_y_z;
-      const T g1_5 = rzz_dot + dot_w_b_x_fb_y_fa_y + dot_w_a_x_fa_y_fb_y;
-      const T g1_6 = T(2) * (g1_4 * g1_2 + g1_5 * g1_1) * g1_3;
-      const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
-      const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
-      const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-      const T dot_w_b_x_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_w_b_x_fb_z_x + fa_y_y *
-          w_b_x_w_b_x_fb_z_y + fa_y_z * w_b_x_w_b_x_fb_z_z;
-      const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-      const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-      const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-      const T dot_w_a_x_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_w_a_x_fa_y_x + fb_z_y *
-          w_a_x_w_a_x_fa_y_y + fb_z_z * w_a_x_w_a_x_fa_y_z;
-      const T dot_w_a_x_fa_y_w_b_x_fb_z = w_a_x_fa_y_z * w_b_x_fb_z_z + w_a_x_fa_y_y *
-          w_b_x_fb_z_y + w_a_x_fa_y_x * w_b_x_fb_z_x;
-      const T ryz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_y + dot_w_a_x_w_a_x_fa_y_fb_z +
-          dot_w_a_x_fa_y_w_b_x_fb_z * T(2);
-      const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
-      const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
-      const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
-      const T dot_w_b_x_w_b_x_fb_y_fa_z = fa_z_x * w_b_x_w_b_x_fb_y_x + fa_z_y *
-          w_b_x_w_b_x_fb_y_y + fa_z_z * w_b_x_w_b_x_fb_y_z;
-      const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-      const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-      const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-      const T dot_w_a_x_w_a_x_fa_z_fb_y = fb_y_x * w_a_x_w_a_x_fa_z_x + fb_y_y *
-          w_a_x_w_a_x_fa_z_y + fb_y_z * w_a_x_w_a_x_fa_z_z;
-      const T dot_w_a_x_fa_z_w_b_x_fb_y = w_a_x_fa_z_z * w_b_x_fb_y_z + w_a_x_fa_z_y *
-          w_b_x_fb_y_y + w_a_x_fa_z_x * w_b_x_fb_y_x;
-      const T dot_w_b_x_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_w_b_x_fb_z_x + fa_z_y *
-          w_b_x_w_b_x_fb_z_y + fa_z_z * w_b_x_w_b_x_fb_z_z;
-      const T dot_w_a_x_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_w_a_x_fa_z_x + fb_z_y *
-          w_a_x_w_a_x_fa_z_y + fb_z_z * w_a_x_w_a_x_fa_z_z;
-      const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
-          w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
-      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z +
-          dot_w_a_x_fa_z_w_b_x_fb_z * T(2);
-      const T dot_w_b_x_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_w_b_x_fb_y_x + fa_y_y *
-          w_b_x_w_b_x_fb_y_y + fa_y_z * w_b_x_w_b_x_fb_y_z;
-      const T dot_w_a_x_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_w_a_x_fa_y_x + fb_y_y *
-          w_a_x_w_a_x_fa_y_y + fb_y_z * w_a_x_w_a_x_fa_y_z;
-      const T dot_w_a_x_fa_y_w_b_x_fb_y = w_a_x_fa_y_z * w_b_x_fb_y_z + w_a_x_fa_y_y *
-          w_b_x_fb_y_y + w_a_x_fa_y_x * w_b_x_fb_y_x;
-      g[0] = g1_3 * (g1_1 * (g1_6 * g1_4 + ryz_dot_dot - dot_w_b_x_w_b_x_fb_y_fa_z -
-          dot_w_a_x_w_a_x_fa_z_fb_y - dot_w_a_x_fa_z_w_b_x_fb_y * T(2)) + g1_2 *
-          (rzz_dot_dot - g1_6 * g1_5 + dot_w_b_x_w_b_x_fb_y_fa_y + dot_w_a_x_w_a_x_fa_y_fb_y +
-          dot_w_a_x_fa_y_w_b_x_fb_y * T(2)));
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+      const T g1_1 = inverse(dot_fa_x_fb_x + T(1));
+      const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
+      const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
+      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
+      const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
+          w_b_x_fb_x_z;
+      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
+      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
+      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
+      const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
+          w_a_x_fa_x_z;
+      const T g1_2 = (dot_w_b_x_fb_x_fa_x + dot_w_a_x_fa_x_fb_x) * g1_1;
+      const T fa_x_fb_x_x = fa_x_x + fb_x_x;
+      const T fa_x_fb_x_y = fa_x_y + fb_x_y;
+      const T w_a_x_fa_x_w_b_x_fb_x_x = w_a_x_fa_x_x + w_b_x_fb_x_x;
+      const T w_a_x_fa_x_w_b_x_fb_x_y = w_a_x_fa_x_y + w_b_x_fb_x_y;
+      const T fa_x_fb_x_z = fa_x_z + fb_x_z;
+      const T w_a_x_fa_x_w_b_x_fb_x_z = w_a_x_fa_x_z + w_b_x_fb_x_z;
+      g[0] = -g1_1 * ((vb.wx - va.wx) * (w_a_x_fa_x_w_b_x_fb_x_x - g1_2 * fa_x_fb_x_x) +
+          (vb.wy - va.wy) * (w_a_x_fa_x_w_b_x_fb_x_y - g1_2 * fa_x_fb_x_y) + (vb.wz - va.wz) *
+          (w_a_x_fa_x_w_b_x_fb_x_z - g1_2 * fa_x_fb_x_z));
     }
 
     // dC/dt at fixed q: nothing
@@ -3428,7 +3073,7 @@ struct six_dof {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 206 +, 276 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 54 +, 65 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -3437,157 +3082,85 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-      const T H4_1 = dot_fa_y_fb_y + rzz;
-      const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
-      const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
-      const T H4_2 = dot_fa_z_fb_y - ryz;
-      const T H4_3 = inverse(H4_1 * H4_1 + H4_2 * H4_2);
-      const T H4_4 = lambda[0] * H4_3;
-      const T H4_5 = H4_1 * H4_4;
-      const T H4_6 = H4_2 * H4_4;
-      const T H4_7 = H4_5 * fb_z_y + H4_6 * fb_y_y;
-      const T H4_8 = T(2) * H4_3 * H4_3;
-      const T H4_9 = H4_1 * H4_8;
-      const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
-      const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
-      const T H4_10 = lambda[0] * fb_y_z;
-      const T H4_11 = lambda[0] * fb_y_y;
-      const T H4_12 = lambda[0] * fa_y_x_fb_z_x - H4_10 * fa_z_y + H4_11 * fa_z_z;
-      const T H4_13 = H4_2 * H4_8;
-      const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
-      const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-      const T H4_14 = H4_10 * fa_y_y - H4_11 * fa_y_z + lambda[0] * fa_z_x_fb_z_x;
-      const T H4_15 = H4_9 * H4_12 + H4_13 * H4_14;
-      const T H4_16 = H4_1 * H4_15 - H4_12 * H4_3;
-      const T H4_17 = H4_14 * H4_3 - H4_2 * H4_15;
-      const T H4_18 = H4_7 + fb_y_z * H4_16 + fb_z_z * H4_17;
-      const T H4_19 = H4_5 * fb_y_y - H4_6 * fb_z_y;
-      const T H4_20 = fb_z_z * H4_16 - H4_19 - fb_y_z * H4_17;
-      const T H4_21 = H4_5 * fb_z_z + H4_6 * fb_y_z;
-      const T H4_22 = fb_y_y * H4_16 - H4_21 + fb_z_y * H4_17;
-      const T H4_23 = H4_5 * fb_y_z - H4_6 * fb_z_z;
-      const T H4_24 = H4_23 - fb_y_y * H4_17 + fb_z_y * H4_16;
-      const T H4_25 = fa_y_y * H4_18 + fa_z_y * H4_20 - fa_y_z * H4_22 - fa_z_z * H4_24;
-      const T H4_1_2 = fb_y_x * H4_16 + fb_z_x * H4_17;
-      const T H4_2_2 = fb_z_x * H4_16 - fb_y_x * H4_17;
-      const T H4_3_2 = fa_y_z * H4_1_2 - fa_y_x * H4_18 - fa_z_x * H4_20 + fa_z_z * H4_2_2;
-      const T H4_1_3 = fa_y_x * H4_22 + fa_z_x * H4_24 - fa_y_y * H4_1_2 - fa_z_y * H4_2_2;
-      const T H4_1_4 = H4_5 * fa_z_y - H4_6 * fa_y_y;
-      const T H4_2_3 = H4_1_4 + fa_y_z * H4_16 - fa_z_z * H4_17;
-      const T H4_3_3 = H4_5 * fa_y_y + H4_6 * fa_z_y;
-      const T H4_4_2 = fa_y_z * H4_17 - H4_3_3 + fa_z_z * H4_16;
-      const T H4_5_2 = H4_5 * fa_z_z - H4_6 * fa_y_z;
-      const T H4_6_2 = fa_y_y * H4_16 - H4_5_2 - fa_z_y * H4_17;
-      const T H4_7_2 = H4_5 * fa_y_z + H4_6 * fa_z_z;
-      const T H4_8_2 = H4_7_2 + fa_y_y * H4_17 + fa_z_y * H4_16;
-      const T H4_9_2 = fb_y_y * H4_2_3 + fb_z_y * H4_4_2 - fb_y_z * H4_6_2 - fb_z_z * H4_8_2;
-      const T H4_1_5 = fa_y_x * H4_16 - fa_z_x * H4_17;
-      const T H4_2_4 = fa_y_x * H4_17 + fa_z_x * H4_16;
-      const T H4_3_4 = fb_y_z * H4_1_5 - fb_y_x * H4_2_3 - fb_z_x * H4_4_2 + fb_z_z * H4_2_4;
-      const T H4_1_6 = fb_y_x * H4_6_2 + fb_z_x * H4_8_2 - fb_y_y * H4_1_5 - fb_z_y * H4_2_4;
-      const T H5_1 = H4_5 * fb_z_x + H4_6 * fb_y_x;
-      const T H5_2 = lambda[0] * fb_y_x;
-      const T H5_3 = lambda[0] * fa_y_x_fb_z_y + H4_10 * fa_z_x - H5_2 * fa_z_z;
-      const T H5_4 = H5_2 * fa_y_z - H4_10 * fa_y_x + lambda[0] * fa_z_x_fb_z_y;
-      const T H5_5 = H4_9 * H5_3 + H4_13 * H5_4;
-      const T H5_6 = H4_1 * H5_5 - H5_3 * H4_3;
-      const T H5_7 = H5_4 * H4_3 - H4_2 * H5_5;
-      const T H5_8 = fb_y_z * H5_6 - H5_1 + fb_z_z * H5_7;
-      const T H5_9 = H4_5 * fb_y_x - H4_6 * fb_z_x;
-      const T H5_10 = H5_9 - fb_y_z * H5_7 + fb_z_z * H5_6;
-      const T H5_11 = fb_y_y * H5_6 + fb_z_y * H5_7;
-      const T H5_12 = fb_z_y * H5_6 - fb_y_y * H5_7;
-      const T H5_13 = fa_y_y * H5_8 + fa_z_y * H5_10 - fa_y_z * H5_11 - fa_z_z * H5_12;
-      const T H5_1_2 = H4_21 + fb_y_x * H5_6 + fb_z_x * H5_7;
-      const T H5_2_2 = fb_z_x * H5_6 - H4_23 - fb_y_x * H5_7;
-      const T H5_3_2 = fa_y_z * H5_1_2 - fa_y_x * H5_8 - fa_z_x * H5_10 + fa_z_z * H5_2_2;
-      const T H5_1_3 = fa_y_x * H5_11 + fa_z_x * H5_12 - fa_y_y * H5_1_2 - fa_z_y * H5_2_2;
-      const T H5_1_4 = H4_5 * fa_z_x - H4_6 * fa_y_x;
-      const T H5_2_3 = fa_y_z * H5_6 - H5_1_4 - fa_z_z * H5_7;
-      const T H5_3_3 = H4_5 * fa_y_x + H4_6 * fa_z_x;
-      const T H5_4_2 = H5_3_3 + fa_y_z * H5_7 + fa_z_z * H5_6;
-      const T H5_5_2 = fa_y_y * H5_6 - fa_z_y * H5_7;
-      const T H5_6_2 = fa_y_y * H5_7 + fa_z_y * H5_6;
-      const T H5_7_2 = fb_y_y * H5_2_3 + fb_z_y * H5_4_2 - fb_y_z * H5_5_2 - fb_z_z * H5_6_2;
-      const T H5_1_5 = H4_5_2 + fa_y_x * H5_6 - fa_z_x * H5_7;
-      const T H5_2_4 = fa_y_x * H5_7 - H4_7_2 + fa_z_x * H5_6;
-      const T H5_3_4 = fb_y_z * H5_1_5 - fb_y_x * H5_2_3 - fb_z_x * H5_4_2 + fb_z_z * H5_2_4;
-      const T H5_1_6 = fb_y_x * H5_5_2 + fb_z_x * H5_6_2 - fb_y_y * H5_1_5 - fb_z_y * H5_2_4;
-      const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
-      const T H6_1 = lambda[0] * fa_y_x_fb_z_z - H4_11 * fa_z_x + H5_2 * fa_z_y;
-      const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
-      const T H6_2 = H4_11 * fa_y_x - H5_2 * fa_y_y + lambda[0] * fa_z_x_fb_z_z;
-      const T H6_3 = H4_9 * H6_1 + H4_13 * H6_2;
-      const T H6_4 = H4_1 * H6_3 - H6_1 * H4_3;
-      const T H6_5 = H6_2 * H4_3 - H4_2 * H6_3;
-      const T H6_6 = fb_y_z * H6_4 + fb_z_z * H6_5;
-      const T H6_7 = fb_z_z * H6_4 - fb_y_z * H6_5;
-      const T H6_8 = H5_1 + fb_y_y * H6_4 + fb_z_y * H6_5;
-      const T H6_9 = fb_z_y * H6_4 - H5_9 - fb_y_y * H6_5;
-      const T H6_10 = fa_y_y * H6_6 + fa_z_y * H6_7 - fa_y_z * H6_8 - fa_z_z * H6_9;
-      const T H6_1_2 = fb_y_x * H6_4 - H4_7 + fb_z_x * H6_5;
-      const T H6_2_2 = H4_19 - fb_y_x * H6_5 + fb_z_x * H6_4;
-      const T H6_3_2 = fa_y_z * H6_1_2 - fa_y_x * H6_6 - fa_z_x * H6_7 + fa_z_z * H6_2_2;
-      const T H6_1_3 = fa_y_x * H6_8 + fa_z_x * H6_9 - fa_y_y * H6_1_2 - fa_z_y * H6_2_2;
-      const T H6_1_4 = fa_y_z * H6_4 - fa_z_z * H6_5;
-      const T H6_2_3 = fa_y_z * H6_5 + fa_z_z * H6_4;
-      const T H6_3_3 = H5_1_4 + fa_y_y * H6_4 - fa_z_y * H6_5;
-      const T H6_4_2 = fa_y_y * H6_5 - H5_3_3 + fa_z_y * H6_4;
-      const T H6_5_2 = fb_y_y * H6_1_4 + fb_z_y * H6_2_3 - fb_y_z * H6_3_3 - fb_z_z * H6_4_2;
-      const T H6_1_5 = fa_y_x * H6_4 - H4_1_4 - fa_z_x * H6_5;
-      const T H6_2_4 = H4_3_3 + fa_y_x * H6_5 + fa_z_x * H6_4;
-      const T H6_3_4 = fb_y_z * H6_1_5 - fb_y_x * H6_1_4 - fb_z_x * H6_2_3 + fb_z_z * H6_2_4;
-      const T H6_1_6 = fb_y_x * H6_3_3 + fb_z_x * H6_4_2 - fb_y_y * H6_1_5 - fb_z_y * H6_2_4;
-      H[3][3] = H4_25;
-      H[3][4] = H4_3_2;
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+      const T fa_x_fb_x_x = fa_x_x + fb_x_x;
+      const T fa_x_fb_x_y = fa_x_y + fb_x_y;
+      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+      const T H4_1 = inverse(dot_fa_x_fb_x + T(1));
+      const T H4_2 = lambda[0] * H4_1;
+      const T H4_3 = H4_1 * H4_2;
+      const T H4_4 = fa_x_fb_x_x * H4_3;
+      const T H4_5 = H4_4 * (fa_x_y * fb_x_z - fa_x_z * fb_x_y);
+      const T H4_1_2 = fa_x_x * H4_4;
+      const T H4_2_2 = fb_x_x * H4_4;
+      const T H4_3_2 = H4_2_2 - H4_2;
+      const T H4_4_2 = fa_x_z * H4_3_2 - H4_1_2 * fb_x_z;
+      const T H4_1_3 = H4_1_2 * fb_x_y - fa_x_y * H4_3_2;
+      const T H4_1_4 = H4_1_2 - H4_2;
+      const T H4_2_3 = fb_x_z * H4_1_4 - H4_2_2 * fa_x_z;
+      const T H4_1_5 = H4_2_2 * fa_x_y - fb_x_y * H4_1_4;
+      const T H5_1 = H4_3 * fa_x_fb_x_y;
+      const T H5_2 = fa_x_y * H5_1;
+      const T H5_3 = fb_x_y * H5_1;
+      const T H5_4 = H5_3 - H4_2;
+      const T H5_5 = H5_2 * fb_x_z - fa_x_z * H5_4;
+      const T H5_1_2 = H5_1 * (fa_x_z * fb_x_x - fa_x_x * fb_x_z);
+      const T H5_1_3 = fa_x_x * H5_4 - H5_2 * fb_x_x;
+      const T H5_1_4 = H5_2 - H4_2;
+      const T H5_2_2 = H5_3 * fa_x_z - fb_x_z * H5_1_4;
+      const T H5_1_5 = fb_x_x * H5_1_4 - H5_3 * fa_x_x;
+      const T fa_x_fb_x_z = fa_x_z + fb_x_z;
+      const T H6_1 = H4_3 * fa_x_fb_x_z;
+      const T H6_2 = fa_x_z * H6_1;
+      const T H6_3 = fb_x_z * H6_1;
+      const T H6_4 = H6_3 - H4_2;
+      const T H6_5 = fa_x_y * H6_4 - H6_2 * fb_x_y;
+      const T H6_1_2 = H6_2 * fb_x_x - fa_x_x * H6_4;
+      const T H6_1_3 = H6_1 * (fa_x_x * fb_x_y - fa_x_y * fb_x_x);
+      const T H6_1_4 = H6_2 - H4_2;
+      const T H6_2_2 = fb_x_y * H6_1_4 - H6_3 * fa_x_y;
+      const T H6_1_5 = H6_3 * fa_x_x - fb_x_x * H6_1_4;
+      H[3][3] = H4_5;
+      H[3][4] = H4_4_2;
       H[3][5] = H4_1_3;
-      H[3][9] = H4_9_2;
-      H[3][10] = H4_3_4;
-      H[3][11] = H4_1_6;
-      H[4][3] = H5_13;
-      H[4][4] = H5_3_2;
+      H[3][9] = -H4_5;
+      H[3][10] = H4_2_3;
+      H[3][11] = H4_1_5;
+      H[4][3] = H5_5;
+      H[4][4] = H5_1_2;
       H[4][5] = H5_1_3;
-      H[4][9] = H5_7_2;
-      H[4][10] = H5_3_4;
-      H[4][11] = H5_1_6;
-      H[5][3] = H6_10;
-      H[5][4] = H6_3_2;
+      H[4][9] = H5_2_2;
+      H[4][10] = -H5_1_2;
+      H[4][11] = H5_1_5;
+      H[5][3] = H6_5;
+      H[5][4] = H6_1_2;
       H[5][5] = H6_1_3;
-      H[5][9] = H6_5_2;
-      H[5][10] = H6_3_4;
-      H[5][11] = H6_1_6;
-      H[9][3] = -H4_25;
-      H[9][4] = -H4_3_2;
+      H[5][9] = H6_2_2;
+      H[5][10] = H6_1_5;
+      H[5][11] = -H6_1_3;
+      H[9][3] = H[3][9];
+      H[9][4] = -H4_4_2;
       H[9][5] = -H4_1_3;
-      H[9][9] = -H4_9_2;
-      H[9][10] = -H4_3_4;
-      H[9][11] = -H4_1_6;
-      H[10][3] = -H5_13;
-      H[10][4] = -H5_3_2;
+      H[9][9] = H4_5;
+      H[9][10] = -H4_2_3;
+      H[9][11] = -H4_1_5;
+      H[10][3] = -H5_5;
+      H[10][4] = H[4][10];
       H[10][5] = -H5_1_3;
-      H[10][9] = -H5_7_2;
-      H[10][10] = -H5_3_4;
-      H[10][11] = -H5_1_6;
-      H[11][3] = -H6_10;
-      H[11][4] = -H6_3_2;
-      H[11][5] = -H6_1_3;
-      H[11][9] = -H6_5_2;
-      H[11][10] = -H6_3_4;
-      H[11][11] = -H6_1_6;
+      H[10][9] = -H5_2_2;
+      H[10][10] = H5_1_2;
+      H[10][11] = -H5_1_5;
+      H[11][3] = -H6_5;
+      H[11][4] = -H6_1_2;
+      H[11][5] = H[5][11];
+      H[11][9] = -H6_2_2;
+      H[11][10] = -H6_1_5;
+      H[11][11] = H6_1_3;
     }
 
     struct a_immovable;
@@ -3608,7 +3181,7 @@ struct six_dof {
 
     template <class T>
     struct Jacobian {
-      T wa_x, wa_y, wa_z, wb_x, wb_y, wb_z;
+      T wa_x, wa_y, wa_z;
     };
 
     // C: 34 +, 48 *, 1 call
@@ -3636,7 +3209,7 @@ struct six_dof {
       C[0] = atan2(rxz - dot_fa_z_fb_x, dot_fa_x_fb_x + rzz);
     }
 
-    // C and J: 65 +, 100 *, 1 /, 1 <, 1 call
+    // C and J: 46 +, 66 *, 1 /, 1 <, 1 call
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -3645,58 +3218,46 @@ struct six_dof {
       const Pose<T>& b = q[1];
       const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
       const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-      const T rxz = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
-      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
       const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
       const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
       const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-      const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
-      const T C1_1 = rxz - dot_fa_z_fb_x;
+      const T fb_z_x = fb_x_y * fb_y_z - fb_y_y * fb_x_z;
+      const T fb_z_y = fb_y_x * fb_x_z - fb_x_x * fb_y_z;
+      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fb_z_z = fb_x_x * fb_y_y - fb_y_x * fb_x_y;
+      const T rxz = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+      const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+      const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+      const T dot_fa_z_fb_x = fb_x_x * fa_z_x + fb_x_y * fa_z_y + fb_x_z * fa_z_z;
       const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-      const T C1_2 = dot_fa_x_fb_x + rzz;
-      const T wa_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
-      const T wa_x_2 = C1_2 * wa_x_1;
-      const T wa_x_3 = C1_1 * wa_x_1;
-      const T wa_x_4 = wa_x_2 * fb_z_z - wa_x_3 * fb_x_z;
-      const T wa_x_5 = wa_x_2 * fb_x_z + wa_x_3 * fb_z_z;
-      const T wa_x_6 = wa_x_2 * fb_z_y - wa_x_3 * fb_x_y;
-      const T wa_x_7 = wa_x_2 * fb_x_y + wa_x_3 * fb_z_y;
-      const T wa_y_1 = wa_x_2 * fb_z_x - wa_x_3 * fb_x_x;
-      const T wa_y_2 = wa_x_2 * fb_x_x + wa_x_3 * fb_z_x;
-      const T wb_x_1 = wa_x_2 * fa_z_z + wa_x_3 * fa_x_z;
-      const T wb_x_2 = wa_x_2 * fa_x_z - wa_x_3 * fa_z_z;
-      const T wb_x_3 = wa_x_2 * fa_z_y + wa_x_3 * fa_x_y;
-      const T wb_x_4 = wa_x_2 * fa_x_y - wa_x_3 * fa_z_y;
-      const T wb_y_1 = wa_x_2 * fa_z_x + wa_x_3 * fa_x_x;
-      const T wb_y_2 = wa_x_2 * fa_x_x - wa_x_3 * fa_z_x;
-      C[0] = atan2(C1_1, C1_2);
-      J.wa_x = fa_x_y * wa_x_4 - fa_z_y * wa_x_5 - fa_x_z * wa_x_6 + fa_z_z * wa_x_7;
-      J.wa_y = fa_z_x * wa_x_5 - fa_x_x * wa_x_4 + fa_x_z * wa_y_1 - fa_z_z * wa_y_2;
-      J.wa_z = fa_x_x * wa_x_6 - fa_z_x * wa_x_7 - fa_x_y * wa_y_1 + fa_z_y * wa_y_2;
-      J.wb_x = fb_z_y * wb_x_2 - fb_x_y * wb_x_1 + fb_x_z * wb_x_3 - fb_z_z * wb_x_4;
-      J.wb_y = fb_x_x * wb_x_1 - fb_z_x * wb_x_2 - fb_x_z * wb_y_1 + fb_z_z * wb_y_2;
-      J.wb_z = fb_z_x * wb_x_4 - fb_x_x * wb_x_3 + fb_x_y * wb_y_1 - fb_z_y * wb_y_2;
+      const T rzz = fa_z_z * fb_z_z + fa_z_y * fb_z_y + fa_z_x * fb_z_x;
+      const T fa_y_fb_y_x = fa_y_x + fb_y_x;
+      const T fa_y_fb_y_y = fa_y_y + fb_y_y;
+      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+      const T wa_x_1 = inverse(dot_fa_y_fb_y + T(1));
+      const T fa_y_fb_y_z = fa_y_z + fb_y_z;
+      C[0] = atan2(rxz - dot_fa_z_fb_x, dot_fa_x_fb_x + rzz);
+      J.wa_x = fa_y_fb_y_x * wa_x_1;
+      J.wa_y = fa_y_fb_y_y * wa_x_1;
+      J.wa_z = fa_y_fb_y_z * wa_x_1;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 11 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
       const T K11_1 = J.wa_z * T(2);
-      const T K11_2 = J.wb_z * T(2);
-      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
-          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
-          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
+      K[0] = J.wa_z * J.wa_z * (ma.Izz + mb.Izz) + J.wa_x *
+          (J.wa_x * (ma.Ixx + mb.Ixx) + J.wa_y * T(2) * (ma.Ixy + mb.Ixy) + K11_1 *
+          (ma.Ixz + mb.Ixz)) + J.wa_y * (J.wa_y * (ma.Iyy + mb.Iyy) + K11_1 * (ma.Iyz + mb.Iyz));
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -3711,16 +3272,15 @@ struct six_dof {
       lambda[0] = F[0] * rhs[0];
     }
 
-    // J v: 5 +, 6 *
+    // J v: 5 +, 3 *
     template <class T>
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.wb_x * vb.wx + J.wb_y * vb.wy +
-          J.wb_z * vb.wz;
+      Jv[0] = J.wa_x * (vb.wx - va.wx) + J.wa_y * (vb.wy - va.wy) + J.wa_z * (vb.wz - va.wz);
     }
 
-    // v += M^-1 J^T lambda: 18 +, 24 *
+    // v += M^-1 J^T lambda: 18 +, 21 *
     template <class T>
     static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
         Velocity<T> (&v)[2]) {
@@ -3731,32 +3291,29 @@ struct six_dof {
       const T v1_1 = J.wa_x * lambda[0];
       const T v1_2 = lambda[0] * J.wa_y;
       const T v1_3 = lambda[0] * J.wa_z;
-      const T v2_1 = lambda[0] * J.wb_x;
-      const T v2_2 = lambda[0] * J.wb_y;
-      const T v2_3 = lambda[0] * J.wb_z;
-      v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-      v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-      v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
-      v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
-      v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
-      v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+      v[0].wx = va.wx - v1_1 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+      v[0].wy = va.wy - v1_1 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+      v[0].wz = va.wz - v1_1 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
+      v[1].wx = vb.wx + v1_1 * mb.Ixx + v1_2 * mb.Ixy + v1_3 * mb.Ixz;
+      v[1].wy = vb.wy + v1_1 * mb.Ixy + v1_2 * mb.Iyy + v1_3 * mb.Iyz;
+      v[1].wz = vb.wz + v1_1 * mb.Ixz + v1_2 * mb.Iyz + v1_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: nothing
+    // J with its zeros: v, w of each body: 3 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
         for (T& entry : row) entry = T(0);
       }
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
-      D[0][9] = J.wb_x;
-      D[0][10] = J.wb_y;
-      D[0][11] = J.wb_z;
+      D[0][3] = -J.wa_x;
+      D[0][4] = -J.wa_y;
+      D[0][5] = -J.wa_z;
+      D[0][9] = J.wa_x;
+      D[0][10] = J.wa_y;
+      D[0][11] = J.wa_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 12 +, 18 *
+    // (M^-1 J^T)^T, laid out like dense: 15 +, 18 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -3765,22 +3322,21 @@ struct six_dof {
       }
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
-      D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
-      D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
-      D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+      D[0][3] = -ma.Ixx * J.wa_x - ma.Ixy * J.wa_y - ma.Ixz * J.wa_z;
+      D[0][4] = -ma.Ixy * J.wa_x - ma.Iyy * J.wa_y - ma.Iyz * J.wa_z;
+      D[0][5] = -ma.Ixz * J.wa_x - ma.Iyz * J.wa_y - ma.Izz * J.wa_z;
+      D[0][9] = mb.Ixx * J.wa_x + mb.Ixy * J.wa_y + mb.Ixz * J.wa_z;
+      D[0][10] = mb.Ixy * J.wa_x + mb.Iyy * J.wa_y + mb.Iyz * J.wa_z;
+      D[0][11] = mb.Ixz * J.wa_x + mb.Iyz * J.wa_y + mb.Izz * J.wa_z;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
+    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+      K[0] = (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) * (ma.I + mb.I);
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -3793,15 +3349,15 @@ struct six_dof {
       const IsotropicInverseMass<T>& mb = m[1];
       const T v1_1 = ma.I * lambda[0];
       const T v2_1 = lambda[0] * mb.I;
-      v[0].wx = va.wx + v1_1 * J.wa_x;
-      v[0].wy = va.wy + v1_1 * J.wa_y;
-      v[0].wz = va.wz + v1_1 * J.wa_z;
-      v[1].wx = vb.wx + v2_1 * J.wb_x;
-      v[1].wy = vb.wy + v2_1 * J.wb_y;
-      v[1].wz = vb.wz + v2_1 * J.wb_z;
+      v[0].wx = va.wx - v1_1 * J.wa_x;
+      v[0].wy = va.wy - v1_1 * J.wa_y;
+      v[0].wz = va.wz - v1_1 * J.wa_z;
+      v[1].wx = vb.wx + v2_1 * J.wa_x;
+      v[1].wy = vb.wy + v2_1 * J.wa_y;
+      v[1].wz = vb.wz + v2_1 * J.wa_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -3810,15 +3366,15 @@ struct six_dof {
       }
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
-      D[0][9] = mb.I * J.wb_x;
-      D[0][10] = mb.I * J.wb_y;
-      D[0][11] = mb.I * J.wb_z;
+      D[0][3] = -ma.I * J.wa_x;
+      D[0][4] = -ma.I * J.wa_y;
+      D[0][5] = -ma.I * J.wa_z;
+      D[0][9] = mb.I * J.wa_x;
+      D[0][10] = mb.I * J.wa_y;
+      D[0][11] = mb.I * J.wa_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -3826,15 +3382,15 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-      D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-      D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-      D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+      D[0][3] = -J.wa_x * a.xx - J.wa_y * a.yx - J.wa_z * a.zx;
+      D[0][4] = -J.wa_x * a.xy - J.wa_y * a.yy - J.wa_z * a.zy;
+      D[0][5] = -J.wa_x * a.xz - J.wa_y * a.yz - J.wa_z * a.zz;
+      D[0][9] = J.wa_x * b.xx + J.wa_y * b.yx + J.wa_z * b.zx;
+      D[0][10] = J.wa_x * b.xy + J.wa_y * b.yy + J.wa_z * b.zy;
+      D[0][11] = J.wa_x * b.xz + J.wa_y * b.yz + J.wa_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 27 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -3842,17 +3398,20 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-      D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-      D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-      D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+      const T D1_1 = J.wa_x * T(2);
+      const T D1_2 = J.wa_y * T(2);
+      const T D1_3 = J.wa_z * T(2);
+      D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+      D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+      D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+      D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
+      D[0][10] = -D1_1 * b.e1 - D1_2 * b.e2 - D1_3 * b.e3;
+      D[0][11] = D1_1 * b.e0 + D1_2 * b.e3 - D1_3 * b.e2;
+      D[0][12] = D1_2 * b.e0 - D1_1 * b.e3 + D1_3 * b.e1;
+      D[0][13] = D1_1 * b.e2 - D1_2 * b.e1 + D1_3 * b.e0;
     }
 
-    // -Jdot v - d/dt(dC/dt): 119 +, 171 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 41 +, 47 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -3860,102 +3419,34 @@ struct six_dof {
       const Velocity<T>& va = v[0];
       const Pose<T>& b = q[1];
       const Velocity<T>& vb = v[1];
-      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-      const T g1_1 = dot_fa_x_fb_x + rzz;
-      const T rxz = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
-      const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
-      const T g1_2 = rxz - dot_fa_z_fb_x;
-      const T g1_3 = inverse(g1_1 * g1_1 + g1_2 * g1_2);
-      const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
-      const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
-      const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
-      const T dot_w_b_x_fb_z_fa_x = fa_x_x * w_b_x_fb_z_x + fa_x_y * w_b_x_fb_z_y + fa_x_z *
-          w_b_x_fb_z_z;
-      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-      const T dot_w_a_x_fa_x_fb_z = fb_z_x * w_a_x_fa_x_x + fb_z_y * w_a_x_fa_x_y + fb_z_z *
-          w_a_x_fa_x_z;
-      const T rxz_dot = dot_w_b_x_fb_z_fa_x + dot_w_a_x_fa_x_fb_z;
-      const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
-      const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
-      const T dot_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_fb_x_x + fa_z_y * w_b_x_fb_x_y + fa_z_z *
-          w_b_x_fb_x_z;
-      const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
-      const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-      const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-      const T dot_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_fa_z_x + fb_x_y * w_a_x_fa_z_y + fb_x_z *
-          w_a_x_fa_z_z;
-      const T g1_4 = rxz_dot - dot_w_b_x_fb_x_fa_z - dot_w_a_x_fa_z_fb_x;
-      const T dot_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_fb_z_x + fa_z_y * w_b_x_fb_z_y + fa_z_z *
-          w_b_x_fb_z_z;
-      const T dot_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_fa_z_x + fb_z_y * w_a_x_fa_z_y + fb_z_z *
-          w_a_x_fa_z_z;
-      const T rzz_dot = dot_w_b_x_fb_z_fa_z + dot_w_a_x_fa_z_fb_z;
-      const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
-          w_b_x_fb_x_z;
-      const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
-          w_a_x_fa_x_z;
-      const T g1_5 = rzz_dot + dot_w_b_x_fb_x_fa_x + dot_w_a_x_fa_x_fb_x;
-      const T g1_6 = T(2) * (g1_4 * g1_2 + g1_5 * g1_1) * g1_3;
-      const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
-      const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
-      const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-      const T dot_w_b_x_w_b_x_fb_z_fa_x = fa_x_x * w_b_x_w_b_x_fb_z_x + fa_x_y *
-          w_b_x_w_b_x_fb_z_y + fa_x_z * w_b_x_w_b_x_fb_z_z;
-      const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-      const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-      const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-      const T dot_w_a_x_w_a_x_fa_x_fb_z = fb_z_x * w_a_x_w_a_x_fa_x_x + fb_z_y *
-          w_a_x_w_a_x_fa_x_y + fb_z_z * w_a_x_w_a_x_fa_x_z;
-      const T dot_w_a_x_fa_x_w_b_x_fb_z = w_a_x_fa_x_z * w_b_x_fb_z_z + w_a_x_fa_x_y *
-          w_b_x_fb_z_y + w_a_x_fa_x_x * w_b_x_fb_z_x;
-      const T rxz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_x + dot_w_a_x_w_a_x_fa_x_fb_z +
-          dot_w_a_x_fa_x_w_b_x_fb_z * T(2);
-      const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-      const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-      const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-      const T dot_w_b_x_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_w_b_x_fb_x_x + fa_z_y *
-          w_b_x_w_b_x_fb_x_y + fa_z_z * w_b_x_w_b_x_fb_x_z;
-      const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-      const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-      const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-      const T dot_w_a_x_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_w_a_x_fa_z_x + fb_x_y *
-          w_a_x_w_a_x_fa_z_y + fb_x_z * w_a_x_w_a_x_fa_z_z;
-      const T dot_w_a_x_fa_z_w_b_x_fb_x = w_a_x_fa_z_z * w_b_x_fb_x_z + w_a_x_fa_z_y *
-          w_b_x_fb_x_y + w_a_x_fa_z_x * w_b_x_fb_x_x;
-      const T dot_w_b_x_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_w_b_x_fb_z_x + fa_z_y *
-          w_b_x_w_b_x_fb_z_y + fa_z_z * w_b_x_w_b_x_fb_z_z;
-      const T dot_w_a_x_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_w_a_x_fa_z_x + fb_z_y *
-          w_a_x_w_a_x_fa_z_y + fb_z_z * w_a_x_w_a_x_fa_z_z;
-      const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
-          w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
-      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z +
-          dot_w_a_x_fa_z_w_b_x_fb_z * T(2);
-      const T dot_w_b_x_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_w_b_x_fb_x_x + fa_x_y *
-          w_b_x_w_b_x_fb_x_y + fa_x_z * w_b_x_w_b_x_fb_x_z;
-      const T dot_w_a_x_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_w_a_x_fa_x_x + fb_x_y *
-          w_a_x_w_a_x_fa_x_y + fb_x_z * w_a_x_w_a_x_fa_x_z;
-      const T dot_w_a_x_fa_x_w_b_x_fb_x = w_a_x_fa_x_z * w_b_x_fb_x_z + w_a_x_fa_x_y *
-          w_b_x_fb_x_y + w_a_x_fa_x_x * w_b_x_fb_x_x;
-      g[0] = g1_3 * (g1_1 * (g1_6 * g1_4 - rxz_dot_dot + dot_w_b_x_w_b_x_fb_x_fa_z +
-          dot_w_a_x_w_a_x_fa_z_fb_x + dot_w_a_x_fa_z_w_b_x_fb_x * T(2)) + g1_2 *
-          (rzz_dot_dot - g1_6 * g1_5 + dot_w_b_x_w_b_x_fb_x_fa_x + dot_w_a_x_w_a_x_fa_x_fb_x +
-          dot_w_a_x_fa_x_w_b_x_fb_x * T(2)));
+      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+      const T g1_1 = inverse(dot_fa_y_fb_y + T(1));
+      const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
+      const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
+      const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
+      const T dot_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_fb_y_x + fa_y_y * w_b_x_fb_y_y + fa_y_z *
+          w_b_x_fb_y_z;
+      const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
+      const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
+      const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
+      const T dot_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_fa_y_x + fb_y_y * w_a_x_fa_y_y + fb_y_z *
+          w_a_x_fa_y_z;
+      const T g1_2 = (dot_w_b_x_fb_y_fa_y + dot_w_a_x_fa_y_fb_y) * g1_1;
+      const T fa_y_fb_y_x = fa_y_x + fb_y_x;
+      const T fa_y_fb_y_y = fa_y_y + fb_y_y;
+      const T w_a_x_fa_y_w_b_x_fb_y_x = w_a_x_fa_y_x + w_b_x_fb_y_x;
+      const T w_a_x_fa_y_w_b_x_fb_y_y = w_a_x_fa_y_y + w_b_x_fb_y_y;
+      const T fa_y_fb_y_z = fa_y_z + fb_y_z;
+      const T w_a_x_fa_y_w_b_x_fb_y_z = w_a_x_fa_y_z + w_b_x_fb_y_z;
+      g[0] = -g1_1 * ((vb.wx - va.wx) * (w_a_x_fa_y_w_b_x_fb_y_x - g1_2 * fa_y_fb_y_x) +
+          (vb.wy - va.wy) * (w_a_x_fa_y_w_b_x_fb_y_y - g1_2 * fa_y_fb_y_y) + (vb.wz - va.wz) *
+          (w_a_x_fa_y_w_b_x_fb_y_z - g1_2 * fa_y_fb_y_z));
     }
 
     // dC/dt at fixed q: nothing
@@ -3964,7 +3455,7 @@ struct six_dof {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 206 +, 275 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 54 +, 65 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -3973,159 +3464,85 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-      const T H4_1 = dot_fa_x_fb_x + rzz;
-      const T rxz = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
-      const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
-      const T H4_2 = rxz - dot_fa_z_fb_x;
-      const T H4_3 = inverse(H4_1 * H4_1 + H4_2 * H4_2);
-      const T H4_4 = lambda[0] * H4_3;
-      const T H4_5 = H4_1 * H4_4;
-      const T H4_6 = H4_2 * H4_4;
-      const T H4_7 = H4_5 * fb_z_y - H4_6 * fb_x_y;
-      const T H4_8 = T(2) * H4_3 * H4_3;
-      const T H4_9 = H4_1 * H4_8;
-      const T fa_x_x_fb_z_x = fa_x_y * fb_z_z - fa_x_z * fb_z_y;
-      const T fa_x_x_fb_z_y = fa_x_z * fb_z_x - fa_x_x * fb_z_z;
-      const T H4_10 = lambda[0] * fb_x_z;
-      const T H4_11 = lambda[0] * fa_z_z;
-      const T H4_12 = H4_10 * fa_z_y - lambda[0] * fa_x_x_fb_z_x - H4_11 * fb_x_y;
-      const T H4_13 = H4_2 * H4_8;
-      const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
-      const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
-      const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
-      const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-      const T H4_14 = lambda[0] * (fa_x_x_fb_x_x + fa_z_x_fb_z_x);
-      const T H4_15 = H4_9 * H4_12 + H4_13 * H4_14;
-      const T H4_16 = H4_1 * H4_15 - H4_12 * H4_3;
-      const T H4_17 = H4_2 * H4_15 - H4_14 * H4_3;
-      const T H4_18 = fb_x_z * H4_16 - H4_7 + fb_z_z * H4_17;
-      const T H4_19 = H4_5 * fb_x_y + H4_6 * fb_z_y;
-      const T H4_20 = H4_19 - fb_x_z * H4_17 + fb_z_z * H4_16;
-      const T H4_21 = H4_5 * fb_z_z - H4_6 * fb_x_z;
-      const T H4_22 = H4_21 + fb_x_y * H4_16 + fb_z_y * H4_17;
-      const T H4_23 = H4_5 * fb_x_z + H4_6 * fb_z_z;
-      const T H4_24 = fb_z_y * H4_16 - H4_23 - fb_x_y * H4_17;
-      const T H4_25 = fa_x_y * H4_18 + fa_z_y * H4_20 - fa_x_z * H4_22 - fa_z_z * H4_24;
-      const T H4_1_2 = fb_x_x * H4_16 + fb_z_x * H4_17;
-      const T H4_2_2 = fb_z_x * H4_16 - fb_x_x * H4_17;
-      const T H4_3_2 = fa_x_z * H4_1_2 - fa_x_x * H4_18 - fa_z_x * H4_20 + fa_z_z * H4_2_2;
-      const T H4_1_3 = fa_x_x * H4_22 + fa_z_x * H4_24 - fa_x_y * H4_1_2 - fa_z_y * H4_2_2;
-      const T H4_1_4 = H4_5 * fa_z_y + H4_6 * fa_x_y;
-      const T H4_2_3 = fa_x_z * H4_16 - H4_1_4 - fa_z_z * H4_17;
-      const T H4_3_3 = H4_5 * fa_x_y - H4_6 * fa_z_y;
-      const T H4_4_2 = H4_3_3 + fa_x_z * H4_17 + fa_z_z * H4_16;
-      const T H4_5_2 = H4_5 * fa_z_z + H4_6 * fa_x_z;
-      const T H4_6_2 = H4_5_2 + fa_x_y * H4_16 - fa_z_y * H4_17;
-      const T H4_7_2 = H4_5 * fa_x_z - H4_6 * fa_z_z;
-      const T H4_8_2 = fa_x_y * H4_17 - H4_7_2 + fa_z_y * H4_16;
-      const T H4_9_2 = fb_x_y * H4_2_3 + fb_z_y * H4_4_2 - fb_x_z * H4_6_2 - fb_z_z * H4_8_2;
-      const T H4_1_5 = fa_x_x * H4_16 - fa_z_x * H4_17;
-      const T H4_2_4 = fa_x_x * H4_17 + fa_z_x * H4_16;
-      const T H4_3_4 = fb_x_z * H4_1_5 - fb_x_x * H4_2_3 - fb_z_x * H4_4_2 + fb_z_z * H4_2_4;
-      const T H4_1_6 = fb_x_x * H4_6_2 + fb_z_x * H4_8_2 - fb_x_y * H4_1_5 - fb_z_y * H4_2_4;
-      const T H5_1 = H4_5 * fb_z_x - H4_6 * fb_x_x;
-      const T H5_2 = H4_11 * fb_x_x - lambda[0] * fa_x_x_fb_z_y - H4_10 * fa_z_x;
-      const T H5_3 = lambda[0] * (fa_x_x_fb_x_y + fa_z_x_fb_z_y);
-      const T H5_4 = H4_9 * H5_2 + H4_13 * H5_3;
-      const T H5_5 = H4_1 * H5_4 - H5_2 * H4_3;
-      const T H5_6 = H4_2 * H5_4 - H5_3 * H4_3;
-      const T H5_7 = H5_1 + fb_x_z * H5_5 + fb_z_z * H5_6;
-      const T H5_8 = H4_5 * fb_x_x + H4_6 * fb_z_x;
-      const T H5_9 = fb_z_z * H5_5 - H5_8 - fb_x_z * H5_6;
-      const T H5_10 = fb_x_y * H5_5 + fb_z_y * H5_6;
-      const T H5_11 = fb_z_y * H5_5 - fb_x_y * H5_6;
-      const T H5_12 = fa_x_y * H5_7 + fa_z_y * H5_9 - fa_x_z * H5_10 - fa_z_z * H5_11;
-      const T H5_1_2 = fb_x_x * H5_5 - H4_21 + fb_z_x * H5_6;
-      const T H5_2_2 = H4_23 - fb_x_x * H5_6 + fb_z_x * H5_5;
-      const T H5_3_2 = fa_x_z * H5_1_2 - fa_x_x * H5_7 - fa_z_x * H5_9 + fa_z_z * H5_2_2;
-      const T H5_1_3 = fa_x_x * H5_10 + fa_z_x * H5_11 - fa_x_y * H5_1_2 - fa_z_y * H5_2_2;
-      const T H5_1_4 = H4_5 * fa_z_x + H4_6 * fa_x_x;
-      const T H5_2_3 = H5_1_4 + fa_x_z * H5_5 - fa_z_z * H5_6;
-      const T H5_3_3 = H4_5 * fa_x_x - H4_6 * fa_z_x;
-      const T H5_4_2 = fa_x_z * H5_6 - H5_3_3 + fa_z_z * H5_5;
-      const T H5_5_2 = fa_x_y * H5_5 - fa_z_y * H5_6;
-      const T H5_6_2 = fa_x_y * H5_6 + fa_z_y * H5_5;
-      const T H5_7_2 = fb_x_y * H5_2_3 + fb_z_y * H5_4_2 - fb_x_z * H5_5_2 - fb_z_z * H5_6_2;
-      const T H5_1_5 = fa_x_x * H5_5 - H4_5_2 - fa_z_x * H5_6;
-      const T H5_2_4 = H4_7_2 + fa_x_x * H5_6 + fa_z_x * H5_5;
-      const T H5_3_4 = fb_x_z * H5_1_5 - fb_x_x * H5_2_3 - fb_z_x * H5_4_2 + fb_z_z * H5_2_4;
-      const T H5_1_6 = fb_x_x * H5_5_2 + fb_z_x * H5_6_2 - fb_x_y * H5_1_5 - fb_z_y * H5_2_4;
-      const T fa_x_x_fb_z_z = fa_x_x * fb_z_y - fa_x_y * fb_z_x;
-      const T H6_1 = lambda[0] * (fa_z_x * fb_x_y - fa_x_x_fb_z_z - fa_z_y * fb_x_x);
-      const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
-      const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
-      const T H6_2 = lambda[0] * (fa_x_x_fb_x_z + fa_z_x_fb_z_z);
-      const T H6_3 = H4_9 * H6_1 + H4_13 * H6_2;
-      const T H6_4 = H4_1 * H6_3 - H6_1 * H4_3;
-      const T H6_5 = H4_2 * H6_3 - H6_2 * H4_3;
-      const T H6_6 = fb_x_z * H6_4 + fb_z_z * H6_5;
-      const T H6_7 = fb_z_z * H6_4 - fb_x_z * H6_5;
-      const T H6_8 = fb_x_y * H6_4 - H5_1 + fb_z_y * H6_5;
-      const T H6_9 = H5_8 - fb_x_y * H6_5 + fb_z_y * H6_4;
-      const T H6_10 = fa_x_y * H6_6 + fa_z_y * H6_7 - fa_x_z * H6_8 - fa_z_z * H6_9;
-      const T H6_1_2 = H4_7 + fb_x_x * H6_4 + fb_z_x * H6_5;
-      const T H6_2_2 = fb_z_x * H6_4 - H4_19 - fb_x_x * H6_5;
-      const T H6_3_2 = fa_x_z * H6_1_2 - fa_x_x * H6_6 - fa_z_x * H6_7 + fa_z_z * H6_2_2;
-      const T H6_1_3 = fa_x_x * H6_8 + fa_z_x * H6_9 - fa_x_y * H6_1_2 - fa_z_y * H6_2_2;
-      const T H6_1_4 = fa_x_z * H6_4 - fa_z_z * H6_5;
-      const T H6_2_3 = fa_x_z * H6_5 + fa_z_z * H6_4;
-      const T H6_3_3 = fa_x_y * H6_4 - H5_1_4 - fa_z_y * H6_5;
-      const T H6_4_2 = H5_3_3 + fa_x_y * H6_5 + fa_z_y * H6_4;
-      const T H6_5_2 = fb_x_y * H6_1_4 + fb_z_y * H6_2_3 - fb_x_z * H6_3_3 - fb_z_z * H6_4_2;
-      const T H6_1_5 = H4_1_4 + fa_x_x * H6_4 - fa_z_x * H6_5;
-      const T H6_2_4 = fa_x_x * H6_5 - H4_3_3 + fa_z_x * H6_4;
-      const T H6_3_4 = fb_x_z * H6_1_5 - fb_x_x * H6_1_4 - fb_z_x * H6_2_3 + fb_z_z * H6_2_4;
-      const T H6_1_6 = fb_x_x * H6_3_3 + fb_z_x * H6_4_2 - fb_x_y * H6_1_5 - fb_z_y * H6_2_4;
-      H[3][3] = H4_25;
-      H[3][4] = H4_3_2;
+      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+      const T fa_y_fb_y_x = fa_y_x + fb_y_x;
+      const T fa_y_fb_y_y = fa_y_y + fb_y_y;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+      const T H4_1 = inverse(dot_fa_y_fb_y + T(1));
+      const T H4_2 = lambda[0] * H4_1;
+      const T H4_3 = H4_1 * H4_2;
+      const T H4_4 = fa_y_fb_y_x * H4_3;
+      const T H4_5 = H4_4 * (fa_y_y * fb_y_z - fa_y_z * fb_y_y);
+      const T H4_1_2 = fa_y_x * H4_4;
+      const T H4_2_2 = fb_y_x * H4_4;
+      const T H4_3_2 = H4_2_2 - H4_2;
+      const T H4_4_2 = fa_y_z * H4_3_2 - H4_1_2 * fb_y_z;
+      const T H4_1_3 = H4_1_2 * fb_y_y - fa_y_y * H4_3_2;
+      const T H4_1_4 = H4_1_2 - H4_2;
+      const T H4_2_3 = fb_y_z * H4_1_4 - H4_2_2 * fa_y_z;
+      const T H4_1_5 = H4_2_2 * fa_y_y - fb_y_y * H4_1_4;
+      const T H5_1 = H4_3 * fa_y_fb_y_y;
+      const T H5_2 = fa_y_y * H5_1;
+      const T H5_3 = fb_y_y * H5_1;
+      const T H5_4 = H5_3 - H4_2;
+      const T H5_5 = H5_2 * fb_y_z - fa_y_z * H5_4;
+      const T H5_1_2 = H5_1 * (fa_y_z * fb_y_x - fa_y_x * fb_y_z);
+      const T H5_1_3 = fa_y_x * H5_4 - H5_2 * fb_y_x;
+      const T H5_1_4 = H5_2 - H4_2;
+      const T H5_2_2 = H5_3 * fa_y_z - fb_y_z * H5_1_4;
+      const T H5_1_5 = fb_y_x * H5_1_4 - H5_3 * fa_y_x;
+      const T fa_y_fb_y_z = fa_y_z + fb_y_z;
+      const T H6_1 = H4_3 * fa_y_fb_y_z;
+      const T H6_2 = fa_y_z * H6_1;
+      const T H6_3 = fb_y_z * H6_1;
+      const T H6_4 = H6_3 - H4_2;
+      const T H6_5 = fa_y_y * H6_4 - H6_2 * fb_y_y;
+      const T H6_1_2 = H6_2 * fb_y_x - fa_y_x * H6_4;
+      const T H6_1_3 = H6_1 * (fa_y_x * fb_y_y - fa_y_y * fb_y_x);
+      const T H6_1_4 = H6_2 - H4_2;
+      const T H6_2_2 = fb_y_y * H6_1_4 - H6_3 * fa_y_y;
+      const T H6_1_5 = H6_3 * fa_y_x - fb_y_x * H6_1_4;
+      H[3][3] = H4_5;
+      H[3][4] = H4_4_2;
       H[3][5] = H4_1_3;
-      H[3][9] = H4_9_2;
-      H[3][10] = H4_3_4;
-      H[3][11] = H4_1_6;
-      H[4][3] = H5_12;
-      H[4][4] = H5_3_2;
+      H[3][9] = -H4_5;
+      H[3][10] = H4_2_3;
+      H[3][11] = H4_1_5;
+      H[4][3] = H5_5;
+      H[4][4] = H5_1_2;
       H[4][5] = H5_1_3;
-      H[4][9] = H5_7_2;
-      H[4][10] = H5_3_4;
-      H[4][11] = H5_1_6;
-      H[5][3] = H6_10;
-      H[5][4] = H6_3_2;
+      H[4][9] = H5_2_2;
+      H[4][10] = -H5_1_2;
+      H[4][11] = H5_1_5;
+      H[5][3] = H6_5;
+      H[5][4] = H6_1_2;
       H[5][5] = H6_1_3;
-      H[5][9] = H6_5_2;
-      H[5][10] = H6_3_4;
-      H[5][11] = H6_1_6;
-      H[9][3] = -H4_25;
-      H[9][4] = -H4_3_2;
+      H[5][9] = H6_2_2;
+      H[5][10] = H6_1_5;
+      H[5][11] = -H6_1_3;
+      H[9][3] = H[3][9];
+      H[9][4] = -H4_4_2;
       H[9][5] = -H4_1_3;
-      H[9][9] = -H4_9_2;
-      H[9][10] = -H4_3_4;
-      H[9][11] = -H4_1_6;
-      H[10][3] = -H5_12;
-      H[10][4] = -H5_3_2;
+      H[9][9] = H4_5;
+      H[9][10] = -H4_2_3;
+      H[9][11] = -H4_1_5;
+      H[10][3] = -H5_5;
+      H[10][4] = H[4][10];
       H[10][5] = -H5_1_3;
-      H[10][9] = -H5_7_2;
-      H[10][10] = -H5_3_4;
-      H[10][11] = -H5_1_6;
-      H[11][3] = -H6_10;
-      H[11][4] = -H6_3_2;
-      H[11][5] = -H6_1_3;
-      H[11][9] = -H6_5_2;
-      H[11][10] = -H6_3_4;
-      H[11][11] = -H6_1_6;
+      H[10][9] = -H5_2_2;
+      H[10][10] = H5_1_2;
+      H[10][11] = -H5_1_5;
+      H[11][3] = -H6_5;
+      H[11][4] = -H6_1_2;
+      H[11][5] = H[5][11];
+      H[11][9] = -H6_2_2;
+      H[11][10] = -H6_1_5;
+      H[11][11] = H6_1_3;
     }
 
     struct a_immovable;
@@ -4146,7 +3563,7 @@ struct six_dof {
 
     template <class T>
     struct Jacobian {
-      T wa_x, wa_y, wa_z, wb_x, wb_y, wb_z;
+      T wa_x, wa_y, wa_z;
     };
 
     // C: 34 +, 48 *, 1 call
@@ -4174,7 +3591,7 @@ struct six_dof {
       C[0] = atan2(dot_fa_y_fb_x - dot_fa_x_fb_y, dot_fa_x_fb_x + dot_fa_y_fb_y);
     }
 
-    // C and J: 65 +, 100 *, 1 /, 1 <, 1 call
+    // C and J: 46 +, 66 *, 1 /, 1 <, 1 call
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -4197,44 +3614,32 @@ struct six_dof {
       const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
       const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
       const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-      const T C1_1 = dot_fa_y_fb_x - dot_fa_x_fb_y;
-      const T C1_2 = dot_fa_x_fb_x + dot_fa_y_fb_y;
-      const T wa_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
-      const T wa_x_2 = C1_2 * wa_x_1;
-      const T wa_x_3 = C1_1 * wa_x_1;
-      const T wa_x_4 = wa_x_2 * fb_y_z + wa_x_3 * fb_x_z;
-      const T wa_x_5 = wa_x_2 * fb_x_z - wa_x_3 * fb_y_z;
-      const T wa_x_6 = wa_x_2 * fb_y_y + wa_x_3 * fb_x_y;
-      const T wa_x_7 = wa_x_2 * fb_x_y - wa_x_3 * fb_y_y;
-      const T wa_y_1 = wa_x_2 * fb_y_x + wa_x_3 * fb_x_x;
-      const T wa_y_2 = wa_x_2 * fb_x_x - wa_x_3 * fb_y_x;
-      const T wb_x_1 = wa_x_2 * fa_y_z - wa_x_3 * fa_x_z;
-      const T wb_x_2 = wa_x_2 * fa_x_z + wa_x_3 * fa_y_z;
-      const T wb_x_3 = wa_x_2 * fa_y_y - wa_x_3 * fa_x_y;
-      const T wb_x_4 = wa_x_2 * fa_x_y + wa_x_3 * fa_y_y;
-      const T wb_y_1 = wa_x_2 * fa_y_x - wa_x_3 * fa_x_x;
-      const T wb_y_2 = wa_x_2 * fa_x_x + wa_x_3 * fa_y_x;
-      C[0] = atan2(C1_1, C1_2);
-      J.wa_x = fa_y_y * wa_x_5 - fa_x_y * wa_x_4 + fa_x_z * wa_x_6 - fa_y_z * wa_x_7;
-      J.wa_y = fa_x_x * wa_x_4 - fa_y_x * wa_x_5 - fa_x_z * wa_y_1 + fa_y_z * wa_y_2;
-      J.wa_z = fa_y_x * wa_x_7 - fa_x_x * wa_x_6 + fa_x_y * wa_y_1 - fa_y_y * wa_y_2;
-      J.wb_x = fb_x_y * wb_x_1 - fb_y_y * wb_x_2 - fb_x_z * wb_x_3 + fb_y_z * wb_x_4;
-      J.wb_y = fb_y_x * wb_x_2 - fb_x_x * wb_x_1 + fb_x_z * wb_y_1 - fb_y_z * wb_y_2;
-      J.wb_z = fb_x_x * wb_x_3 - fb_y_x * wb_x_4 - fb_x_y * wb_y_1 + fb_y_y * wb_y_2;
+      const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+      const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+      const T fb_z_x = fb_x_y * fb_y_z - fb_y_y * fb_x_z;
+      const T fb_z_y = fb_y_x * fb_x_z - fb_x_x * fb_y_z;
+      const T fa_z_fb_z_x = fa_z_x + fb_z_x;
+      const T fa_z_fb_z_y = fa_z_y + fb_z_y;
+      const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+      const T fb_z_z = fb_x_x * fb_y_y - fb_y_x * fb_x_y;
+      const T rzz = fa_z_z * fb_z_z + fa_z_y * fb_z_y + fa_z_x * fb_z_x;
+      const T wa_x_1 = inverse(rzz + T(1));
+      const T fa_z_fb_z_z = fa_z_z + fb_z_z;
+      C[0] = atan2(dot_fa_y_fb_x - dot_fa_x_fb_y, dot_fa_x_fb_x + dot_fa_y_fb_y);
+      J.wa_x = fa_z_fb_z_x * wa_x_1;
+      J.wa_y = fa_z_fb_z_y * wa_x_1;
+      J.wa_z = fa_z_fb_z_z * wa_x_1;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 11 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
       const T K11_1 = J.wa_z * T(2);
-      const T K11_2 = J.wb_z * T(2);
-      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
-          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
-          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
+      K[0] = J.wa_z * J.wa_z * (ma.Izz + mb.Izz) + J.wa_x *
+          (J.wa_x * (ma.Ixx + mb.Ixx) + J.wa_y * T(2) * (ma.Ixy + mb.Ixy) + K11_1 *
+          (ma.Ixz + mb.Ixz)) + J.wa_y * (J.wa_y * (ma.Iyy + mb.Iyy) + K11_1 * (ma.Iyz + mb.Iyz));
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -4249,16 +3654,15 @@ struct six_dof {
       lambda[0] = F[0] * rhs[0];
     }
 
-    // J v: 5 +, 6 *
+    // J v: 5 +, 3 *
     template <class T>
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.wb_x * vb.wx + J.wb_y * vb.wy +
-          J.wb_z * vb.wz;
+      Jv[0] = J.wa_x * (vb.wx - va.wx) + J.wa_y * (vb.wy - va.wy) + J.wa_z * (vb.wz - va.wz);
     }
 
-    // v += M^-1 J^T lambda: 18 +, 24 *
+    // v += M^-1 J^T lambda: 18 +, 21 *
     template <class T>
     static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
         Velocity<T> (&v)[2]) {
@@ -4269,32 +3673,29 @@ struct six_dof {
       const T v1_1 = J.wa_x * lambda[0];
       const T v1_2 = lambda[0] * J.wa_y;
       const T v1_3 = lambda[0] * J.wa_z;
-      const T v2_1 = lambda[0] * J.wb_x;
-      const T v2_2 = lambda[0] * J.wb_y;
-      const T v2_3 = lambda[0] * J.wb_z;
-      v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-      v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-      v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
-      v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
-      v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
-      v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+      v[0].wx = va.wx - v1_1 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+      v[0].wy = va.wy - v1_1 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+      v[0].wz = va.wz - v1_1 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
+      v[1].wx = vb.wx + v1_1 * mb.Ixx + v1_2 * mb.Ixy + v1_3 * mb.Ixz;
+      v[1].wy = vb.wy + v1_1 * mb.Ixy + v1_2 * mb.Iyy + v1_3 * mb.Iyz;
+      v[1].wz = vb.wz + v1_1 * mb.Ixz + v1_2 * mb.Iyz + v1_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: nothing
+    // J with its zeros: v, w of each body: 3 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
         for (T& entry : row) entry = T(0);
       }
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
-      D[0][9] = J.wb_x;
-      D[0][10] = J.wb_y;
-      D[0][11] = J.wb_z;
+      D[0][3] = -J.wa_x;
+      D[0][4] = -J.wa_y;
+      D[0][5] = -J.wa_z;
+      D[0][9] = J.wa_x;
+      D[0][10] = J.wa_y;
+      D[0][11] = J.wa_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 12 +, 18 *
+    // (M^-1 J^T)^T, laid out like dense: 15 +, 18 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -4303,22 +3704,21 @@ struct six_dof {
       }
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
-      D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
-      D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
-      D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+      D[0][3] = -ma.Ixx * J.wa_x - ma.Ixy * J.wa_y - ma.Ixz * J.wa_z;
+      D[0][4] = -ma.Ixy * J.wa_x - ma.Iyy * J.wa_y - ma.Iyz * J.wa_z;
+      D[0][5] = -ma.Ixz * J.wa_x - ma.Iyz * J.wa_y - ma.Izz * J.wa_z;
+      D[0][9] = mb.Ixx * J.wa_x + mb.Ixy * J.wa_y + mb.Ixz * J.wa_z;
+      D[0][10] = mb.Ixy * J.wa_x + mb.Iyy * J.wa_y + mb.Iyz * J.wa_z;
+      D[0][11] = mb.Ixz * J.wa_x + mb.Iyz * J.wa_y + mb.Izz * J.wa_z;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
+    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+      K[0] = (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) * (ma.I + mb.I);
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -4331,15 +3731,15 @@ struct six_dof {
       const IsotropicInverseMass<T>& mb = m[1];
       const T v1_1 = ma.I * lambda[0];
       const T v2_1 = lambda[0] * mb.I;
-      v[0].wx = va.wx + v1_1 * J.wa_x;
-      v[0].wy = va.wy + v1_1 * J.wa_y;
-      v[0].wz = va.wz + v1_1 * J.wa_z;
-      v[1].wx = vb.wx + v2_1 * J.wb_x;
-      v[1].wy = vb.wy + v2_1 * J.wb_y;
-      v[1].wz = vb.wz + v2_1 * J.wb_z;
+      v[0].wx = va.wx - v1_1 * J.wa_x;
+      v[0].wy = va.wy - v1_1 * J.wa_y;
+      v[0].wz = va.wz - v1_1 * J.wa_z;
+      v[1].wx = vb.wx + v2_1 * J.wa_x;
+      v[1].wy = vb.wy + v2_1 * J.wa_y;
+      v[1].wz = vb.wz + v2_1 * J.wa_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -4348,15 +3748,15 @@ struct six_dof {
       }
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
-      D[0][9] = mb.I * J.wb_x;
-      D[0][10] = mb.I * J.wb_y;
-      D[0][11] = mb.I * J.wb_z;
+      D[0][3] = -ma.I * J.wa_x;
+      D[0][4] = -ma.I * J.wa_y;
+      D[0][5] = -ma.I * J.wa_z;
+      D[0][9] = mb.I * J.wa_x;
+      D[0][10] = mb.I * J.wa_y;
+      D[0][11] = mb.I * J.wa_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -4364,15 +3764,15 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-      D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-      D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-      D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+      D[0][3] = -J.wa_x * a.xx - J.wa_y * a.yx - J.wa_z * a.zx;
+      D[0][4] = -J.wa_x * a.xy - J.wa_y * a.yy - J.wa_z * a.zy;
+      D[0][5] = -J.wa_x * a.xz - J.wa_y * a.yz - J.wa_z * a.zz;
+      D[0][9] = J.wa_x * b.xx + J.wa_y * b.yx + J.wa_z * b.zx;
+      D[0][10] = J.wa_x * b.xy + J.wa_y * b.yy + J.wa_z * b.zy;
+      D[0][11] = J.wa_x * b.xz + J.wa_y * b.yz + J.wa_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 27 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -4380,17 +3780,20 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-      D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-      D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-      D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+      const T D1_1 = J.wa_x * T(2);
+      const T D1_2 = J.wa_y * T(2);
+      const T D1_3 = J.wa_z * T(2);
+      D[0][3] = D1_1 * a.e1 + D1_2 * a.e2 + D1_3 * a.e3;
+      D[0][4] = D1_3 * a.e2 - D1_1 * a.e0 - D1_2 * a.e3;
+      D[0][5] = D1_1 * a.e3 - D1_2 * a.e0 - D1_3 * a.e1;
+      D[0][6] = D1_2 * a.e1 - D1_1 * a.e2 - D1_3 * a.e0;
+      D[0][10] = -D1_1 * b.e1 - D1_2 * b.e2 - D1_3 * b.e3;
+      D[0][11] = D1_1 * b.e0 + D1_2 * b.e3 - D1_3 * b.e2;
+      D[0][12] = D1_2 * b.e0 - D1_1 * b.e3 + D1_3 * b.e1;
+      D[0][13] = D1_1 * b.e2 - D1_2 * b.e1 + D1_3 * b.e0;
     }
 
-    // -Jdot v - d/dt(dC/dt): 119 +, 169 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 41 +, 47 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -4398,100 +3801,35 @@ struct six_dof {
       const Velocity<T>& va = v[0];
       const Pose<T>& b = q[1];
       const Velocity<T>& vb = v[1];
-      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-      const T dot_fa_x_fb_y = fa_x_x * fb_y_x + fa_x_y * fb_y_y + fa_x_z * fb_y_z;
-      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-      const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
-      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-      const T g1_1 = dot_fa_x_fb_x + dot_fa_y_fb_y;
-      const T g1_2 = dot_fa_y_fb_x - dot_fa_x_fb_y;
-      const T g1_3 = inverse(g1_1 * g1_1 + g1_2 * g1_2);
-      const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
-      const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
-      const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
-      const T dot_w_b_x_fb_y_fa_x = fa_x_x * w_b_x_fb_y_x + fa_x_y * w_b_x_fb_y_y + fa_x_z *
-          w_b_x_fb_y_z;
-      const T dot_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_fb_y_x + fa_y_y * w_b_x_fb_y_y + fa_y_z *
-          w_b_x_fb_y_z;
-      const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
-      const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
-      const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
-          w_b_x_fb_x_z;
-      const T dot_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_fb_x_x + fa_y_y * w_b_x_fb_x_y + fa_y_z *
-          w_b_x_fb_x_z;
-      const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
-      const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-      const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
-      const T dot_w_a_x_fa_y_fb_x = fb_x_x * w_a_x_fa_y_x + fb_x_y * w_a_x_fa_y_y + fb_x_z *
-          w_a_x_fa_y_z;
-      const T dot_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_fa_y_x + fb_y_y * w_a_x_fa_y_y + fb_y_z *
-          w_a_x_fa_y_z;
-      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-      const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
-          w_a_x_fa_x_z;
-      const T dot_w_a_x_fa_x_fb_y = fb_y_x * w_a_x_fa_x_x + fb_y_y * w_a_x_fa_x_y + fb_y_z *
-          w_a_x_fa_x_z;
-      const T g1_4 = dot_w_b_x_fb_x_fa_y - dot_w_b_x_fb_y_fa_x + dot_w_a_x_fa_y_fb_x -
-          dot_w_a_x_fa_x_fb_y;
-      const T g1_5 = dot_w_b_x_fb_x_fa_x + dot_w_b_x_fb_y_fa_y + dot_w_a_x_fa_x_fb_x +
-          dot_w_a_x_fa_y_fb_y;
-      const T g1_6 = T(2) * (g1_1 * g1_4 - g1_2 * g1_5) * g1_3;
-      const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
-      const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
-      const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
-      const T dot_w_b_x_w_b_x_fb_y_fa_x = fa_x_x * w_b_x_w_b_x_fb_y_x + fa_x_y *
-          w_b_x_w_b_x_fb_y_y + fa_x_z * w_b_x_w_b_x_fb_y_z;
-      const T dot_w_b_x_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_w_b_x_fb_y_x + fa_y_y *
-          w_b_x_w_b_x_fb_y_y + fa_y_z * w_b_x_w_b_x_fb_y_z;
-      const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-      const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-      const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-      const T dot_w_b_x_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_w_b_x_fb_x_x + fa_x_y *
-          w_b_x_w_b_x_fb_x_y + fa_x_z * w_b_x_w_b_x_fb_x_z;
-      const T dot_w_b_x_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_w_b_x_fb_x_x + fa_y_y *
-          w_b_x_w_b_x_fb_x_y + fa_y_z * w_b_x_w_b_x_fb_x_z;
-      const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-      const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-      const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-      const T dot_w_a_x_w_a_x_fa_y_fb_x = fb_x_x * w_a_x_w_a_x_fa_y_x + fb_x_y *
-          w_a_x_w_a_x_fa_y_y + fb_x_z * w_a_x_w_a_x_fa_y_z;
-      const T dot_w_a_x_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_w_a_x_fa_y_x + fb_y_y *
-          w_a_x_w_a_x_fa_y_y + fb_y_z * w_a_x_w_a_x_fa_y_z;
-      const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-      const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-      const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-      const T dot_w_a_x_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_w_a_x_fa_x_x + fb_x_y *
-          w_a_x_w_a_x_fa_x_y + fb_x_z * w_a_x_w_a_x_fa_x_z;
-      const T dot_w_a_x_w_a_x_fa_x_fb_y = fb_y_x * w_a_x_w_a_x_fa_x_x + fb_y_y *
-          w_a_x_w_a_x_fa_x_y + fb_y_z * w_a_x_w_a_x_fa_x_z;
-      const T dot_w_a_x_fa_x_w_b_x_fb_x = w_a_x_fa_x_z * w_b_x_fb_x_z + w_a_x_fa_x_y *
-          w_b_x_fb_x_y + w_a_x_fa_x_x * w_b_x_fb_x_x;
-      const T dot_w_a_x_fa_x_w_b_x_fb_y = w_a_x_fa_x_z * w_b_x_fb_y_z + w_a_x_fa_x_y *
-          w_b_x_fb_y_y + w_a_x_fa_x_x * w_b_x_fb_y_x;
-      const T dot_w_a_x_fa_y_w_b_x_fb_x = w_a_x_fa_y_z * w_b_x_fb_x_z + w_a_x_fa_y_y *
-          w_b_x_fb_x_y + w_a_x_fa_y_x * w_b_x_fb_x_x;
-      const T dot_w_a_x_fa_y_w_b_x_fb_y = w_a_x_fa_y_z * w_b_x_fb_y_z + w_a_x_fa_y_y *
-          w_b_x_fb_y_y + w_a_x_fa_y_x * w_b_x_fb_y_x;
-      g[0] = g1_3 * (g1_1 * (g1_6 * g1_5 + dot_w_b_x_w_b_x_fb_y_fa_x - dot_w_b_x_w_b_x_fb_x_fa_y -
-          dot_w_a_x_w_a_x_fa_y_fb_x + dot_w_a_x_w_a_x_fa_x_fb_y - T(2) *
-          (dot_w_a_x_fa_y_w_b_x_fb_x - dot_w_a_x_fa_x_w_b_x_fb_y)) + g1_2 *
-          (g1_6 * g1_4 + dot_w_b_x_w_b_x_fb_x_fa_x + dot_w_b_x_w_b_x_fb_y_fa_y +
-          dot_w_a_x_w_a_x_fa_x_fb_x + dot_w_a_x_w_a_x_fa_y_fb_y + T(2) *
-          (dot_w_a_x_fa_x_w_b_x_fb_x + dot_w_a_x_fa_y_w_b_x_fb_y)));
+      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+      const T g1_1 = inverse(rzz + T(1));
+      const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
+      const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
+      const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
+      const T dot_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_fb_z_x + fa_z_y * w_b_x_fb_z_y + fa_z_z *
+          w_b_x_fb_z_z;
+      const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
+      const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
+      const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
+      const T dot_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_fa_z_x + fb_z_y * w_a_x_fa_z_y + fb_z_z *
+          w_a_x_fa_z_z;
+      const T rzz_dot = dot_w_b_x_fb_z_fa_z + dot_w_a_x_fa_z_fb_z;
+      const T g1_2 = rzz_dot * g1_1;
+      const T fa_z_fb_z_x = fa_z_x + fb_z_x;
+      const T fa_z_fb_z_y = fa_z_y + fb_z_y;
+      const T w_a_x_fa_z_w_b_x_fb_z_x = w_a_x_fa_z_x + w_b_x_fb_z_x;
+      const T w_a_x_fa_z_w_b_x_fb_z_y = w_a_x_fa_z_y + w_b_x_fb_z_y;
+      const T fa_z_fb_z_z = fa_z_z + fb_z_z;
+      const T w_a_x_fa_z_w_b_x_fb_z_z = w_a_x_fa_z_z + w_b_x_fb_z_z;
+      g[0] = -g1_1 * ((vb.wx - va.wx) * (w_a_x_fa_z_w_b_x_fb_z_x - g1_2 * fa_z_fb_z_x) +
+          (vb.wy - va.wy) * (w_a_x_fa_z_w_b_x_fb_z_y - g1_2 * fa_z_fb_z_y) + (vb.wz - va.wz) *
+          (w_a_x_fa_z_w_b_x_fb_z_z - g1_2 * fa_z_fb_z_z));
     }
 
     // dC/dt at fixed q: nothing
@@ -4500,7 +3838,7 @@ struct six_dof {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 206 +, 276 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 54 +, 65 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -4509,157 +3847,85 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-      const T dot_fa_x_fb_y = fa_x_x * fb_y_x + fa_x_y * fb_y_y + fa_x_z * fb_y_z;
-      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-      const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
-      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-      const T H4_1 = dot_fa_x_fb_x + dot_fa_y_fb_y;
-      const T H4_2 = dot_fa_y_fb_x - dot_fa_x_fb_y;
-      const T H4_3 = inverse(H4_1 * H4_1 + H4_2 * H4_2);
-      const T H4_4 = lambda[0] * H4_3;
-      const T H4_5 = H4_1 * H4_4;
-      const T H4_6 = H4_2 * H4_4;
-      const T H4_7 = H4_5 * fb_y_y + H4_6 * fb_x_y;
-      const T H4_8 = T(2) * H4_3 * H4_3;
-      const T H4_9 = H4_1 * H4_8;
-      const T fa_x_x_fb_y_x = fa_x_y * fb_y_z - fa_x_z * fb_y_y;
-      const T fa_x_x_fb_y_y = fa_x_z * fb_y_x - fa_x_x * fb_y_z;
-      const T H4_10 = lambda[0] * fa_y_y;
-      const T H4_11 = lambda[0] * fa_y_z;
-      const T H4_12 = lambda[0] * fa_x_x_fb_y_x - H4_10 * fb_x_z + H4_11 * fb_x_y;
-      const T H4_13 = H4_2 * H4_8;
-      const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
-      const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
-      const T H4_14 = lambda[0] * fa_x_x_fb_x_x + H4_10 * fb_y_z - H4_11 * fb_y_y;
-      const T H4_15 = H4_9 * H4_12 + H4_13 * H4_14;
-      const T H4_16 = H4_1 * H4_15 - H4_12 * H4_3;
-      const T H4_17 = H4_14 * H4_3 - H4_2 * H4_15;
-      const T H4_18 = H4_7 + fb_x_z * H4_16 + fb_y_z * H4_17;
-      const T H4_19 = H4_5 * fb_x_y - H4_6 * fb_y_y;
-      const T H4_20 = fb_y_z * H4_16 - H4_19 - fb_x_z * H4_17;
-      const T H4_21 = H4_5 * fb_y_z + H4_6 * fb_x_z;
-      const T H4_22 = fb_x_y * H4_16 - H4_21 + fb_y_y * H4_17;
-      const T H4_23 = H4_5 * fb_x_z - H4_6 * fb_y_z;
-      const T H4_24 = H4_23 - fb_x_y * H4_17 + fb_y_y * H4_16;
-      const T H4_25 = fa_x_y * H4_18 + fa_y_y * H4_20 - fa_x_z * H4_22 - fa_y_z * H4_24;
-      const T H4_1_2 = fb_x_x * H4_16 + fb_y_x * H4_17;
-      const T H4_2_2 = fb_y_x * H4_16 - fb_x_x * H4_17;
-      const T H4_3_2 = fa_x_z * H4_1_2 - fa_x_x * H4_18 - fa_y_x * H4_20 + fa_y_z * H4_2_2;
-      const T H4_1_3 = fa_x_x * H4_22 + fa_y_x * H4_24 - fa_x_y * H4_1_2 - fa_y_y * H4_2_2;
-      const T H4_1_4 = H4_5 * fa_y_y - H4_6 * fa_x_y;
-      const T H4_2_3 = H4_1_4 + fa_x_z * H4_16 - fa_y_z * H4_17;
-      const T H4_3_3 = H4_5 * fa_x_y + H4_6 * fa_y_y;
-      const T H4_4_2 = fa_x_z * H4_17 - H4_3_3 + fa_y_z * H4_16;
-      const T H4_5_2 = H4_5 * fa_y_z - H4_6 * fa_x_z;
-      const T H4_6_2 = fa_x_y * H4_16 - H4_5_2 - fa_y_y * H4_17;
-      const T H4_7_2 = H4_5 * fa_x_z + H4_6 * fa_y_z;
-      const T H4_8_2 = H4_7_2 + fa_x_y * H4_17 + fa_y_y * H4_16;
-      const T H4_9_2 = fb_x_y * H4_2_3 + fb_y_y * H4_4_2 - fb_x_z * H4_6_2 - fb_y_z * H4_8_2;
-      const T H4_1_5 = fa_x_x * H4_16 - fa_y_x * H4_17;
-      const T H4_2_4 = fa_x_x * H4_17 + fa_y_x * H4_16;
-      const T H4_3_4 = fb_x_z * H4_1_5 - fb_x_x * H4_2_3 - fb_y_x * H4_4_2 + fb_y_z * H4_2_4;
-      const T H4_1_6 = fb_x_x * H4_6_2 + fb_y_x * H4_8_2 - fb_x_y * H4_1_5 - fb_y_y * H4_2_4;
-      const T H5_1 = H4_5 * fb_y_x + H4_6 * fb_x_x;
-      const T H5_2 = lambda[0] * fa_y_x;
-      const T H5_3 = lambda[0] * fa_x_x_fb_y_y + H5_2 * fb_x_z - H4_11 * fb_x_x;
-      const T H5_4 = lambda[0] * fa_x_x_fb_x_y - H5_2 * fb_y_z + H4_11 * fb_y_x;
-      const T H5_5 = H4_9 * H5_3 + H4_13 * H5_4;
-      const T H5_6 = H4_1 * H5_5 - H5_3 * H4_3;
-      const T H5_7 = H5_4 * H4_3 - H4_2 * H5_5;
-      const T H5_8 = fb_x_z * H5_6 - H5_1 + fb_y_z * H5_7;
-      const T H5_9 = H4_5 * fb_x_x - H4_6 * fb_y_x;
-      const T H5_10 = H5_9 - fb_x_z * H5_7 + fb_y_z * H5_6;
-      const T H5_11 = fb_x_y * H5_6 + fb_y_y * H5_7;
-      const T H5_12 = fb_y_y * H5_6 - fb_x_y * H5_7;
-      const T H5_13 = fa_x_y * H5_8 + fa_y_y * H5_10 - fa_x_z * H5_11 - fa_y_z * H5_12;
-      const T H5_1_2 = H4_21 + fb_x_x * H5_6 + fb_y_x * H5_7;
-      const T H5_2_2 = fb_y_x * H5_6 - H4_23 - fb_x_x * H5_7;
-      const T H5_3_2 = fa_x_z * H5_1_2 - fa_x_x * H5_8 - fa_y_x * H5_10 + fa_y_z * H5_2_2;
-      const T H5_1_3 = fa_x_x * H5_11 + fa_y_x * H5_12 - fa_x_y * H5_1_2 - fa_y_y * H5_2_2;
-      const T H5_1_4 = H4_5 * fa_y_x - H4_6 * fa_x_x;
-      const T H5_2_3 = fa_x_z * H5_6 - H5_1_4 - fa_y_z * H5_7;
-      const T H5_3_3 = H4_5 * fa_x_x + H4_6 * fa_y_x;
-      const T H5_4_2 = H5_3_3 + fa_x_z * H5_7 + fa_y_z * H5_6;
-      const T H5_5_2 = fa_x_y * H5_6 - fa_y_y * H5_7;
-      const T H5_6_2 = fa_x_y * H5_7 + fa_y_y * H5_6;
-      const T H5_7_2 = fb_x_y * H5_2_3 + fb_y_y * H5_4_2 - fb_x_z * H5_5_2 - fb_y_z * H5_6_2;
-      const T H5_1_5 = H4_5_2 + fa_x_x * H5_6 - fa_y_x * H5_7;
-      const T H5_2_4 = fa_x_x * H5_7 - H4_7_2 + fa_y_x * H5_6;
-      const T H5_3_4 = fb_x_z * H5_1_5 - fb_x_x * H5_2_3 - fb_y_x * H5_4_2 + fb_y_z * H5_2_4;
-      const T H5_1_6 = fb_x_x * H5_5_2 + fb_y_x * H5_6_2 - fb_x_y * H5_1_5 - fb_y_y * H5_2_4;
-      const T fa_x_x_fb_y_z = fa_x_x * fb_y_y - fa_x_y * fb_y_x;
-      const T H6_1 = lambda[0] * fa_x_x_fb_y_z - H5_2 * fb_x_y + H4_10 * fb_x_x;
-      const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
-      const T H6_2 = lambda[0] * fa_x_x_fb_x_z + H5_2 * fb_y_y - H4_10 * fb_y_x;
-      const T H6_3 = H4_9 * H6_1 + H4_13 * H6_2;
-      const T H6_4 = H4_1 * H6_3 - H6_1 * H4_3;
-      const T H6_5 = H6_2 * H4_3 - H4_2 * H6_3;
-      const T H6_6 = fb_x_z * H6_4 + fb_y_z * H6_5;
-      const T H6_7 = fb_y_z * H6_4 - fb_x_z * H6_5;
-      const T H6_8 = H5_1 + fb_x_y * H6_4 + fb_y_y * H6_5;
-      const T H6_9 = fb_y_y * H6_4 - H5_9 - fb_x_y * H6_5;
-      const T H6_10 = fa_x_y * H6_6 + fa_y_y * H6_7 - fa_x_z * H6_8 - fa_y_z * H6_9;
-      const T H6_1_2 = fb_x_x * H6_4 - H4_7 + fb_y_x * H6_5;
-      const T H6_2_2 = H4_19 - fb_x_x * H6_5 + fb_y_x * H6_4;
-      const T H6_3_2 = fa_x_z * H6_1_2 - fa_x_x * H6_6 - fa_y_x * H6_7 + fa_y_z * H6_2_2;
-      const T H6_1_3 = fa_x_x * H6_8 + fa_y_x * H6_9 - fa_x_y * H6_1_2 - fa_y_y * H6_2_2;
-      const T H6_1_4 = fa_x_z * H6_4 - fa_y_z * H6_5;
-      const T H6_2_3 = fa_x_z * H6_5 + fa_y_z * H6_4;
-      const T H6_3_3 = H5_1_4 + fa_x_y * H6_4 - fa_y_y * H6_5;
-      const T H6_4_2 = fa_x_y * H6_5 - H5_3_3 + fa_y_y * H6_4;
-      const T H6_5_2 = fb_x_y * H6_1_4 + fb_y_y * H6_2_3 - fb_x_z * H6_3_3 - fb_y_z * H6_4_2;
-      const T H6_1_5 = fa_x_x * H6_4 - H4_1_4 - fa_y_x * H6_5;
-      const T H6_2_4 = H4_3_3 + fa_x_x * H6_5 + fa_y_x * H6_4;
-      const T H6_3_4 = fb_x_z * H6_1_5 - fb_x_x * H6_1_4 - fb_y_x * H6_2_3 + fb_y_z * H6_2_4;
-      const T H6_1_6 = fb_x_x * H6_3_3 + fb_y_x * H6_4_2 - fb_x_y * H6_1_5 - fb_y_y * H6_2_4;
-      H[3][3] = H4_25;
-      H[3][4] = H4_3_2;
+      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+      const T fa_z_fb_z_x = fa_z_x + fb_z_x;
+      const T fa_z_fb_z_y = fa_z_y + fb_z_y;
+      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+      const T H4_1 = inverse(rzz + T(1));
+      const T H4_2 = lambda[0] * H4_1;
+      const T H4_3 = H4_1 * H4_2;
+      const T H4_4 = fa_z_fb_z_x * H4_3;
+      const T H4_5 = H4_4 * (fa_z_y * fb_z_z - fa_z_z * fb_z_y);
+      const T H4_1_2 = fa_z_x * H4_4;
+      const T H4_2_2 = fb_z_x * H4_4;
+      const T H4_3_2 = H4_2_2 - H4_2;
+      const T H4_4_2 = fa_z_z * H4_3_2 - H4_1_2 * fb_z_z;
+      const T H4_1_3 = H4_1_2 * fb_z_y - fa_z_y * H4_3_2;
+      const T H4_1_4 = H4_1_2 - H4_2;
+      const T H4_2_3 = fb_z_z * H4_1_4 - H4_2_2 * fa_z_z;
+      const T H4_1_5 = H4_2_2 * fa_z_y - fb_z_y * H4_1_4;
+      const T H5_1 = H4_3 * fa_z_fb_z_y;
+      const T H5_2 = fa_z_y * H5_1;
+      const T H5_3 = fb_z_y * H5_1;
+      const T H5_4 = H5_3 - H4_2;
+      const T H5_5 = H5_2 * fb_z_z - fa_z_z * H5_4;
+      const T H5_1_2 = H5_1 * (fa_z_z * fb_z_x - fa_z_x * fb_z_z);
+      const T H5_1_3 = fa_z_x * H5_4 - H5_2 * fb_z_x;
+      const T H5_1_4 = H5_2 - H4_2;
+      const T H5_2_2 = H5_3 * fa_z_z - fb_z_z * H5_1_4;
+      const T H5_1_5 = fb_z_x * H5_1_4 - H5_3 * fa_z_x;
+      const T fa_z_fb_z_z = fa_z_z + fb_z_z;
+      const T H6_1 = H4_3 * fa_z_fb_z_z;
+      const T H6_2 = fa_z_z * H6_1;
+      const T H6_3 = fb_z_z * H6_1;
+      const T H6_4 = H6_3 - H4_2;
+      const T H6_5 = fa_z_y * H6_4 - H6_2 * fb_z_y;
+      const T H6_1_2 = H6_2 * fb_z_x - fa_z_x * H6_4;
+      const T H6_1_3 = H6_1 * (fa_z_x * fb_z_y - fa_z_y * fb_z_x);
+      const T H6_1_4 = H6_2 - H4_2;
+      const T H6_2_2 = fb_z_y * H6_1_4 - H6_3 * fa_z_y;
+      const T H6_1_5 = H6_3 * fa_z_x - fb_z_x * H6_1_4;
+      H[3][3] = H4_5;
+      H[3][4] = H4_4_2;
       H[3][5] = H4_1_3;
-      H[3][9] = H4_9_2;
-      H[3][10] = H4_3_4;
-      H[3][11] = H4_1_6;
-      H[4][3] = H5_13;
-      H[4][4] = H5_3_2;
+      H[3][9] = -H4_5;
+      H[3][10] = H4_2_3;
+      H[3][11] = H4_1_5;
+      H[4][3] = H5_5;
+      H[4][4] = H5_1_2;
       H[4][5] = H5_1_3;
-      H[4][9] = H5_7_2;
-      H[4][10] = H5_3_4;
-      H[4][11] = H5_1_6;
-      H[5][3] = H6_10;
-      H[5][4] = H6_3_2;
+      H[4][9] = H5_2_2;
+      H[4][10] = -H5_1_2;
+      H[4][11] = H5_1_5;
+      H[5][3] = H6_5;
+      H[5][4] = H6_1_2;
       H[5][5] = H6_1_3;
-      H[5][9] = H6_5_2;
-      H[5][10] = H6_3_4;
-      H[5][11] = H6_1_6;
-      H[9][3] = -H4_25;
-      H[9][4] = -H4_3_2;
+      H[5][9] = H6_2_2;
+      H[5][10] = H6_1_5;
+      H[5][11] = -H6_1_3;
+      H[9][3] = H[3][9];
+      H[9][4] = -H4_4_2;
       H[9][5] = -H4_1_3;
-      H[9][9] = -H4_9_2;
-      H[9][10] = -H4_3_4;
-      H[9][11] = -H4_1_6;
-      H[10][3] = -H5_13;
-      H[10][4] = -H5_3_2;
+      H[9][9] = H4_5;
+      H[9][10] = -H4_2_3;
+      H[9][11] = -H4_1_5;
+      H[10][3] = -H5_5;
+      H[10][4] = H[4][10];
       H[10][5] = -H5_1_3;
-      H[10][9] = -H5_7_2;
-      H[10][10] = -H5_3_4;
-      H[10][11] = -H5_1_6;
-      H[11][3] = -H6_10;
-      H[11][4] = -H6_3_2;
-      H[11][5] = -H6_1_3;
-      H[11][9] = -H6_5_2;
-      H[11][10] = -H6_3_4;
-      H[11][11] = -H6_1_6;
+      H[10][9] = -H5_2_2;
+      H[10][10] = H5_1_2;
+      H[10][11] = -H5_1_5;
+      H[11][3] = -H6_5;
+      H[11][4] = -H6_1_2;
+      H[11][5] = H[5][11];
+      H[11][9] = -H6_2_2;
+      H[11][10] = -H6_1_5;
+      H[11][11] = H6_1_3;
     }
 
     struct a_immovable;
@@ -5654,7 +4920,8 @@ struct six_dof::turn_x::a_immovable : six_dof::turn_x {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& mb = m[1];
-    K[0] = mb.I * (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+    const T dot_axis_turn_x_axis_turn_x = J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z;
+    K[0] = mb.I * dot_axis_turn_x_axis_turn_x;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
@@ -5687,59 +4954,21 @@ struct six_dof::turn_x::a_immovable : six_dof::turn_x {
 struct six_dof::turn_x::b_immovable : six_dof::turn_x {
   static constexpr int immovable_body = 1;
 
-  template <class T>
-  struct Jacobian {
-    T wa_x, wa_y, wa_z;
-  };
-
-  // C and J: 33 +, 55 *, 1 /, 1 <, 1 call
-  template <class T>
-  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
-      Jacobian<T>& J) {
-    using std::atan2;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-    const T wa_x_1 = inverse(ryz * ryz + rzz * rzz);
-    const T wa_x_2 = ryz * wa_x_1;
-    const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
-    const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-    const T wa_x_3 = rzz * wa_x_1;
-    const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
-    const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
-    const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
-    const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
-    C[0] = atan2(-ryz, rzz);
-    J.wa_x = wa_x_2 * fa_z_x_fb_z_x - wa_x_3 * fa_y_x_fb_z_x;
-    J.wa_y = wa_x_2 * fa_z_x_fb_z_y - wa_x_3 * fa_y_x_fb_z_y;
-    J.wa_z = wa_x_2 * fa_z_x_fb_z_z - wa_x_3 * fa_y_x_fb_z_z;
-  }
-
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    const T K11_1 = J.wa_z * T(2);
-    K[0] = ma.Izz * J.wa_z * J.wa_z + J.wa_x *
-        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
-        (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
+    const T K11_1 = J.axis_turn_x_z * T(2);
+    K[0] = ma.Izz * J.axis_turn_x_z * J.axis_turn_x_z + J.axis_turn_x_x *
+        (ma.Ixx * J.axis_turn_x_x + ma.Ixy * J.axis_turn_x_y * T(2) + K11_1 * ma.Ixz) +
+        J.axis_turn_x_y * (ma.Iyy * J.axis_turn_x_y + K11_1 * ma.Iyz);
   }
 
   // J v: 2 +, 3 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz;
+    Jv[0] = J.axis_turn_x_x * va.wx + J.axis_turn_x_y * va.wy + J.axis_turn_x_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 9 +, 12 *
@@ -5748,9 +4977,9 @@ struct six_dof::turn_x::b_immovable : six_dof::turn_x {
       Velocity<T> (&v)[2]) {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
-    const T v1_1 = J.wa_x * lambda[0];
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1 = J.axis_turn_x_x * lambda[0];
+    const T v1_2 = lambda[0] * J.axis_turn_x_y;
+    const T v1_3 = lambda[0] * J.axis_turn_x_z;
     v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
     v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
     v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
@@ -5762,9 +4991,9 @@ struct six_dof::turn_x::b_immovable : six_dof::turn_x {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = J.axis_turn_x_x;
+    D[0][4] = J.axis_turn_x_y;
+    D[0][5] = J.axis_turn_x_z;
   }
 
   // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
@@ -5775,9 +5004,9 @@ struct six_dof::turn_x::b_immovable : six_dof::turn_x {
       for (T& entry : row) entry = T(0);
     }
     const InverseMass<T>& ma = m[0];
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = ma.Ixx * J.axis_turn_x_x + ma.Ixy * J.axis_turn_x_y + ma.Ixz * J.axis_turn_x_z;
+    D[0][4] = ma.Ixy * J.axis_turn_x_x + ma.Iyy * J.axis_turn_x_y + ma.Iyz * J.axis_turn_x_z;
+    D[0][5] = ma.Ixz * J.axis_turn_x_x + ma.Iyz * J.axis_turn_x_y + ma.Izz * J.axis_turn_x_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
@@ -5785,7 +5014,9 @@ struct six_dof::turn_x::b_immovable : six_dof::turn_x {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_axis_turn_x_axis_turn_x = J.axis_turn_x_x * J.axis_turn_x_x + J.axis_turn_x_y *
+        J.axis_turn_x_y + J.axis_turn_x_z * J.axis_turn_x_z;
+    K[0] = ma.I * dot_axis_turn_x_axis_turn_x;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
@@ -5795,9 +5026,9 @@ struct six_dof::turn_x::b_immovable : six_dof::turn_x {
     const Velocity<T> va = v[0];
     const IsotropicInverseMass<T>& ma = m[0];
     const T v1_1 = ma.I * lambda[0];
-    v[0].wx = va.wx + v1_1 * J.wa_x;
-    v[0].wy = va.wy + v1_1 * J.wa_y;
-    v[0].wz = va.wz + v1_1 * J.wa_z;
+    v[0].wx = va.wx + v1_1 * J.axis_turn_x_x;
+    v[0].wy = va.wy + v1_1 * J.axis_turn_x_y;
+    v[0].wz = va.wz + v1_1 * J.axis_turn_x_z;
   }
 
   // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
@@ -5808,9 +5039,9 @@ struct six_dof::turn_x::b_immovable : six_dof::turn_x {
       for (T& entry : row) entry = T(0);
     }
     const IsotropicInverseMass<T>& ma = m[0];
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = ma.I * J.axis_turn_x_x;
+    D[0][4] = ma.I * J.axis_turn_x_y;
+    D[0][5] = ma.I * J.axis_turn_x_z;
   }
 };
 
@@ -5823,7 +5054,7 @@ struct six_dof::turn_y::a_immovable : six_dof::turn_y {
     T wb_x, wb_y, wb_z;
   };
 
-  // C and J: 41 +, 69 *, 2 /, 1 sqrt, 2 <, 1 call
+  // C and J: 31 +, 53 *, 1 /, 1 sqrt, 1 <, 1 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -5842,23 +5073,19 @@ struct six_dof::turn_y::a_immovable : six_dof::turn_y {
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    const T rzz = fb_z_x * fa_z_x + fb_z_y * fa_z_y + fb_z_z * fa_z_z;
     const T C1_1 = sqrt(ryz * ryz + rzz * rzz);
-    const T wb_x_1 = inverse(rxz * rxz + C1_1 * C1_1);
-    const T wb_x_2 = C1_1 * wb_x_1;
-    const T wb_x_3 = inverse(C1_1) * rxz * wb_x_1;
-    const T wb_x_4 = ryz * wb_x_3;
-    const T wb_x_5 = rzz * wb_x_3;
-    const T wb_x_6 = wb_x_2 * fa_x_z - wb_x_4 * fa_y_z - wb_x_5 * fa_z_z;
-    const T wb_x_7 = wb_x_2 * fa_x_y - wb_x_4 * fa_y_y - wb_x_5 * fa_z_y;
-    const T wb_y_1 = wb_x_2 * fa_x_x - wb_x_4 * fa_y_x - wb_x_5 * fa_z_x;
+    const T fa_x_x_fb_z_x = fa_x_y * fb_z_z - fa_x_z * fb_z_y;
+    const T fa_x_x_fb_z_y = fa_x_z * fb_z_x - fa_x_x * fb_z_z;
+    const T wb_x_1 = inverse(C1_1);
+    const T fa_x_x_fb_z_z = fa_x_x * fb_z_y - fa_x_y * fb_z_x;
     C[0] = atan2(rxz, C1_1);
-    J.wb_x = fb_z_y * wb_x_6 - fb_z_z * wb_x_7;
-    J.wb_y = fb_z_z * wb_y_1 - fb_z_x * wb_x_6;
-    J.wb_z = fb_z_x * wb_x_7 - fb_z_y * wb_y_1;
+    J.wb_x = fa_x_x_fb_z_x * wb_x_1;
+    J.wb_y = fa_x_x_fb_z_y * wb_x_1;
+    J.wb_z = fa_x_x_fb_z_z * wb_x_1;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
@@ -5871,11 +5098,11 @@ struct six_dof::turn_y::a_immovable : six_dof::turn_y {
         (mb.Iyy * J.wb_y + K11_1 * mb.Iyz);
   }
 
-  // J v: 2 +, 3 *
+  // J v: 3 +, 3 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& vb = v[1];
-    Jv[0] = J.wb_x * vb.wx + J.wb_y * vb.wy + J.wb_z * vb.wz;
+    Jv[0] = -J.wb_x * vb.wx - J.wb_y * vb.wy - J.wb_z * vb.wz;
   }
 
   // v += M^-1 J^T lambda: 9 +, 12 *
@@ -5887,23 +5114,23 @@ struct six_dof::turn_y::a_immovable : six_dof::turn_y {
     const T v2_1 = J.wb_x * lambda[0];
     const T v2_2 = lambda[0] * J.wb_y;
     const T v2_3 = lambda[0] * J.wb_z;
-    v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
-    v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
-    v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+    v[1].wx = vb.wx - v2_1 * mb.Ixx - v2_2 * mb.Ixy - v2_3 * mb.Ixz;
+    v[1].wy = vb.wy - v2_1 * mb.Ixy - v2_2 * mb.Iyy - v2_3 * mb.Iyz;
+    v[1].wz = vb.wz - v2_1 * mb.Ixz - v2_2 * mb.Iyz - v2_3 * mb.Izz;
   }
 
-  // J with its zeros: v, w of each body: nothing
+  // J with its zeros: v, w of each body: 3 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][9] = J.wb_x;
-    D[0][10] = J.wb_y;
-    D[0][11] = J.wb_z;
+    D[0][9] = -J.wb_x;
+    D[0][10] = -J.wb_y;
+    D[0][11] = -J.wb_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
+  // (M^-1 J^T)^T, laid out like dense: 9 +, 9 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -5911,9 +5138,9 @@ struct six_dof::turn_y::a_immovable : six_dof::turn_y {
       for (T& entry : row) entry = T(0);
     }
     const InverseMass<T>& mb = m[1];
-    D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
-    D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
-    D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+    D[0][9] = -mb.Ixx * J.wb_x - mb.Ixy * J.wb_y - mb.Ixz * J.wb_z;
+    D[0][10] = -mb.Ixy * J.wb_x - mb.Iyy * J.wb_y - mb.Iyz * J.wb_z;
+    D[0][11] = -mb.Ixz * J.wb_x - mb.Iyz * J.wb_y - mb.Izz * J.wb_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
@@ -5931,12 +5158,12 @@ struct six_dof::turn_y::a_immovable : six_dof::turn_y {
     const Velocity<T> vb = v[1];
     const IsotropicInverseMass<T>& mb = m[1];
     const T v2_1 = mb.I * lambda[0];
-    v[1].wx = vb.wx + v2_1 * J.wb_x;
-    v[1].wy = vb.wy + v2_1 * J.wb_y;
-    v[1].wz = vb.wz + v2_1 * J.wb_z;
+    v[1].wx = vb.wx - v2_1 * J.wb_x;
+    v[1].wy = vb.wy - v2_1 * J.wb_y;
+    v[1].wz = vb.wz - v2_1 * J.wb_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 3 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -5944,64 +5171,15 @@ struct six_dof::turn_y::a_immovable : six_dof::turn_y {
       for (T& entry : row) entry = T(0);
     }
     const IsotropicInverseMass<T>& mb = m[1];
-    D[0][9] = mb.I * J.wb_x;
-    D[0][10] = mb.I * J.wb_y;
-    D[0][11] = mb.I * J.wb_z;
+    D[0][9] = -mb.I * J.wb_x;
+    D[0][10] = -mb.I * J.wb_y;
+    D[0][11] = -mb.I * J.wb_z;
   }
 };
 
 // six_dof::turn_y with b immovable: its velocity and inverse mass are zero and gone.
 struct six_dof::turn_y::b_immovable : six_dof::turn_y {
   static constexpr int immovable_body = 1;
-
-  template <class T>
-  struct Jacobian {
-    T wa_x, wa_y, wa_z;
-  };
-
-  // C and J: 47 +, 81 *, 2 /, 1 sqrt, 2 <, 1 call
-  template <class T>
-  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
-      Jacobian<T>& J) {
-    using std::atan2;
-    using std::sqrt;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T rxz = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-    const T C1_1 = sqrt(ryz * ryz + rzz * rzz);
-    const T wa_x_1 = inverse(rxz * rxz + C1_1 * C1_1);
-    const T wa_x_2 = inverse(C1_1) * rxz * wa_x_1;
-    const T wa_x_3 = ryz * wa_x_2;
-    const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
-    const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
-    const T wa_x_4 = rzz * wa_x_2;
-    const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
-    const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-    const T wa_x_5 = C1_1 * wa_x_1;
-    const T fa_x_x_fb_z_x = fa_x_y * fb_z_z - fa_x_z * fb_z_y;
-    const T fa_x_x_fb_z_y = fa_x_z * fb_z_x - fa_x_x * fb_z_z;
-    const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
-    const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
-    const T fa_x_x_fb_z_z = fa_x_x * fb_z_y - fa_x_y * fb_z_x;
-    C[0] = atan2(rxz, C1_1);
-    J.wa_x = wa_x_5 * fa_x_x_fb_z_x - wa_x_3 * fa_y_x_fb_z_x - wa_x_4 * fa_z_x_fb_z_x;
-    J.wa_y = wa_x_5 * fa_x_x_fb_z_y - wa_x_3 * fa_y_x_fb_z_y - wa_x_4 * fa_z_x_fb_z_y;
-    J.wa_z = wa_x_5 * fa_x_x_fb_z_z - wa_x_3 * fa_y_x_fb_z_z - wa_x_4 * fa_z_x_fb_z_z;
-  }
 
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
@@ -6101,7 +5279,7 @@ struct six_dof::turn_z::a_immovable : six_dof::turn_z {
     T wb_x, wb_y, wb_z;
   };
 
-  // C and J: 33 +, 55 *, 1 /, 1 <, 1 call
+  // C and J: 30 +, 49 *, 1 /, 1 <, 1 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -6120,18 +5298,15 @@ struct six_dof::turn_z::a_immovable : six_dof::turn_z {
     const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
     const T dot_fa_x_fb_y = fa_x_x * fb_y_x + fa_x_y * fb_y_y + fa_x_z * fb_y_z;
     const T wb_x_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_x_fb_y * dot_fa_x_fb_y);
-    const T wb_x_2 = dot_fa_x_fb_x * wb_x_1;
-    const T fa_x_x_fb_y_x = fa_x_y * fb_y_z - fa_x_z * fb_y_y;
-    const T fa_x_x_fb_y_y = fa_x_z * fb_y_x - fa_x_x * fb_y_z;
-    const T wb_x_3 = dot_fa_x_fb_y * wb_x_1;
-    const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
-    const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
-    const T fa_x_x_fb_y_z = fa_x_x * fb_y_y - fa_x_y * fb_y_x;
-    const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
+    const T wb_x_2 = dot_fa_x_fb_y * wb_x_1;
+    const T wb_x_3 = dot_fa_x_fb_x * wb_x_1;
+    const T wb_x_4 = wb_x_3 * fb_y_z - wb_x_2 * fb_x_z;
+    const T wb_x_5 = wb_x_3 * fb_y_y - wb_x_2 * fb_x_y;
+    const T wb_y_1 = wb_x_3 * fb_y_x - wb_x_2 * fb_x_x;
     C[0] = atan2(-dot_fa_x_fb_y, dot_fa_x_fb_x);
-    J.wb_x = wb_x_2 * fa_x_x_fb_y_x - wb_x_3 * fa_x_x_fb_x_x;
-    J.wb_y = wb_x_2 * fa_x_x_fb_y_y - wb_x_3 * fa_x_x_fb_x_y;
-    J.wb_z = wb_x_2 * fa_x_x_fb_y_z - wb_x_3 * fa_x_x_fb_x_z;
+    J.wb_x = fa_x_y * wb_x_4 - fa_x_z * wb_x_5;
+    J.wb_y = fa_x_z * wb_y_1 - fa_x_x * wb_x_4;
+    J.wb_z = fa_x_x * wb_x_5 - fa_x_y * wb_y_1;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
@@ -6194,7 +5369,8 @@ struct six_dof::turn_z::a_immovable : six_dof::turn_z {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& mb = m[1];
-    K[0] = mb.I * (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+    const T dot_axis_turn_x_axis_turn_x = J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z;
+    K[0] = mb.I * dot_axis_turn_x_axis_turn_x;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
@@ -6360,7 +5536,7 @@ struct six_dof::twist_x::a_immovable : six_dof::twist_x {
     T wb_x, wb_y, wb_z;
   };
 
-  // C and J: 50 +, 76 *, 1 /, 1 <, 1 call
+  // C and J: 46 +, 66 *, 1 /, 1 <, 1 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -6369,35 +5545,35 @@ struct six_dof::twist_x::a_immovable : six_dof::twist_x {
     const Pose<T>& b = q[1];
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
     const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
-    const T C1_1 = dot_fa_z_fb_y - ryz;
+    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+    const T fb_z_x = fb_x_y * fb_y_z - fb_y_y * fb_x_z;
+    const T fb_z_y = fb_y_x * fb_x_z - fb_x_x * fb_y_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T fb_z_z = fb_x_x * fb_y_y - fb_y_x * fb_x_y;
+    const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
+    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    const T dot_fa_z_fb_y = fb_y_x * fa_z_x + fb_y_y * fa_z_y + fb_y_z * fa_z_z;
     const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-    const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-    const T C1_2 = dot_fa_y_fb_y + rzz;
-    const T wb_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
-    const T wb_x_2 = C1_2 * wb_x_1;
-    const T wb_x_3 = C1_1 * wb_x_1;
-    const T wb_x_4 = wb_x_2 * fa_z_z - wb_x_3 * fa_y_z;
-    const T wb_x_5 = wb_x_2 * fa_y_z + wb_x_3 * fa_z_z;
-    const T wb_x_6 = wb_x_2 * fa_z_y - wb_x_3 * fa_y_y;
-    const T wb_x_7 = wb_x_2 * fa_y_y + wb_x_3 * fa_z_y;
-    const T wb_y_1 = wb_x_2 * fa_z_x - wb_x_3 * fa_y_x;
-    const T wb_y_2 = wb_x_2 * fa_y_x + wb_x_3 * fa_z_x;
-    C[0] = atan2(C1_1, C1_2);
-    J.wb_x = fb_y_y * wb_x_4 - fb_z_y * wb_x_5 - fb_y_z * wb_x_6 + fb_z_z * wb_x_7;
-    J.wb_y = fb_z_x * wb_x_5 - fb_y_x * wb_x_4 + fb_y_z * wb_y_1 - fb_z_z * wb_y_2;
-    J.wb_z = fb_y_x * wb_x_6 - fb_z_x * wb_x_7 - fb_y_y * wb_y_1 + fb_z_y * wb_y_2;
+    const T rzz = fa_z_z * fb_z_z + fa_z_y * fb_z_y + fa_z_x * fb_z_x;
+    const T fa_x_fb_x_x = fa_x_x + fb_x_x;
+    const T fa_x_fb_x_y = fa_x_y + fb_x_y;
+    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+    const T wb_x_1 = inverse(dot_fa_x_fb_x + T(1));
+    const T fa_x_fb_x_z = fa_x_z + fb_x_z;
+    C[0] = atan2(dot_fa_z_fb_y - ryz, dot_fa_y_fb_y + rzz);
+    J.wb_x = fa_x_fb_x_x * wb_x_1;
+    J.wb_y = fa_x_fb_x_y * wb_x_1;
+    J.wb_z = fa_x_fb_x_z * wb_x_1;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
@@ -6493,51 +5669,6 @@ struct six_dof::twist_x::a_immovable : six_dof::twist_x {
 struct six_dof::twist_x::b_immovable : six_dof::twist_x {
   static constexpr int immovable_body = 1;
 
-  template <class T>
-  struct Jacobian {
-    T wa_x, wa_y, wa_z;
-  };
-
-  // C and J: 50 +, 76 *, 1 /, 1 <, 1 call
-  template <class T>
-  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
-      Jacobian<T>& J) {
-    using std::atan2;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
-    const T C1_1 = dot_fa_z_fb_y - ryz;
-    const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-    const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-    const T C1_2 = dot_fa_y_fb_y + rzz;
-    const T wa_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
-    const T wa_x_2 = C1_2 * wa_x_1;
-    const T wa_x_3 = C1_1 * wa_x_1;
-    const T wa_x_4 = wa_x_2 * fb_z_z + wa_x_3 * fb_y_z;
-    const T wa_x_5 = wa_x_2 * fb_y_z - wa_x_3 * fb_z_z;
-    const T wa_x_6 = wa_x_2 * fb_z_y + wa_x_3 * fb_y_y;
-    const T wa_x_7 = wa_x_2 * fb_y_y - wa_x_3 * fb_z_y;
-    const T wa_y_1 = wa_x_2 * fb_z_x + wa_x_3 * fb_y_x;
-    const T wa_y_2 = wa_x_2 * fb_y_x - wa_x_3 * fb_z_x;
-    C[0] = atan2(C1_1, C1_2);
-    J.wa_x = fa_z_y * wa_x_5 - fa_y_y * wa_x_4 + fa_y_z * wa_x_6 - fa_z_z * wa_x_7;
-    J.wa_y = fa_y_x * wa_x_4 - fa_z_x * wa_x_5 - fa_y_z * wa_y_1 + fa_z_z * wa_y_2;
-    J.wa_z = fa_z_x * wa_x_7 - fa_y_x * wa_x_6 + fa_y_y * wa_y_1 - fa_z_y * wa_y_2;
-  }
-
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
@@ -6548,11 +5679,11 @@ struct six_dof::twist_x::b_immovable : six_dof::twist_x {
         (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
   }
 
-  // J v: 2 +, 3 *
+  // J v: 3 +, 3 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz;
+    Jv[0] = -J.wa_x * va.wx - J.wa_y * va.wy - J.wa_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 9 +, 12 *
@@ -6564,23 +5695,23 @@ struct six_dof::twist_x::b_immovable : six_dof::twist_x {
     const T v1_1 = J.wa_x * lambda[0];
     const T v1_2 = lambda[0] * J.wa_y;
     const T v1_3 = lambda[0] * J.wa_z;
-    v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: nothing
+  // J with its zeros: v, w of each body: 3 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.wa_x;
+    D[0][4] = -J.wa_y;
+    D[0][5] = -J.wa_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
+  // (M^-1 J^T)^T, laid out like dense: 9 +, 9 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -6588,9 +5719,9 @@ struct six_dof::twist_x::b_immovable : six_dof::twist_x {
       for (T& entry : row) entry = T(0);
     }
     const InverseMass<T>& ma = m[0];
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.wa_x - ma.Ixy * J.wa_y - ma.Ixz * J.wa_z;
+    D[0][4] = -ma.Ixy * J.wa_x - ma.Iyy * J.wa_y - ma.Iyz * J.wa_z;
+    D[0][5] = -ma.Ixz * J.wa_x - ma.Iyz * J.wa_y - ma.Izz * J.wa_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
@@ -6608,12 +5739,12 @@ struct six_dof::twist_x::b_immovable : six_dof::twist_x {
     const Velocity<T> va = v[0];
     const IsotropicInverseMass<T>& ma = m[0];
     const T v1_1 = ma.I * lambda[0];
-    v[0].wx = va.wx + v1_1 * J.wa_x;
-    v[0].wy = va.wy + v1_1 * J.wa_y;
-    v[0].wz = va.wz + v1_1 * J.wa_z;
+    v[0].wx = va.wx - v1_1 * J.wa_x;
+    v[0].wy = va.wy - v1_1 * J.wa_y;
+    v[0].wz = va.wz - v1_1 * J.wa_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 3 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -6621,9 +5752,9 @@ struct six_dof::twist_x::b_immovable : six_dof::twist_x {
       for (T& entry : row) entry = T(0);
     }
     const IsotropicInverseMass<T>& ma = m[0];
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.wa_x;
+    D[0][4] = -ma.I * J.wa_y;
+    D[0][5] = -ma.I * J.wa_z;
   }
 };
 
@@ -6636,7 +5767,7 @@ struct six_dof::twist_y::a_immovable : six_dof::twist_y {
     T wb_x, wb_y, wb_z;
   };
 
-  // C and J: 50 +, 76 *, 1 /, 1 <, 1 call
+  // C and J: 46 +, 66 *, 1 /, 1 <, 1 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -6645,35 +5776,35 @@ struct six_dof::twist_y::a_immovable : six_dof::twist_y {
     const Pose<T>& b = q[1];
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T rxz = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
-    const T C1_1 = rxz - dot_fa_z_fb_x;
+    const T fb_z_x = fb_x_y * fb_y_z - fb_y_y * fb_x_z;
+    const T fb_z_y = fb_y_x * fb_x_z - fb_x_x * fb_y_z;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+    const T fb_z_z = fb_x_x * fb_y_y - fb_y_x * fb_x_y;
+    const T rxz = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    const T dot_fa_z_fb_x = fb_x_x * fa_z_x + fb_x_y * fa_z_y + fb_x_z * fa_z_z;
     const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-    const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-    const T C1_2 = dot_fa_x_fb_x + rzz;
-    const T wb_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
-    const T wb_x_2 = C1_2 * wb_x_1;
-    const T wb_x_3 = C1_1 * wb_x_1;
-    const T wb_x_4 = wb_x_2 * fa_z_z + wb_x_3 * fa_x_z;
-    const T wb_x_5 = wb_x_2 * fa_x_z - wb_x_3 * fa_z_z;
-    const T wb_x_6 = wb_x_2 * fa_z_y + wb_x_3 * fa_x_y;
-    const T wb_x_7 = wb_x_2 * fa_x_y - wb_x_3 * fa_z_y;
-    const T wb_y_1 = wb_x_2 * fa_z_x + wb_x_3 * fa_x_x;
-    const T wb_y_2 = wb_x_2 * fa_x_x - wb_x_3 * fa_z_x;
-    C[0] = atan2(C1_1, C1_2);
-    J.wb_x = fb_z_y * wb_x_5 - fb_x_y * wb_x_4 + fb_x_z * wb_x_6 - fb_z_z * wb_x_7;
-    J.wb_y = fb_x_x * wb_x_4 - fb_z_x * wb_x_5 - fb_x_z * wb_y_1 + fb_z_z * wb_y_2;
-    J.wb_z = fb_z_x * wb_x_7 - fb_x_x * wb_x_6 + fb_x_y * wb_y_1 - fb_z_y * wb_y_2;
+    const T rzz = fa_z_z * fb_z_z + fa_z_y * fb_z_y + fa_z_x * fb_z_x;
+    const T fa_y_fb_y_x = fa_y_x + fb_y_x;
+    const T fa_y_fb_y_y = fa_y_y + fb_y_y;
+    const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+    const T wb_x_1 = inverse(dot_fa_y_fb_y + T(1));
+    const T fa_y_fb_y_z = fa_y_z + fb_y_z;
+    C[0] = atan2(rxz - dot_fa_z_fb_x, dot_fa_x_fb_x + rzz);
+    J.wb_x = fa_y_fb_y_x * wb_x_1;
+    J.wb_y = fa_y_fb_y_y * wb_x_1;
+    J.wb_z = fa_y_fb_y_z * wb_x_1;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
@@ -6769,51 +5900,6 @@ struct six_dof::twist_y::a_immovable : six_dof::twist_y {
 struct six_dof::twist_y::b_immovable : six_dof::twist_y {
   static constexpr int immovable_body = 1;
 
-  template <class T>
-  struct Jacobian {
-    T wa_x, wa_y, wa_z;
-  };
-
-  // C and J: 50 +, 76 *, 1 /, 1 <, 1 call
-  template <class T>
-  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
-      Jacobian<T>& J) {
-    using std::atan2;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T rxz = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
-    const T C1_1 = rxz - dot_fa_z_fb_x;
-    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-    const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-    const T C1_2 = dot_fa_x_fb_x + rzz;
-    const T wa_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
-    const T wa_x_2 = C1_2 * wa_x_1;
-    const T wa_x_3 = C1_1 * wa_x_1;
-    const T wa_x_4 = wa_x_2 * fb_z_z - wa_x_3 * fb_x_z;
-    const T wa_x_5 = wa_x_2 * fb_x_z + wa_x_3 * fb_z_z;
-    const T wa_x_6 = wa_x_2 * fb_z_y - wa_x_3 * fb_x_y;
-    const T wa_x_7 = wa_x_2 * fb_x_y + wa_x_3 * fb_z_y;
-    const T wa_y_1 = wa_x_2 * fb_z_x - wa_x_3 * fb_x_x;
-    const T wa_y_2 = wa_x_2 * fb_x_x + wa_x_3 * fb_z_x;
-    C[0] = atan2(C1_1, C1_2);
-    J.wa_x = fa_x_y * wa_x_4 - fa_z_y * wa_x_5 - fa_x_z * wa_x_6 + fa_z_z * wa_x_7;
-    J.wa_y = fa_z_x * wa_x_5 - fa_x_x * wa_x_4 + fa_x_z * wa_y_1 - fa_z_z * wa_y_2;
-    J.wa_z = fa_x_x * wa_x_6 - fa_z_x * wa_x_7 - fa_x_y * wa_y_1 + fa_z_y * wa_y_2;
-  }
-
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
@@ -6824,11 +5910,11 @@ struct six_dof::twist_y::b_immovable : six_dof::twist_y {
         (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
   }
 
-  // J v: 2 +, 3 *
+  // J v: 3 +, 3 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz;
+    Jv[0] = -J.wa_x * va.wx - J.wa_y * va.wy - J.wa_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 9 +, 12 *
@@ -6840,23 +5926,23 @@ struct six_dof::twist_y::b_immovable : six_dof::twist_y {
     const T v1_1 = J.wa_x * lambda[0];
     const T v1_2 = lambda[0] * J.wa_y;
     const T v1_3 = lambda[0] * J.wa_z;
-    v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: nothing
+  // J with its zeros: v, w of each body: 3 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.wa_x;
+    D[0][4] = -J.wa_y;
+    D[0][5] = -J.wa_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
+  // (M^-1 J^T)^T, laid out like dense: 9 +, 9 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -6864,9 +5950,9 @@ struct six_dof::twist_y::b_immovable : six_dof::twist_y {
       for (T& entry : row) entry = T(0);
     }
     const InverseMass<T>& ma = m[0];
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.wa_x - ma.Ixy * J.wa_y - ma.Ixz * J.wa_z;
+    D[0][4] = -ma.Ixy * J.wa_x - ma.Iyy * J.wa_y - ma.Iyz * J.wa_z;
+    D[0][5] = -ma.Ixz * J.wa_x - ma.Iyz * J.wa_y - ma.Izz * J.wa_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
@@ -6884,12 +5970,12 @@ struct six_dof::twist_y::b_immovable : six_dof::twist_y {
     const Velocity<T> va = v[0];
     const IsotropicInverseMass<T>& ma = m[0];
     const T v1_1 = ma.I * lambda[0];
-    v[0].wx = va.wx + v1_1 * J.wa_x;
-    v[0].wy = va.wy + v1_1 * J.wa_y;
-    v[0].wz = va.wz + v1_1 * J.wa_z;
+    v[0].wx = va.wx - v1_1 * J.wa_x;
+    v[0].wy = va.wy - v1_1 * J.wa_y;
+    v[0].wz = va.wz - v1_1 * J.wa_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 3 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -6897,9 +5983,9 @@ struct six_dof::twist_y::b_immovable : six_dof::twist_y {
       for (T& entry : row) entry = T(0);
     }
     const IsotropicInverseMass<T>& ma = m[0];
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.wa_x;
+    D[0][4] = -ma.I * J.wa_y;
+    D[0][5] = -ma.I * J.wa_z;
   }
 };
 
@@ -6912,7 +5998,7 @@ struct six_dof::twist_z::a_immovable : six_dof::twist_z {
     T wb_x, wb_y, wb_z;
   };
 
-  // C and J: 50 +, 76 *, 1 /, 1 <, 1 call
+  // C and J: 46 +, 66 *, 1 /, 1 <, 1 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -6935,21 +6021,21 @@ struct six_dof::twist_z::a_immovable : six_dof::twist_z {
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
     const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-    const T C1_1 = dot_fa_y_fb_x - dot_fa_x_fb_y;
-    const T C1_2 = dot_fa_x_fb_x + dot_fa_y_fb_y;
-    const T wb_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
-    const T wb_x_2 = C1_2 * wb_x_1;
-    const T wb_x_3 = C1_1 * wb_x_1;
-    const T wb_x_4 = wb_x_2 * fa_y_z - wb_x_3 * fa_x_z;
-    const T wb_x_5 = wb_x_2 * fa_x_z + wb_x_3 * fa_y_z;
-    const T wb_x_6 = wb_x_2 * fa_y_y - wb_x_3 * fa_x_y;
-    const T wb_x_7 = wb_x_2 * fa_x_y + wb_x_3 * fa_y_y;
-    const T wb_y_1 = wb_x_2 * fa_y_x - wb_x_3 * fa_x_x;
-    const T wb_y_2 = wb_x_2 * fa_x_x + wb_x_3 * fa_y_x;
-    C[0] = atan2(C1_1, C1_2);
-    J.wb_x = fb_x_y * wb_x_4 - fb_y_y * wb_x_5 - fb_x_z * wb_x_6 + fb_y_z * wb_x_7;
-    J.wb_y = fb_y_x * wb_x_5 - fb_x_x * wb_x_4 + fb_x_z * wb_y_1 - fb_y_z * wb_y_2;
-    J.wb_z = fb_x_x * wb_x_6 - fb_y_x * wb_x_7 - fb_x_y * wb_y_1 + fb_y_y * wb_y_2;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+    const T fb_z_x = fb_x_y * fb_y_z - fb_y_y * fb_x_z;
+    const T fb_z_y = fb_y_x * fb_x_z - fb_x_x * fb_y_z;
+    const T fa_z_fb_z_x = fa_z_x + fb_z_x;
+    const T fa_z_fb_z_y = fa_z_y + fb_z_y;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    const T fb_z_z = fb_x_x * fb_y_y - fb_y_x * fb_x_y;
+    const T rzz = fa_z_z * fb_z_z + fa_z_y * fb_z_y + fa_z_x * fb_z_x;
+    const T wb_x_1 = inverse(rzz + T(1));
+    const T fa_z_fb_z_z = fa_z_z + fb_z_z;
+    C[0] = atan2(dot_fa_y_fb_x - dot_fa_x_fb_y, dot_fa_x_fb_x + dot_fa_y_fb_y);
+    J.wb_x = fa_z_fb_z_x * wb_x_1;
+    J.wb_y = fa_z_fb_z_y * wb_x_1;
+    J.wb_z = fa_z_fb_z_z * wb_x_1;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
@@ -7045,51 +6131,6 @@ struct six_dof::twist_z::a_immovable : six_dof::twist_z {
 struct six_dof::twist_z::b_immovable : six_dof::twist_z {
   static constexpr int immovable_body = 1;
 
-  template <class T>
-  struct Jacobian {
-    T wa_x, wa_y, wa_z;
-  };
-
-  // C and J: 50 +, 76 *, 1 /, 1 <, 1 call
-  template <class T>
-  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
-      Jacobian<T>& J) {
-    using std::atan2;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T dot_fa_x_fb_y = fa_x_x * fb_y_x + fa_x_y * fb_y_y + fa_x_z * fb_y_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
-    const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-    const T C1_1 = dot_fa_y_fb_x - dot_fa_x_fb_y;
-    const T C1_2 = dot_fa_x_fb_x + dot_fa_y_fb_y;
-    const T wa_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
-    const T wa_x_2 = C1_2 * wa_x_1;
-    const T wa_x_3 = C1_1 * wa_x_1;
-    const T wa_x_4 = wa_x_2 * fb_y_z + wa_x_3 * fb_x_z;
-    const T wa_x_5 = wa_x_2 * fb_x_z - wa_x_3 * fb_y_z;
-    const T wa_x_6 = wa_x_2 * fb_y_y + wa_x_3 * fb_x_y;
-    const T wa_x_7 = wa_x_2 * fb_x_y - wa_x_3 * fb_y_y;
-    const T wa_y_1 = wa_x_2 * fb_y_x + wa_x_3 * fb_x_x;
-    const T wa_y_2 = wa_x_2 * fb_x_x - wa_x_3 * fb_y_x;
-    C[0] = atan2(C1_1, C1_2);
-    J.wa_x = fa_y_y * wa_x_5 - fa_x_y * wa_x_4 + fa_x_z * wa_x_6 - fa_y_z * wa_x_7;
-    J.wa_y = fa_x_x * wa_x_4 - fa_y_x * wa_x_5 - fa_x_z * wa_y_1 + fa_y_z * wa_y_2;
-    J.wa_z = fa_y_x * wa_x_7 - fa_x_x * wa_x_6 + fa_x_y * wa_y_1 - fa_y_y * wa_y_2;
-  }
-
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
@@ -7100,11 +6141,11 @@ struct six_dof::twist_z::b_immovable : six_dof::twist_z {
         (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
   }
 
-  // J v: 2 +, 3 *
+  // J v: 3 +, 3 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz;
+    Jv[0] = -J.wa_x * va.wx - J.wa_y * va.wy - J.wa_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 9 +, 12 *
@@ -7116,23 +6157,23 @@ struct six_dof::twist_z::b_immovable : six_dof::twist_z {
     const T v1_1 = J.wa_x * lambda[0];
     const T v1_2 = lambda[0] * J.wa_y;
     const T v1_3 = lambda[0] * J.wa_z;
-    v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: nothing
+  // J with its zeros: v, w of each body: 3 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.wa_x;
+    D[0][4] = -J.wa_y;
+    D[0][5] = -J.wa_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
+  // (M^-1 J^T)^T, laid out like dense: 9 +, 9 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -7140,9 +6181,9 @@ struct six_dof::twist_z::b_immovable : six_dof::twist_z {
       for (T& entry : row) entry = T(0);
     }
     const InverseMass<T>& ma = m[0];
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.wa_x - ma.Ixy * J.wa_y - ma.Ixz * J.wa_z;
+    D[0][4] = -ma.Ixy * J.wa_x - ma.Iyy * J.wa_y - ma.Iyz * J.wa_z;
+    D[0][5] = -ma.Ixz * J.wa_x - ma.Iyz * J.wa_y - ma.Izz * J.wa_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
@@ -7160,12 +6201,12 @@ struct six_dof::twist_z::b_immovable : six_dof::twist_z {
     const Velocity<T> va = v[0];
     const IsotropicInverseMass<T>& ma = m[0];
     const T v1_1 = ma.I * lambda[0];
-    v[0].wx = va.wx + v1_1 * J.wa_x;
-    v[0].wy = va.wy + v1_1 * J.wa_y;
-    v[0].wz = va.wz + v1_1 * J.wa_z;
+    v[0].wx = va.wx - v1_1 * J.wa_x;
+    v[0].wy = va.wy - v1_1 * J.wa_y;
+    v[0].wz = va.wz - v1_1 * J.wa_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 3 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -7173,9 +6214,9 @@ struct six_dof::twist_z::b_immovable : six_dof::twist_z {
       for (T& entry : row) entry = T(0);
     }
     const IsotropicInverseMass<T>& ma = m[0];
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.wa_x;
+    D[0][4] = -ma.I * J.wa_y;
+    D[0][5] = -ma.I * J.wa_z;
   }
 };
 

@@ -76,8 +76,7 @@ struct spherical_spherical {
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T dot_d_d = d_x * d_x + d_y * d_y + d_z * d_z;
-    C[0] = T(0.5) * (dot_d_d - p.l * p.l);
+    C[0] = T(0.5) * (d_x * d_x - p.l * p.l + d_y * d_y + d_z * d_z);
     J.d_x = d_x;
     J.d_y = d_y;
     J.d_z = d_z;
@@ -565,8 +564,7 @@ struct spherical_spherical::a_immovable : spherical_spherical {
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T dot_d_d = d_x * d_x + d_y * d_y + d_z * d_z;
-    C[0] = T(0.5) * (dot_d_d - p.l * p.l);
+    C[0] = T(0.5) * (d_x * d_x - p.l * p.l + d_y * d_y + d_z * d_z);
     J.d_x = d_x;
     J.d_y = d_y;
     J.d_z = d_z;
@@ -710,8 +708,7 @@ struct spherical_spherical::b_immovable : spherical_spherical {
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T dot_d_d = d_x * d_x + d_y * d_y + d_z * d_z;
-    C[0] = T(0.5) * (dot_d_d - p.l * p.l);
+    C[0] = T(0.5) * (d_x * d_x - p.l * p.l + d_y * d_y + d_z * d_z);
     J.d_x = d_x;
     J.d_y = d_y;
     J.d_z = d_z;

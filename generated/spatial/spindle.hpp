@@ -3,26 +3,12 @@
 // spindle: A drive turns b against a about an axis of both, at a speed that it reaches by a ramp;
 //     its torque is bounded.
 //
-// coordinate turn = atan2(fa_x · (fa_y × fb_y), fa_y · fb_y)
-// J_turn = [ 0
-//          | (-((fa_y · fb_y)/((fa_y · fb_y)^2 + (fa_x · (fa_y × fb_y))^2)) ((fa_y × fb_y) × fa_x)
-//              - ((-((fa_y · fb_y)/((fa_y · fb_y)^2 + (fa_x · (fa_y × fb_y))^2)) (fa_x × fb_y) -
-//              ((fa_x · (fa_y × fb_y))/((fa_y · fb_y)^2 + (fa_x · (fa_y × fb_y))^2)) fb_y) ×
-//              fa_y))'
-//          | 0
-//          | -((((fa_y · fb_y)/((fa_y · fb_y)^2 + (fa_x · (fa_y × fb_y))^2)) fa_z - ((fa_x · (fa_y
-//              × fb_y))/((fa_y · fb_y)^2 + (fa_x · (fa_y × fb_y))^2)) fa_y) × fb_y)' ]
-//            (columns v_a | w_a | v_b | w_b)
-// K_turn = (-((fa_y · fb_y)/((fa_y · fb_y)^2 + (fa_x · (fa_y × fb_y))^2)) ((fa_y × fb_y) × fa_x) -
-//     ((-((fa_y · fb_y)/((fa_y · fb_y)^2 + (fa_x · (fa_y × fb_y))^2)) (fa_x × fb_y) - ((fa_x ·
-//     (fa_y × fb_y))/((fa_y · fb_y)^2 + (fa_x · (fa_y × fb_y))^2)) fb_y) × fa_y))' inv_I_a
-//     (-((fa_y · fb_y)/((fa_y · fb_y)^2 + (fa_x · (fa_y × fb_y))^2)) ((fa_y × fb_y) × fa_x) -
-//     ((-((fa_y · fb_y)/((fa_y · fb_y)^2 + (fa_x · (fa_y × fb_y))^2)) (fa_x × fb_y) - ((fa_x ·
-//     (fa_y × fb_y))/((fa_y · fb_y)^2 + (fa_x · (fa_y × fb_y))^2)) fb_y) × fa_y))
-//          + ((((fa_y · fb_y)/((fa_y · fb_y)^2 + (fa_x · (fa_y × fb_y))^2)) fa_z - ((fa_x · (fa_y
-//              × fb_y))/((fa_y · fb_y)^2 + (fa_x · (fa_y × fb_y))^2)) fa_y) × fb_y)' inv_I_b
-//              ((((fa_y · fb_y)/((fa_y · fb_y)^2 + (fa_x · (fa_y × fb_y))^2)) fa_z - ((fa_x ·
-//              (fa_y × fb_y))/((fa_y · fb_y)^2 + (fa_x · (fa_y × fb_y))^2)) fa_y) × fb_y)
+// s1 = (fa_y · fb_y)^2 + (fa_z · fb_y)^2
+//
+// coordinate turn = atan2(fa_z · fb_y, fa_y · fb_y)
+// axis_turn = (((fa_y · fb_y) fa_z - (fa_z · fb_y) fa_y)/s1) × fb_y
+// J_turn = [ 0 | axis_turn' | 0 | -axis_turn' ]                   (columns v_a | w_a | v_b | w_b)
+// K_turn = axis_turn' inv_I_a axis_turn + axis_turn' inv_I_b axis_turn
 #pragma once
 
 #include <cdot/kernel.hpp>
@@ -104,95 +90,70 @@ struct spindle {
 
     template <class T>
     struct Jacobian {
-      T wa_x, wa_y, wa_z, wb_x, wb_y, wb_z;
+      T axis_turn_x, axis_turn_y, axis_turn_z;
     };
 
-    // C: 25 +, 39 *, 1 call
+    // C: 22 +, 33 *, 1 call
     template <class T>
     static void position(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1]) {
       using std::atan2;
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
       const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
       const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-      const T fa_y_x_fb_y_x = fa_y_y * fb_y_z - fa_y_z * fb_y_y;
-      const T fa_y_x_fb_y_y = fa_y_z * fb_y_x - fa_y_x * fb_y_z;
-      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T fa_y_x_fb_y_z = fa_y_x * fb_y_y - fa_y_y * fb_y_x;
-      const T dot_fa_y_x_fb_y_fa_x = fa_x_x * fa_y_x_fb_y_x + fa_x_y * fa_y_x_fb_y_y + fa_x_z *
-          fa_y_x_fb_y_z;
+      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+      const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
+      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
       const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-      C[0] = atan2(dot_fa_y_x_fb_y_fa_x, dot_fa_y_fb_y);
+      C[0] = atan2(dot_fa_z_fb_y, dot_fa_y_fb_y);
     }
 
-    // C and J: 53 +, 91 *, 1 /, 1 <, 1 call
+    // C and J: 29 +, 49 *, 1 /, 1 <, 1 call
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
       using std::atan2;
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-      const T fa_y_x_fb_y_x = fa_y_y * fb_y_z - fa_y_z * fb_y_y;
-      const T fa_y_x_fb_y_y = fa_y_z * fb_y_x - fa_y_x * fb_y_z;
-      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T fa_y_x_fb_y_z = fa_y_x * fb_y_y - fa_y_y * fb_y_x;
-      const T dot_fa_y_x_fb_y_fa_x = fa_x_x * fa_y_x_fb_y_x + fa_x_y * fa_y_x_fb_y_y + fa_x_z *
-          fa_y_x_fb_y_z;
-      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-      const T wa_x_1 = inverse(dot_fa_y_x_fb_y_fa_x * dot_fa_y_x_fb_y_fa_x + dot_fa_y_fb_y *
-          dot_fa_y_fb_y);
-      const T wa_x_2 = dot_fa_y_x_fb_y_fa_x * wa_x_1;
-      const T wa_x_3 = dot_fa_y_fb_y * wa_x_1;
-      const T fa_x_x_fb_y_z = fa_x_x * fb_y_y - fa_x_y * fb_y_x;
-      const T wa_x_4 = wa_x_2 * fb_y_z + wa_x_3 * fa_x_x_fb_y_z;
-      const T fa_x_x_fb_y_x = fa_x_y * fb_y_z - fa_x_z * fb_y_y;
-      const T fa_x_x_fb_y_y = fa_x_z * fb_y_x - fa_x_x * fb_y_z;
-      const T wa_x_5 = wa_x_2 * fb_y_y + wa_x_3 * fa_x_x_fb_y_y;
-      const T fa_y_x_fb_y_x_fa_x_x = fa_x_z * fa_y_x_fb_y_y - fa_x_y * fa_y_x_fb_y_z;
-      const T fa_y_x_fb_y_x_fa_x_y = fa_x_x * fa_y_x_fb_y_z - fa_x_z * fa_y_x_fb_y_x;
-      const T wa_y_1 = wa_x_2 * fb_y_x + wa_x_3 * fa_x_x_fb_y_x;
-      const T fa_y_x_fb_y_x_fa_x_z = fa_x_y * fa_y_x_fb_y_x - fa_x_x * fa_y_x_fb_y_y;
-      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T wb_x_1 = wa_x_3 * fa_z_z - wa_x_2 * fa_y_z;
       const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
       const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-      const T wb_x_2 = wa_x_3 * fa_z_y - wa_x_2 * fa_y_y;
-      const T wb_y_1 = wa_x_3 * fa_z_x - wa_x_2 * fa_y_x;
-      C[0] = atan2(dot_fa_y_x_fb_y_fa_x, dot_fa_y_fb_y);
-      J.wa_x = fa_y_z * wa_x_5 - fa_y_y * wa_x_4 - wa_x_3 * fa_y_x_fb_y_x_fa_x_x;
-      J.wa_y = fa_y_x * wa_x_4 - fa_y_z * wa_y_1 - wa_x_3 * fa_y_x_fb_y_x_fa_x_y;
-      J.wa_z = fa_y_y * wa_y_1 - fa_y_x * wa_x_5 - wa_x_3 * fa_y_x_fb_y_x_fa_x_z;
-      J.wb_x = fb_y_y * wb_x_1 - fb_y_z * wb_x_2;
-      J.wb_y = fb_y_z * wb_y_1 - fb_y_x * wb_x_1;
-      J.wb_z = fb_y_x * wb_x_2 - fb_y_y * wb_y_1;
+      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+      const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
+      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+      const T axis_turn_x_1 = inverse(dot_fa_y_fb_y * dot_fa_y_fb_y + dot_fa_z_fb_y *
+          dot_fa_z_fb_y);
+      const T axis_turn_x_2 = dot_fa_z_fb_y * axis_turn_x_1;
+      const T axis_turn_x_3 = dot_fa_y_fb_y * axis_turn_x_1;
+      const T axis_turn_x_4 = axis_turn_x_3 * fa_z_z - axis_turn_x_2 * fa_y_z;
+      const T axis_turn_x_5 = axis_turn_x_3 * fa_z_y - axis_turn_x_2 * fa_y_y;
+      const T axis_turn_y_1 = axis_turn_x_3 * fa_z_x - axis_turn_x_2 * fa_y_x;
+      C[0] = atan2(dot_fa_z_fb_y, dot_fa_y_fb_y);
+      J.axis_turn_x = fb_y_z * axis_turn_x_5 - fb_y_y * axis_turn_x_4;
+      J.axis_turn_y = fb_y_x * axis_turn_x_4 - fb_y_z * axis_turn_y_1;
+      J.axis_turn_z = fb_y_y * axis_turn_y_1 - fb_y_x * axis_turn_x_5;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 11 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      const T K11_1 = J.wa_z * T(2);
-      const T K11_2 = J.wb_z * T(2);
-      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
-          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
-          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
+      const T K11_1 = J.axis_turn_z * T(2);
+      K[0] = J.axis_turn_z * J.axis_turn_z * (ma.Izz + mb.Izz) + J.axis_turn_x *
+          (J.axis_turn_x * (ma.Ixx + mb.Ixx) + J.axis_turn_y * T(2) * (ma.Ixy + mb.Ixy) + K11_1 *
+          (ma.Ixz + mb.Ixz)) + J.axis_turn_y *
+          (J.axis_turn_y * (ma.Iyy + mb.Iyy) + K11_1 * (ma.Iyz + mb.Iyz));
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -207,16 +168,16 @@ struct spindle {
       lambda[0] = F[0] * rhs[0];
     }
 
-    // J v: 5 +, 6 *
+    // J v: 5 +, 3 *
     template <class T>
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.wb_x * vb.wx + J.wb_y * vb.wy +
-          J.wb_z * vb.wz;
+      Jv[0] = J.axis_turn_x * (va.wx - vb.wx) + J.axis_turn_y * (va.wy - vb.wy) + J.axis_turn_z *
+          (va.wz - vb.wz);
     }
 
-    // v += M^-1 J^T lambda: 18 +, 24 *
+    // v += M^-1 J^T lambda: 18 +, 21 *
     template <class T>
     static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
         Velocity<T> (&v)[2]) {
@@ -224,35 +185,32 @@ struct spindle {
       const InverseMass<T>& ma = m[0];
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
-      const T v1_1 = J.wa_x * lambda[0];
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
-      const T v2_1 = lambda[0] * J.wb_x;
-      const T v2_2 = lambda[0] * J.wb_y;
-      const T v2_3 = lambda[0] * J.wb_z;
+      const T v1_1 = J.axis_turn_x * lambda[0];
+      const T v1_2 = lambda[0] * J.axis_turn_y;
+      const T v1_3 = lambda[0] * J.axis_turn_z;
       v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
       v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
       v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
-      v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
-      v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
-      v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+      v[1].wx = vb.wx - v1_1 * mb.Ixx - v1_2 * mb.Ixy - v1_3 * mb.Ixz;
+      v[1].wy = vb.wy - v1_1 * mb.Ixy - v1_2 * mb.Iyy - v1_3 * mb.Iyz;
+      v[1].wz = vb.wz - v1_1 * mb.Ixz - v1_2 * mb.Iyz - v1_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: nothing
+    // J with its zeros: v, w of each body: 3 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
         for (T& entry : row) entry = T(0);
       }
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
-      D[0][9] = J.wb_x;
-      D[0][10] = J.wb_y;
-      D[0][11] = J.wb_z;
+      D[0][3] = J.axis_turn_x;
+      D[0][4] = J.axis_turn_y;
+      D[0][5] = J.axis_turn_z;
+      D[0][9] = -J.axis_turn_x;
+      D[0][10] = -J.axis_turn_y;
+      D[0][11] = -J.axis_turn_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 12 +, 18 *
+    // (M^-1 J^T)^T, laid out like dense: 15 +, 18 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -261,22 +219,23 @@ struct spindle {
       }
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
-      D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
-      D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
-      D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+      D[0][3] = ma.Ixx * J.axis_turn_x + ma.Ixy * J.axis_turn_y + ma.Ixz * J.axis_turn_z;
+      D[0][4] = ma.Ixy * J.axis_turn_x + ma.Iyy * J.axis_turn_y + ma.Iyz * J.axis_turn_z;
+      D[0][5] = ma.Ixz * J.axis_turn_x + ma.Iyz * J.axis_turn_y + ma.Izz * J.axis_turn_z;
+      D[0][9] = -mb.Ixx * J.axis_turn_x - mb.Ixy * J.axis_turn_y - mb.Ixz * J.axis_turn_z;
+      D[0][10] = -mb.Ixy * J.axis_turn_x - mb.Iyy * J.axis_turn_y - mb.Iyz * J.axis_turn_z;
+      D[0][11] = -mb.Ixz * J.axis_turn_x - mb.Iyz * J.axis_turn_y - mb.Izz * J.axis_turn_z;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
+    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+      const T dot_axis_turn_axis_turn = J.axis_turn_x * J.axis_turn_x + J.axis_turn_y *
+          J.axis_turn_y + J.axis_turn_z * J.axis_turn_z;
+      K[0] = dot_axis_turn_axis_turn * (ma.I + mb.I);
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -289,15 +248,15 @@ struct spindle {
       const IsotropicInverseMass<T>& mb = m[1];
       const T v1_1 = ma.I * lambda[0];
       const T v2_1 = lambda[0] * mb.I;
-      v[0].wx = va.wx + v1_1 * J.wa_x;
-      v[0].wy = va.wy + v1_1 * J.wa_y;
-      v[0].wz = va.wz + v1_1 * J.wa_z;
-      v[1].wx = vb.wx + v2_1 * J.wb_x;
-      v[1].wy = vb.wy + v2_1 * J.wb_y;
-      v[1].wz = vb.wz + v2_1 * J.wb_z;
+      v[0].wx = va.wx + v1_1 * J.axis_turn_x;
+      v[0].wy = va.wy + v1_1 * J.axis_turn_y;
+      v[0].wz = va.wz + v1_1 * J.axis_turn_z;
+      v[1].wx = vb.wx - v2_1 * J.axis_turn_x;
+      v[1].wy = vb.wy - v2_1 * J.axis_turn_y;
+      v[1].wz = vb.wz - v2_1 * J.axis_turn_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -306,15 +265,15 @@ struct spindle {
       }
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
-      D[0][9] = mb.I * J.wb_x;
-      D[0][10] = mb.I * J.wb_y;
-      D[0][11] = mb.I * J.wb_z;
+      D[0][3] = ma.I * J.axis_turn_x;
+      D[0][4] = ma.I * J.axis_turn_y;
+      D[0][5] = ma.I * J.axis_turn_z;
+      D[0][9] = -mb.I * J.axis_turn_x;
+      D[0][10] = -mb.I * J.axis_turn_y;
+      D[0][11] = -mb.I * J.axis_turn_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -322,15 +281,15 @@ struct spindle {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-      D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-      D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-      D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+      D[0][3] = J.axis_turn_x * a.xx + J.axis_turn_y * a.yx + J.axis_turn_z * a.zx;
+      D[0][4] = J.axis_turn_x * a.xy + J.axis_turn_y * a.yy + J.axis_turn_z * a.zy;
+      D[0][5] = J.axis_turn_x * a.xz + J.axis_turn_y * a.yz + J.axis_turn_z * a.zz;
+      D[0][9] = -J.axis_turn_x * b.xx - J.axis_turn_y * b.yx - J.axis_turn_z * b.zx;
+      D[0][10] = -J.axis_turn_x * b.xy - J.axis_turn_y * b.yy - J.axis_turn_z * b.zy;
+      D[0][11] = -J.axis_turn_x * b.xz - J.axis_turn_y * b.yz - J.axis_turn_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 27 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -338,17 +297,20 @@ struct spindle {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-      D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-      D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-      D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+      const T D1_1 = J.axis_turn_x * T(2);
+      const T D1_2 = J.axis_turn_y * T(2);
+      const T D1_3 = J.axis_turn_z * T(2);
+      D[0][3] = -D1_1 * a.e1 - D1_2 * a.e2 - D1_3 * a.e3;
+      D[0][4] = D1_1 * a.e0 + D1_2 * a.e3 - D1_3 * a.e2;
+      D[0][5] = D1_2 * a.e0 - D1_1 * a.e3 + D1_3 * a.e1;
+      D[0][6] = D1_1 * a.e2 - D1_2 * a.e1 + D1_3 * a.e0;
+      D[0][10] = D1_1 * b.e1 + D1_2 * b.e2 + D1_3 * b.e3;
+      D[0][11] = D1_3 * b.e2 - D1_1 * b.e0 - D1_2 * b.e3;
+      D[0][12] = D1_1 * b.e3 - D1_2 * b.e0 - D1_3 * b.e1;
+      D[0][13] = D1_2 * b.e1 - D1_1 * b.e2 - D1_3 * b.e0;
     }
 
-    // -Jdot v - d/dt(dC/dt): 98 +, 151 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 71 +, 108 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -356,26 +318,29 @@ struct spindle {
       const Velocity<T>& va = v[0];
       const Pose<T>& b = q[1];
       const Velocity<T>& vb = v[1];
-      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
       const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
       const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-      const T fa_y_x_fb_y_x = fa_y_y * fb_y_z - fa_y_z * fb_y_y;
-      const T fa_y_x_fb_y_y = fa_y_z * fb_y_x - fa_y_x * fb_y_z;
-      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T fa_y_x_fb_y_z = fa_y_x * fb_y_y - fa_y_y * fb_y_x;
-      const T dot_fa_y_x_fb_y_fa_x = fa_x_x * fa_y_x_fb_y_x + fa_x_y * fa_y_x_fb_y_y + fa_x_z *
-          fa_y_x_fb_y_z;
-      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-      const T g1_1 = inverse(dot_fa_y_x_fb_y_fa_x * dot_fa_y_x_fb_y_fa_x + dot_fa_y_fb_y *
-          dot_fa_y_fb_y);
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
       const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
       const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
+      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
       const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
+      const T dot_w_b_x_fb_y_fa_z = fa_z_x * w_b_x_fb_y_x + fa_z_y * w_b_x_fb_y_y + fa_z_z *
+          w_b_x_fb_y_z;
+      const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
+      const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
+      const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
+      const T dot_w_a_x_fa_z_fb_y = fb_y_x * w_a_x_fa_z_x + fb_y_y * w_a_x_fa_z_y + fb_y_z *
+          w_a_x_fa_z_z;
+      const T g1_1 = dot_w_b_x_fb_y_fa_z + dot_w_a_x_fa_z_fb_y;
+      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+      const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
+      const T g1_2 = inverse(dot_fa_y_fb_y * dot_fa_y_fb_y + dot_fa_z_fb_y * dot_fa_z_fb_y);
       const T dot_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_fb_y_x + fa_y_y * w_b_x_fb_y_y + fa_y_z *
           w_b_x_fb_y_z;
       const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
@@ -383,58 +348,26 @@ struct spindle {
       const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
       const T dot_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_fa_y_x + fb_y_y * w_a_x_fa_y_y + fb_y_z *
           w_a_x_fa_y_z;
-      const T g1_2 = dot_w_b_x_fb_y_fa_y + dot_w_a_x_fa_y_fb_y;
-      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-      const T dot_fa_y_x_fb_y_w_a_x_fa_x = w_a_x_fa_x_z * fa_y_x_fb_y_z + w_a_x_fa_x_y *
-          fa_y_x_fb_y_y + w_a_x_fa_x_x * fa_y_x_fb_y_x;
-      const T w_b_x_fb_y_x_fa_y_x = fa_y_z * w_b_x_fb_y_y - fa_y_y * w_b_x_fb_y_z;
-      const T w_b_x_fb_y_x_fa_y_y = fa_y_x * w_b_x_fb_y_z - fa_y_z * w_b_x_fb_y_x;
-      const T w_a_x_fa_y_x_fb_y_x = fb_y_z * w_a_x_fa_y_y - fb_y_y * w_a_x_fa_y_z;
-      const T w_a_x_fa_y_x_fb_y_y = fb_y_x * w_a_x_fa_y_z - fb_y_z * w_a_x_fa_y_x;
-      const T g1_3 = w_a_x_fa_y_x_fb_y_y - w_b_x_fb_y_x_fa_y_y;
-      const T w_b_x_fb_y_x_fa_y_z = fa_y_y * w_b_x_fb_y_x - fa_y_x * w_b_x_fb_y_y;
-      const T w_a_x_fa_y_x_fb_y_z = fb_y_y * w_a_x_fa_y_x - fb_y_x * w_a_x_fa_y_y;
-      const T g1_4 = w_a_x_fa_y_x_fb_y_z - w_b_x_fb_y_x_fa_y_z;
-      const T g1_5 = w_a_x_fa_y_x_fb_y_x - w_b_x_fb_y_x_fa_y_x;
-      const T g1_6 = dot_fa_y_x_fb_y_w_a_x_fa_x + g1_3 * fa_x_y + g1_4 * fa_x_z + g1_5 * fa_x_x;
-      const T g1_7 = T(2) * (g1_2 * dot_fa_y_fb_y + g1_6 * dot_fa_y_x_fb_y_fa_x) * g1_1;
-      const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
-      const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
-      const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
-      const T dot_w_b_x_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_w_b_x_fb_y_x + fa_y_y *
-          w_b_x_w_b_x_fb_y_y + fa_y_z * w_b_x_w_b_x_fb_y_z;
-      const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-      const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-      const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-      const T dot_w_a_x_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_w_a_x_fa_y_x + fb_y_y *
-          w_a_x_w_a_x_fa_y_y + fb_y_z * w_a_x_w_a_x_fa_y_z;
-      const T dot_w_a_x_fa_y_w_b_x_fb_y = w_a_x_fa_y_z * w_b_x_fb_y_z + w_a_x_fa_y_y *
-          w_b_x_fb_y_y + w_a_x_fa_y_x * w_b_x_fb_y_x;
-      const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-      const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-      const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-      const T dot_fa_y_x_fb_y_w_a_x_w_a_x_fa_x = w_a_x_w_a_x_fa_x_y * fa_y_x_fb_y_y +
-          w_a_x_w_a_x_fa_x_z * fa_y_x_fb_y_z + w_a_x_w_a_x_fa_x_x * fa_y_x_fb_y_x;
-      const T w_a_x_fa_y_x_w_b_x_fb_y_z = w_a_x_fa_y_x * w_b_x_fb_y_y - w_a_x_fa_y_y * w_b_x_fb_y_x;
-      const T w_a_x_fa_y_x_w_b_x_fb_y_x = w_a_x_fa_y_y * w_b_x_fb_y_z - w_a_x_fa_y_z * w_b_x_fb_y_y;
-      const T w_a_x_fa_y_x_w_b_x_fb_y_y = w_a_x_fa_y_z * w_b_x_fb_y_x - w_a_x_fa_y_x * w_b_x_fb_y_z;
-      const T w_b_x_w_b_x_fb_y_x_fa_y_x = fa_y_z * w_b_x_w_b_x_fb_y_y - fa_y_y * w_b_x_w_b_x_fb_y_z;
-      const T w_b_x_w_b_x_fb_y_x_fa_y_y = fa_y_x * w_b_x_w_b_x_fb_y_z - fa_y_z * w_b_x_w_b_x_fb_y_x;
-      const T w_a_x_w_a_x_fa_y_x_fb_y_x = fb_y_z * w_a_x_w_a_x_fa_y_y - fb_y_y * w_a_x_w_a_x_fa_y_z;
-      const T w_a_x_w_a_x_fa_y_x_fb_y_y = fb_y_x * w_a_x_w_a_x_fa_y_z - fb_y_z * w_a_x_w_a_x_fa_y_x;
-      const T w_b_x_w_b_x_fb_y_x_fa_y_z = fa_y_y * w_b_x_w_b_x_fb_y_x - fa_y_x * w_b_x_w_b_x_fb_y_y;
-      const T w_a_x_w_a_x_fa_y_x_fb_y_z = fb_y_y * w_a_x_w_a_x_fa_y_x - fb_y_x * w_a_x_w_a_x_fa_y_y;
-      g[0] = g1_1 * (dot_fa_y_x_fb_y_fa_x *
-          (dot_w_b_x_w_b_x_fb_y_fa_y - g1_7 * g1_2 + dot_w_a_x_w_a_x_fa_y_fb_y +
-          dot_w_a_x_fa_y_w_b_x_fb_y * T(2)) + dot_fa_y_fb_y *
-          (g1_7 * g1_6 - dot_fa_y_x_fb_y_w_a_x_w_a_x_fa_x - T(2) *
-          (g1_3 * w_a_x_fa_x_y + g1_4 * w_a_x_fa_x_z + w_a_x_fa_y_x_w_b_x_fb_y_z * fa_x_z +
-          w_a_x_fa_y_x_w_b_x_fb_y_y * fa_x_y + g1_5 * w_a_x_fa_x_x + w_a_x_fa_y_x_w_b_x_fb_y_x *
-          fa_x_x) - fa_x_x * (w_a_x_w_a_x_fa_y_x_fb_y_x - w_b_x_w_b_x_fb_y_x_fa_y_x) - fa_x_y *
-          (w_a_x_w_a_x_fa_y_x_fb_y_y - w_b_x_w_b_x_fb_y_x_fa_y_y) - fa_x_z *
-          (w_a_x_w_a_x_fa_y_x_fb_y_z - w_b_x_w_b_x_fb_y_x_fa_y_z)));
+      const T g1_3 = dot_w_b_x_fb_y_fa_y + dot_w_a_x_fa_y_fb_y;
+      const T g1_4 = g1_2 * T(2) * (g1_3 * dot_fa_y_fb_y + g1_1 * dot_fa_z_fb_y);
+      const T g1_5 = dot_fa_z_fb_y * g1_2;
+      const T g1_6 = g1_1 * g1_2 - g1_4 * g1_5;
+      const T g1_7 = dot_fa_y_fb_y * g1_2;
+      const T g1_8 = g1_3 * g1_2 - g1_4 * g1_7;
+      const T g1_9 = fa_z_z * g1_8 - fa_y_z * g1_6 - g1_5 * w_a_x_fa_y_z + g1_7 * w_a_x_fa_z_z;
+      const T g1_10 = fa_z_y * g1_8 - fa_y_y * g1_6 - g1_5 * w_a_x_fa_y_y + g1_7 * w_a_x_fa_z_y;
+      const T g1_11 = g1_7 * fa_z_y - g1_5 * fa_y_y;
+      const T g1_12 = g1_7 * fa_z_z - g1_5 * fa_y_z;
+      const T axis_turn_dot_x = fb_y_z * g1_10 - fb_y_y * g1_9 + w_b_x_fb_y_z * g1_11 -
+          w_b_x_fb_y_y * g1_12;
+      const T g1_13 = fa_z_x * g1_8 - fa_y_x * g1_6 - g1_5 * w_a_x_fa_y_x + g1_7 * w_a_x_fa_z_x;
+      const T g1_14 = g1_7 * fa_z_x - g1_5 * fa_y_x;
+      const T axis_turn_dot_y = fb_y_x * g1_9 - fb_y_z * g1_13 - w_b_x_fb_y_z * g1_14 +
+          w_b_x_fb_y_x * g1_12;
+      const T axis_turn_dot_z = fb_y_y * g1_13 - fb_y_x * g1_10 + w_b_x_fb_y_y * g1_14 -
+          w_b_x_fb_y_x * g1_11;
+      g[0] = axis_turn_dot_x * (vb.wx - va.wx) + axis_turn_dot_y * (vb.wy - va.wy) +
+          axis_turn_dot_z * (vb.wz - va.wz);
     }
 
     // dC/dt at fixed q: nothing
@@ -443,7 +376,7 @@ struct spindle {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 257 +, 369 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 166 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -452,195 +385,127 @@ struct spindle {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
       const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
       const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-      const T H4_1 = fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-      const T dot_fa_y_fb_y = H4_1 + fa_y_x * fb_y_x;
-      const T fa_y_x_fb_y_x = fa_y_y * fb_y_z - fa_y_z * fb_y_y;
-      const T fa_y_x_fb_y_y = fa_y_z * fb_y_x - fa_y_x * fb_y_z;
-      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T fa_y_x_fb_y_z = fa_y_x * fb_y_y - fa_y_y * fb_y_x;
-      const T dot_fa_y_x_fb_y_fa_x = fa_x_x * fa_y_x_fb_y_x + fa_x_y * fa_y_x_fb_y_y + fa_x_z *
-          fa_y_x_fb_y_z;
-      const T H4_2 = inverse(dot_fa_y_x_fb_y_fa_x * dot_fa_y_x_fb_y_fa_x + dot_fa_y_fb_y *
-          dot_fa_y_fb_y);
-      const T H4_3 = lambda[0] * H4_2;
-      const T H4_4 = dot_fa_y_fb_y * H4_3;
-      const T H4_5 = fb_y_x * H4_4;
-      const T H4_6 = H4_4 * fa_y_x_fb_y_y;
-      const T H4_7 = H4_3 * fa_y_x_fb_y_x;
-      const T H4_8 = dot_fa_y_x_fb_y_fa_x * H4_3;
-      const T H4_9 = H4_2 * T(2);
-      const T H4_10 = H4_8 * H4_9;
-      const T H4_11 = H4_10 * fa_y_x_fb_y_x;
-      const T H4_12 = H4_2 * dot_fa_y_fb_y * H4_9;
-      const T fa_y_x_fb_y_x_fa_x_x = fa_x_z * fa_y_x_fb_y_y - fa_x_y * fa_y_x_fb_y_z;
-      const T fa_y_x_fb_y_x_fa_x_y = fa_x_x * fa_y_x_fb_y_z - fa_x_z * fa_y_x_fb_y_x;
-      const T H4_13 = fa_x_y * fb_y_x;
-      const T fa_x_x_fb_y_z = fa_x_x * fb_y_y - H4_13;
-      const T H4_14 = fa_x_y * fb_y_z;
-      const T fa_x_x_fb_y_x = H4_14 - fa_x_z * fb_y_y;
-      const T fa_x_x_fb_y_y = fa_x_z * fb_y_x - fa_x_x * fb_y_z;
-      const T H4_15 = lambda[0] * (fa_y_x_fb_y_x_fa_x_x + fa_y_y * fa_x_x_fb_y_z - fa_y_z *
-          fa_x_x_fb_y_y);
-      const T H4_16 = H4_11 + H4_12 * H4_15;
-      const T H4_17 = H4_16 * dot_fa_y_x_fb_y_fa_x - H4_7;
-      const T H4_18 = H4_5 * fa_y_z - H4_6 + H4_17 * fa_y_x_fb_y_z;
-      const T H4_19 = H4_8 * fb_y_y;
-      const T H4_20 = H4_19 + H4_4 * fa_x_x_fb_y_y;
-      const T H4_21 = fa_x_x * H4_17;
-      const T H4_22 = H4_4 * fa_x_z;
-      const T H4_23 = fa_x_y * H4_17 - H4_22;
-      const T H4_24 = H4_16 * dot_fa_y_fb_y - H4_15 * H4_2;
-      const T H4_25 = H4_20 - H4_21 * fb_y_y + fb_y_x * H4_23 + fb_y_z * H4_24;
-      const T H4_26 = H4_4 * fa_y_x_fb_y_z;
-      const T H4_27 = H4_5 * fa_y_y + H4_26 + H4_17 * fa_y_x_fb_y_y;
-      const T H4_28 = H4_8 * fb_y_z;
-      const T H4_29 = H4_28 + H4_4 * fa_x_x_fb_y_z;
-      const T H4_30 = H4_4 * fa_x_y;
-      const T H4_31 = H4_30 + fa_x_z * H4_17;
-      const T H4_32 = H4_21 * fb_y_z - H4_29 - fb_y_x * H4_31 + fb_y_y * H4_24;
-      const T H4_1_2 = H4_17 * fa_y_x_fb_y_x - H4_4 * H4_1;
-      const T H4_2_2 = fb_y_x * H4_24 + fb_y_y * H4_31 - fb_y_z * H4_23;
-      const T H4_1_3 = H4_8 * fa_y_y;
-      const T H4_2_3 = fa_x_x * H4_4;
-      const T H4_3_2 = H4_24 - H4_2_3;
-      const T H4_4_2 = H4_21 * fa_y_y - H4_1_3 - fa_y_x * H4_23 + fa_y_z * H4_3_2;
-      const T H4_5_2 = H4_8 * fa_y_z;
-      const T H4_6_2 = H4_5_2 - H4_21 * fa_y_z + fa_y_x * H4_31 + fa_y_y * H4_3_2;
-      const T H4_1_4 = fa_y_x * H4_24 - fa_y_y * H4_31 + fa_y_z * H4_23 + H4_4 *
-          (fa_x_y * fa_y_y + fa_x_z * fa_y_z);
-      const T H5_1 = fb_y_y * H4_4;
-      const T H5_2 = H4_4 * fa_y_x_fb_y_x;
-      const T H5_3 = H4_3 * fa_y_x_fb_y_y;
-      const T H5_4 = H4_10 * fa_y_x_fb_y_y;
-      const T H5_5 = lambda[0] * (fa_y_x_fb_y_x_fa_x_y - fa_y_x * fa_x_x_fb_y_z + fa_y_z *
-          fa_x_x_fb_y_x);
-      const T H5_6 = H5_4 + H4_12 * H5_5;
-      const T H5_7 = H5_6 * dot_fa_y_x_fb_y_fa_x - H5_3;
-      const T H5_8 = H5_1 * fa_y_z + H5_2 + H5_7 * fa_y_x_fb_y_z;
-      const T H5_9 = H4_8 * fb_y_x;
-      const T H5_10 = H5_9 + H4_4 * fa_x_x_fb_y_x;
-      const T H5_11 = H4_22 + fa_x_x * H5_7;
-      const T H5_12 = H5_6 * dot_fa_y_fb_y - H5_5 * H4_2;
-      const T H5_13 = H4_13 * H5_7 - H5_10 - fb_y_y * H5_11 + fb_y_z * H5_12;
-      const T H5_14 = H4_5 * fa_y_x;
-      const T H5_15 = fb_y_z * H4_4;
-      const T H5_16 = H5_7 * fa_y_x_fb_y_y - H5_14 - H5_15 * fa_y_z;
-      const T H5_17 = fa_x_z * H5_7 - H4_2_3;
-      const T H5_18 = fb_y_y * H5_12 - fb_y_x * H5_17 + fb_y_z * H5_11;
-      const T H5_1_2 = H5_1 * fa_y_x - H4_26 + H5_7 * fa_y_x_fb_y_x;
-      const T H5_2_2 = H4_29 - H4_14 * H5_7 + fb_y_x * H5_12 + fb_y_y * H5_17;
-      const T H5_1_3 = H4_8 * fa_y_x;
-      const T H5_2_3 = H5_1_3 + fa_y_y * H5_11 + fa_y_z * H5_12 - fa_x_y *
-          (H4_4 * fa_y_z + fa_y_x * H5_7);
-      const T H5_3_2 = H4_2_3 * fa_y_x;
-      const T H5_4_2 = H5_3_2 + fa_y_x * H5_17 + fa_y_y * H5_12 + fa_y_z * (H4_22 - H5_11);
-      const T H5_1_4 = fa_y_x * H5_12 - H4_5_2 - fa_y_y * H5_17 + fa_x_y *
-          (fa_y_z * H5_7 - H4_4 * fa_y_x);
-      const T H6_1 = H4_3 * fa_y_x_fb_y_z;
-      const T H6_2 = H4_10 * fa_y_x_fb_y_z;
-      const T fa_y_x_fb_y_x_fa_x_z = fa_x_y * fa_y_x_fb_y_x - fa_x_x * fa_y_x_fb_y_y;
-      const T H6_3 = lambda[0] * (fa_y_x_fb_y_x_fa_x_z + fa_y_x * fa_x_x_fb_y_y - fa_y_y *
-          fa_x_x_fb_y_x);
-      const T H6_4 = H6_2 + H4_12 * H6_3;
-      const T H6_5 = H6_4 * dot_fa_y_x_fb_y_fa_x - H6_1;
-      const T H6_6 = H6_5 * fa_y_x_fb_y_z - H5_14 - H5_1 * fa_y_y;
-      const T H6_7 = H4_2_3 + fa_x_y * H6_5;
-      const T H6_8 = fa_x_x * H6_5 - H4_30;
-      const T H6_9 = H6_4 * dot_fa_y_fb_y - H6_3 * H4_2;
-      const T H6_10 = fb_y_x * H6_7 - fb_y_y * H6_8 + fb_y_z * H6_9;
-      const T H6_11 = H5_15 * fa_y_y - H5_2 + H6_5 * fa_y_x_fb_y_y;
-      const T H6_12 = fa_x_z * H6_5;
-      const T H6_13 = H5_10 - H6_12 * fb_y_x + fb_y_y * H6_9 + fb_y_z * H6_8;
-      const T H6_1_2 = H5_15 * fa_y_x + H4_6 + H6_5 * fa_y_x_fb_y_x;
-      const T H6_2_2 = H6_12 * fb_y_y - H4_20 + fb_y_x * H6_9 - fb_y_z * H6_7;
-      const T H6_1_3 = H5_3_2 - fa_y_x * H6_7 + fa_y_z * H6_9 + fa_y_y * (H4_30 + H6_8);
-      const T H6_2_3 = H6_9 - H4_22;
-      const T H6_3_2 = H6_12 * fa_y_x - H5_1_3 - fa_y_z * H6_8 + fa_y_y * H6_2_3;
-      const T H6_1_4 = H4_1_3 - H6_12 * fa_y_y + fa_y_z * H6_7 + fa_y_x * H6_2_3;
       const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
       const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-      const T H10_1 = H5_1 * fa_z_y;
+      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
       const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T H10_2 = H5_15 * fa_z_z;
-      const T H10_3 = fa_z_z * fb_y_y - fa_z_y * fb_y_z;
-      const T H10_4 = H4_4 * H4_9;
-      const T H10_5 = H4_11 + H10_4 * H10_3;
-      const T H10_6 = H4_3 * H10_3 - H10_5 * dot_fa_y_fb_y;
-      const T H10_7 = H4_7 - H10_5 * dot_fa_y_x_fb_y_fa_x;
-      const T H10_8 = fb_y_z * H10_6 - H4_19 - H10_7 * fa_x_x_fb_y_z;
-      const T H10_9 = H4_28 + fb_y_y * H10_6 - H10_7 * fa_x_x_fb_y_y;
-      const T H10_1_2 = fb_y_x * H10_6 - H10_7 * fa_x_x_fb_y_x;
-      const T H10_1_3 = H4_1_3 - H4_4 * fa_z_y;
-      const T H10_2_2 = H10_1_3 + fa_y_z * H10_6 + fa_z_z * H10_7;
-      const T H10_3_2 = H4_4 * fa_z_z - H4_5_2;
-      const T H10_4_2 = H10_3_2 + fa_y_y * H10_6 + fa_z_y * H10_7;
-      const T H10_1_4 = fa_y_x * H10_6 + fa_z_x * H10_7;
-      const T H11_1 = fa_z_x * fb_y_z - fa_z_z * fb_y_x;
-      const T H11_2 = H5_4 + H10_4 * H11_1;
-      const T H11_3 = H4_3 * H11_1 - H11_2 * dot_fa_y_fb_y;
-      const T H11_4 = H5_3 - H11_2 * dot_fa_y_x_fb_y_fa_x;
-      const T H11_5 = H5_9 + fb_y_z * H11_3 - H11_4 * fa_x_x_fb_y_z;
-      const T H11_6 = fb_y_y * H11_3 - H11_4 * fa_x_x_fb_y_y;
-      const T H11_1_2 = H4_5 * fa_z_x;
-      const T H11_2_2 = fb_y_x * H11_3 - H4_28 - H11_4 * fa_x_x_fb_y_x;
-      const T H11_1_3 = H4_4 * fa_z_x - H5_1_3;
-      const T H11_2_3 = H11_1_3 + fa_y_z * H11_3 + fa_z_z * H11_4;
-      const T H11_3_2 = fa_y_y * H11_3 + fa_z_y * H11_4;
-      const T H11_1_4 = fa_y_x * H11_3 - H10_3_2 + fa_z_x * H11_4;
-      const T H12_1 = fa_z_y * fb_y_x - fa_z_x * fb_y_y;
-      const T H12_2 = H6_2 + H10_4 * H12_1;
-      const T H12_3 = H4_3 * H12_1 - H12_2 * dot_fa_y_fb_y;
-      const T H12_4 = H6_1 - H12_2 * dot_fa_y_x_fb_y_fa_x;
-      const T H12_5 = fb_y_z * H12_3 - H12_4 * fa_x_x_fb_y_z;
-      const T H12_6 = fb_y_y * H12_3 - H5_9 - H12_4 * fa_x_x_fb_y_y;
-      const T H12_1_2 = H4_19 + fb_y_x * H12_3 - H12_4 * fa_x_x_fb_y_x;
-      const T H12_1_3 = fa_y_z * H12_3 + fa_z_z * H12_4;
-      const T H12_2_2 = fa_y_y * H12_3 - H11_1_3 + fa_z_y * H12_4;
-      const T H12_1_4 = fa_y_x * H12_3 - H10_1_3 + fa_z_x * H12_4;
-      H[3][3] = fa_x_y * H4_18 + fa_y_y * H4_25 - fa_x_z * H4_27 - fa_y_z * H4_32;
-      H[3][4] = fa_x_z * H4_1_2 - fa_x_x * H4_18 - fa_y_x * H4_25 + fa_y_z * H4_2_2;
-      H[3][5] = fa_x_x * H4_27 + fa_y_x * H4_32 - fa_x_y * H4_1_2 - fa_y_y * H4_2_2;
-      H[3][9] = fb_y_y * H4_4_2 - fb_y_z * H4_6_2;
-      H[3][10] = fb_y_z * H4_1_4 - fb_y_x * H4_4_2;
-      H[3][11] = fb_y_x * H4_6_2 - fb_y_y * H4_1_4;
-      H[4][3] = fa_x_y * H5_8 + fa_y_y * H5_13 - fa_x_z * H5_16 - fa_y_z * H5_18;
-      H[4][4] = fa_x_z * H5_1_2 - fa_x_x * H5_8 - fa_y_x * H5_13 + fa_y_z * H5_2_2;
-      H[4][5] = fa_x_x * H5_16 + fa_y_x * H5_18 - fa_x_y * H5_1_2 - fa_y_y * H5_2_2;
-      H[4][9] = fb_y_y * H5_2_3 - fb_y_z * H5_4_2;
-      H[4][10] = fb_y_z * H5_1_4 - fb_y_x * H5_2_3;
-      H[4][11] = fb_y_x * H5_4_2 - fb_y_y * H5_1_4;
-      H[5][3] = fa_x_y * H6_6 + fa_y_y * H6_10 - fa_x_z * H6_11 - fa_y_z * H6_13;
-      H[5][4] = fa_x_z * H6_1_2 - fa_x_x * H6_6 - fa_y_x * H6_10 + fa_y_z * H6_2_2;
-      H[5][5] = fa_x_x * H6_11 + fa_y_x * H6_13 - fa_x_y * H6_1_2 - fa_y_y * H6_2_2;
-      H[5][9] = fb_y_y * H6_1_3 - fb_y_z * H6_3_2;
-      H[5][10] = fb_y_z * H6_1_4 - fb_y_x * H6_1_3;
-      H[5][11] = fb_y_x * H6_3_2 - fb_y_y * H6_1_4;
-      H[9][3] = H10_1 + H10_2 + fa_y_y * H10_8 - fa_y_z * H10_9 - H10_7 * fa_y_x_fb_y_x_fa_x_x;
-      H[9][4] = fa_y_z * H10_1_2 - H5_1 * fa_z_x - fa_y_x * H10_8 - H10_7 * fa_y_x_fb_y_x_fa_x_y;
-      H[9][5] = fa_y_x * H10_9 - H5_15 * fa_z_x - fa_y_y * H10_1_2 - H10_7 * fa_y_x_fb_y_x_fa_x_z;
-      H[9][9] = fb_y_y * H10_2_2 - fb_y_z * H10_4_2;
-      H[9][10] = fb_y_z * H10_1_4 - fb_y_x * H10_2_2;
-      H[9][11] = fb_y_x * H10_4_2 - fb_y_y * H10_1_4;
-      H[10][3] = fa_y_y * H11_5 - H4_5 * fa_z_y - fa_y_z * H11_6 - H11_4 * fa_y_x_fb_y_x_fa_x_x;
-      H[10][4] = H11_1_2 + H10_2 - fa_y_x * H11_5 + fa_y_z * H11_2_2 - H11_4 * fa_y_x_fb_y_x_fa_x_y;
-      H[10][5] = fa_y_x * H11_6 - H5_15 * fa_z_y - fa_y_y * H11_2_2 - H11_4 * fa_y_x_fb_y_x_fa_x_z;
-      H[10][9] = fb_y_y * H11_2_3 - fb_y_z * H11_3_2;
-      H[10][10] = fb_y_z * H11_1_4 - fb_y_x * H11_2_3;
-      H[10][11] = fb_y_x * H11_3_2 - fb_y_y * H11_1_4;
-      H[11][3] = fa_y_y * H12_5 - H4_5 * fa_z_z - fa_y_z * H12_6 - H12_4 * fa_y_x_fb_y_x_fa_x_x;
-      H[11][4] = fa_y_z * H12_1_2 - H5_1 * fa_z_z - fa_y_x * H12_5 - H12_4 * fa_y_x_fb_y_x_fa_x_y;
-      H[11][5] = H11_1_2 + H10_1 + fa_y_x * H12_6 - fa_y_y * H12_1_2 - H12_4 * fa_y_x_fb_y_x_fa_x_z;
-      H[11][9] = fb_y_y * H12_1_3 - fb_y_z * H12_2_2;
-      H[11][10] = fb_y_z * H12_1_4 - fb_y_x * H12_1_3;
-      H[11][11] = fb_y_x * H12_2_2 - fb_y_y * H12_1_4;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+      const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+      const T H4_1 = inverse(dot_fa_y_fb_y * dot_fa_y_fb_y + dot_fa_z_fb_y * dot_fa_z_fb_y);
+      const T H4_2 = lambda[0] * H4_1;
+      const T H4_3 = dot_fa_z_fb_y * H4_2;
+      const T H4_4 = H4_3 * fb_y_y;
+      const T H4_5 = fa_z_z * fb_y_y - fa_z_y * fb_y_z;
+      const T H4_6 = T(2) * H4_1 * H4_2;
+      const T H4_7 = fa_y_z * fb_y_y - fa_y_y * fb_y_z;
+      const T H4_8 = H4_6 * (dot_fa_y_fb_y * H4_5 - dot_fa_z_fb_y * H4_7);
+      const T H4_9 = H4_8 * dot_fa_y_fb_y - H4_2 * H4_5;
+      const T H4_10 = H4_4 + fb_y_z * H4_9;
+      const T H4_11 = dot_fa_y_fb_y * H4_2;
+      const T H4_12 = H4_11 * fb_y_y;
+      const T H4_13 = H4_2 * H4_7 + H4_8 * dot_fa_z_fb_y;
+      const T H4_14 = fb_y_z * H4_13 - H4_12;
+      const T H4_15 = H4_3 * fb_y_z;
+      const T H4_16 = fb_y_y * H4_9 - H4_15;
+      const T H4_17 = H4_11 * fb_y_z;
+      const T H4_18 = H4_17 + fb_y_y * H4_13;
+      const T H4_19 = fa_y_y * H4_10 + fa_z_y * H4_14 - fa_y_z * H4_16 - fa_z_z * H4_18;
+      const T H4_1_2 = fa_y_z * H4_9 + fa_z_z * H4_13;
+      const T H4_2_2 = fb_y_x * H4_1_2 - fa_y_x * H4_10 - fa_z_x * H4_14;
+      const T H4_1_3 = fa_y_y * H4_9 + fa_z_y * H4_13;
+      const T H4_2_3 = fa_y_x * H4_16 + fa_z_x * H4_18 - fb_y_x * H4_1_3;
+      const T H4_1_4 = H4_2 * (fa_y_y * dot_fa_z_fb_y - fa_z_y * dot_fa_y_fb_y);
+      const T H4_2_4 = H4_1_2 - H4_1_4;
+      const T H4_3_2 = H4_2 * (fa_z_z * dot_fa_y_fb_y - fa_y_z * dot_fa_z_fb_y);
+      const T H4_4_2 = H4_1_3 - H4_3_2;
+      const T H4_5_2 = fb_y_y * H4_2_4 - fb_y_z * H4_4_2;
+      const T H4_1_5 = fa_y_x * H4_9 + fa_z_x * H4_13;
+      const T H4_2_5 = fb_y_z * H4_1_5 - fb_y_x * H4_2_4;
+      const T H4_1_6 = fb_y_x * H4_4_2 - fb_y_y * H4_1_5;
+      const T H5_1 = H4_3 * fb_y_x;
+      const T H5_2 = fa_z_x * fb_y_z - fa_z_z * fb_y_x;
+      const T H5_3 = fa_y_x * fb_y_z - fa_y_z * fb_y_x;
+      const T H5_4 = H4_6 * (dot_fa_y_fb_y * H5_2 - H5_3 * dot_fa_z_fb_y);
+      const T H5_5 = H5_4 * dot_fa_y_fb_y - H4_2 * H5_2;
+      const T H5_6 = fb_y_z * H5_5 - H5_1;
+      const T H5_7 = H4_11 * fb_y_x;
+      const T H5_8 = H4_2 * H5_3 + H5_4 * dot_fa_z_fb_y;
+      const T H5_9 = H5_7 + fb_y_z * H5_8;
+      const T H5_10 = fa_y_z * H5_5 + fa_z_z * H5_8;
+      const T H5_11 = fa_y_y * H5_6 + fa_z_y * H5_9 - fb_y_y * H5_10;
+      const T H5_1_2 = H4_15 + fb_y_x * H5_5;
+      const T H5_2_2 = fb_y_x * H5_8 - H4_17;
+      const T H5_3_2 = fa_y_z * H5_1_2 - fa_y_x * H5_6 - fa_z_x * H5_9 + fa_z_z * H5_2_2;
+      const T H5_1_3 = fa_y_x * H5_5 + fa_z_x * H5_8;
+      const T H5_2_3 = fb_y_y * H5_1_3 - fa_y_y * H5_1_2 - fa_z_y * H5_2_2;
+      const T H5_1_4 = H4_2 * (fa_z_x * dot_fa_y_fb_y - fa_y_x * dot_fa_z_fb_y);
+      const T H5_2_4 = H5_10 - H5_1_4;
+      const T H5_3_3 = fa_y_y * H5_5 + fa_z_y * H5_8;
+      const T H5_4_2 = fb_y_y * H5_2_4 - fb_y_z * H5_3_3;
+      const T H5_1_5 = H5_1_3 + H4_3_2;
+      const T H5_2_5 = fb_y_z * H5_1_5 - fb_y_x * H5_2_4;
+      const T H5_1_6 = fb_y_x * H5_3_3 - fb_y_y * H5_1_5;
+      const T H6_1 = fa_z_y * fb_y_x - fa_z_x * fb_y_y;
+      const T H6_2 = fa_y_y * fb_y_x - fa_y_x * fb_y_y;
+      const T H6_3 = H4_6 * (dot_fa_y_fb_y * H6_1 - H6_2 * dot_fa_z_fb_y);
+      const T H6_4 = H6_3 * dot_fa_y_fb_y - H4_2 * H6_1;
+      const T H6_5 = H5_1 + fb_y_y * H6_4;
+      const T H6_6 = H4_2 * H6_2 + H6_3 * dot_fa_z_fb_y;
+      const T H6_7 = fb_y_y * H6_6 - H5_7;
+      const T H6_8 = fa_y_y * H6_4 + fa_z_y * H6_6;
+      const T H6_9 = fb_y_z * H6_8 - fa_y_z * H6_5 - fa_z_z * H6_7;
+      const T H6_1_2 = fb_y_x * H6_4 - H4_4;
+      const T H6_2_2 = H4_12 + fb_y_x * H6_6;
+      const T H6_3_2 = fa_y_x * H6_4 + fa_z_x * H6_6;
+      const T H6_4_2 = fa_y_z * H6_1_2 + fa_z_z * H6_2_2 - fb_y_z * H6_3_2;
+      const T H6_1_3 = fa_y_x * H6_5 + fa_z_x * H6_7 - fa_y_y * H6_1_2 - fa_z_y * H6_2_2;
+      const T H6_1_4 = fa_y_z * H6_4 + fa_z_z * H6_6;
+      const T H6_2_3 = H6_8 + H5_1_4;
+      const T H6_3_3 = fb_y_y * H6_1_4 - fb_y_z * H6_2_3;
+      const T H6_1_5 = H6_3_2 + H4_1_4;
+      const T H6_2_4 = fb_y_z * H6_1_5 - fb_y_x * H6_1_4;
+      const T H6_1_6 = fb_y_x * H6_2_3 - fb_y_y * H6_1_5;
+      H[3][3] = H4_19;
+      H[3][4] = H4_2_2;
+      H[3][5] = H4_2_3;
+      H[3][9] = H4_5_2;
+      H[3][10] = H4_2_5;
+      H[3][11] = H4_1_6;
+      H[4][3] = H5_11;
+      H[4][4] = H5_3_2;
+      H[4][5] = H5_2_3;
+      H[4][9] = H5_4_2;
+      H[4][10] = H5_2_5;
+      H[4][11] = H5_1_6;
+      H[5][3] = H6_9;
+      H[5][4] = H6_4_2;
+      H[5][5] = H6_1_3;
+      H[5][9] = H6_3_3;
+      H[5][10] = H6_2_4;
+      H[5][11] = H6_1_6;
+      H[9][3] = -H4_19;
+      H[9][4] = -H4_2_2;
+      H[9][5] = -H4_2_3;
+      H[9][9] = -H4_5_2;
+      H[9][10] = -H4_2_5;
+      H[9][11] = -H4_1_6;
+      H[10][3] = -H5_11;
+      H[10][4] = -H5_3_2;
+      H[10][5] = -H5_2_3;
+      H[10][9] = -H5_4_2;
+      H[10][10] = -H5_2_5;
+      H[10][11] = -H5_1_6;
+      H[11][3] = -H6_9;
+      H[11][4] = -H6_4_2;
+      H[11][5] = -H6_1_3;
+      H[11][9] = -H6_3_3;
+      H[11][10] = -H6_2_4;
+      H[11][11] = -H6_1_6;
     }
 
     struct a_immovable;
@@ -689,39 +554,31 @@ struct spindle::turn::a_immovable : spindle::turn {
     T wb_x, wb_y, wb_z;
   };
 
-  // C and J: 38 +, 64 *, 1 /, 1 <, 1 call
+  // C and J: 29 +, 49 *, 1 /, 1 <, 1 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
     using std::atan2;
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T fa_y_x_fb_y_x = fa_y_y * fb_y_z - fa_y_z * fb_y_y;
-    const T fa_y_x_fb_y_y = fa_y_z * fb_y_x - fa_y_x * fb_y_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fa_y_x_fb_y_z = fa_y_x * fb_y_y - fa_y_y * fb_y_x;
-    const T dot_fa_y_x_fb_y_fa_x = fa_x_x * fa_y_x_fb_y_x + fa_x_y * fa_y_x_fb_y_y + fa_x_z *
-        fa_y_x_fb_y_z;
-    const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-    const T wb_x_1 = inverse(dot_fa_y_x_fb_y_fa_x * dot_fa_y_x_fb_y_fa_x + dot_fa_y_fb_y *
-        dot_fa_y_fb_y);
-    const T wb_x_2 = dot_fa_y_x_fb_y_fa_x * wb_x_1;
-    const T wb_x_3 = dot_fa_y_fb_y * wb_x_1;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T wb_x_4 = wb_x_3 * fa_z_z - wb_x_2 * fa_y_z;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+    const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
+    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+    const T wb_x_1 = inverse(dot_fa_y_fb_y * dot_fa_y_fb_y + dot_fa_z_fb_y * dot_fa_z_fb_y);
+    const T wb_x_2 = dot_fa_z_fb_y * wb_x_1;
+    const T wb_x_3 = dot_fa_y_fb_y * wb_x_1;
+    const T wb_x_4 = wb_x_3 * fa_z_z - wb_x_2 * fa_y_z;
     const T wb_x_5 = wb_x_3 * fa_z_y - wb_x_2 * fa_y_y;
     const T wb_y_1 = wb_x_3 * fa_z_x - wb_x_2 * fa_y_x;
-    C[0] = atan2(dot_fa_y_x_fb_y_fa_x, dot_fa_y_fb_y);
+    C[0] = atan2(dot_fa_z_fb_y, dot_fa_y_fb_y);
     J.wb_x = fb_y_y * wb_x_4 - fb_y_z * wb_x_5;
     J.wb_y = fb_y_z * wb_y_1 - fb_y_x * wb_x_4;
     J.wb_z = fb_y_x * wb_x_5 - fb_y_y * wb_y_1;
@@ -787,7 +644,8 @@ struct spindle::turn::a_immovable : spindle::turn {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& mb = m[1];
-    K[0] = mb.I * (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+    const T dot_axis_turn_axis_turn = J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z;
+    K[0] = mb.I * dot_axis_turn_axis_turn;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
@@ -820,67 +678,21 @@ struct spindle::turn::a_immovable : spindle::turn {
 struct spindle::turn::b_immovable : spindle::turn {
   static constexpr int immovable_body = 1;
 
-  template <class T>
-  struct Jacobian {
-    T wa_x, wa_y, wa_z;
-  };
-
-  // C and J: 41 +, 70 *, 1 /, 1 <, 1 call
-  template <class T>
-  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
-      Jacobian<T>& J) {
-    using std::atan2;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T fa_y_x_fb_y_x = fa_y_y * fb_y_z - fa_y_z * fb_y_y;
-    const T fa_y_x_fb_y_y = fa_y_z * fb_y_x - fa_y_x * fb_y_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fa_y_x_fb_y_z = fa_y_x * fb_y_y - fa_y_y * fb_y_x;
-    const T dot_fa_y_x_fb_y_fa_x = fa_x_x * fa_y_x_fb_y_x + fa_x_y * fa_y_x_fb_y_y + fa_x_z *
-        fa_y_x_fb_y_z;
-    const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-    const T wa_x_1 = inverse(dot_fa_y_x_fb_y_fa_x * dot_fa_y_x_fb_y_fa_x + dot_fa_y_fb_y *
-        dot_fa_y_fb_y);
-    const T wa_x_2 = dot_fa_y_x_fb_y_fa_x * wa_x_1;
-    const T wa_x_3 = dot_fa_y_fb_y * wa_x_1;
-    const T fa_x_x_fb_y_z = fa_x_x * fb_y_y - fa_x_y * fb_y_x;
-    const T wa_x_4 = wa_x_2 * fb_y_z + wa_x_3 * fa_x_x_fb_y_z;
-    const T fa_x_x_fb_y_x = fa_x_y * fb_y_z - fa_x_z * fb_y_y;
-    const T fa_x_x_fb_y_y = fa_x_z * fb_y_x - fa_x_x * fb_y_z;
-    const T wa_x_5 = wa_x_2 * fb_y_y + wa_x_3 * fa_x_x_fb_y_y;
-    const T fa_y_x_fb_y_x_fa_x_x = fa_x_z * fa_y_x_fb_y_y - fa_x_y * fa_y_x_fb_y_z;
-    const T fa_y_x_fb_y_x_fa_x_y = fa_x_x * fa_y_x_fb_y_z - fa_x_z * fa_y_x_fb_y_x;
-    const T wa_y_1 = wa_x_2 * fb_y_x + wa_x_3 * fa_x_x_fb_y_x;
-    const T fa_y_x_fb_y_x_fa_x_z = fa_x_y * fa_y_x_fb_y_x - fa_x_x * fa_y_x_fb_y_y;
-    C[0] = atan2(dot_fa_y_x_fb_y_fa_x, dot_fa_y_fb_y);
-    J.wa_x = fa_y_z * wa_x_5 - fa_y_y * wa_x_4 - wa_x_3 * fa_y_x_fb_y_x_fa_x_x;
-    J.wa_y = fa_y_x * wa_x_4 - fa_y_z * wa_y_1 - wa_x_3 * fa_y_x_fb_y_x_fa_x_y;
-    J.wa_z = fa_y_y * wa_y_1 - fa_y_x * wa_x_5 - wa_x_3 * fa_y_x_fb_y_x_fa_x_z;
-  }
-
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    const T K11_1 = J.wa_z * T(2);
-    K[0] = ma.Izz * J.wa_z * J.wa_z + J.wa_x *
-        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
-        (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
+    const T K11_1 = J.axis_turn_z * T(2);
+    K[0] = ma.Izz * J.axis_turn_z * J.axis_turn_z + J.axis_turn_x *
+        (ma.Ixx * J.axis_turn_x + ma.Ixy * J.axis_turn_y * T(2) + K11_1 * ma.Ixz) + J.axis_turn_y *
+        (ma.Iyy * J.axis_turn_y + K11_1 * ma.Iyz);
   }
 
   // J v: 2 +, 3 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz;
+    Jv[0] = J.axis_turn_x * va.wx + J.axis_turn_y * va.wy + J.axis_turn_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 9 +, 12 *
@@ -889,9 +701,9 @@ struct spindle::turn::b_immovable : spindle::turn {
       Velocity<T> (&v)[2]) {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
-    const T v1_1 = J.wa_x * lambda[0];
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1 = J.axis_turn_x * lambda[0];
+    const T v1_2 = lambda[0] * J.axis_turn_y;
+    const T v1_3 = lambda[0] * J.axis_turn_z;
     v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
     v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
     v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
@@ -903,9 +715,9 @@ struct spindle::turn::b_immovable : spindle::turn {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = J.axis_turn_x;
+    D[0][4] = J.axis_turn_y;
+    D[0][5] = J.axis_turn_z;
   }
 
   // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
@@ -916,9 +728,9 @@ struct spindle::turn::b_immovable : spindle::turn {
       for (T& entry : row) entry = T(0);
     }
     const InverseMass<T>& ma = m[0];
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = ma.Ixx * J.axis_turn_x + ma.Ixy * J.axis_turn_y + ma.Ixz * J.axis_turn_z;
+    D[0][4] = ma.Ixy * J.axis_turn_x + ma.Iyy * J.axis_turn_y + ma.Iyz * J.axis_turn_z;
+    D[0][5] = ma.Ixz * J.axis_turn_x + ma.Iyz * J.axis_turn_y + ma.Izz * J.axis_turn_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
@@ -926,7 +738,9 @@ struct spindle::turn::b_immovable : spindle::turn {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_axis_turn_axis_turn = J.axis_turn_x * J.axis_turn_x + J.axis_turn_y *
+        J.axis_turn_y + J.axis_turn_z * J.axis_turn_z;
+    K[0] = ma.I * dot_axis_turn_axis_turn;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
@@ -936,9 +750,9 @@ struct spindle::turn::b_immovable : spindle::turn {
     const Velocity<T> va = v[0];
     const IsotropicInverseMass<T>& ma = m[0];
     const T v1_1 = ma.I * lambda[0];
-    v[0].wx = va.wx + v1_1 * J.wa_x;
-    v[0].wy = va.wy + v1_1 * J.wa_y;
-    v[0].wz = va.wz + v1_1 * J.wa_z;
+    v[0].wx = va.wx + v1_1 * J.axis_turn_x;
+    v[0].wy = va.wy + v1_1 * J.axis_turn_y;
+    v[0].wz = va.wz + v1_1 * J.axis_turn_z;
   }
 
   // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
@@ -949,9 +763,9 @@ struct spindle::turn::b_immovable : spindle::turn {
       for (T& entry : row) entry = T(0);
     }
     const IsotropicInverseMass<T>& ma = m[0];
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = ma.I * J.axis_turn_x;
+    D[0][4] = ma.I * J.axis_turn_y;
+    D[0][5] = ma.I * J.axis_turn_z;
   }
 };
 

@@ -354,7 +354,7 @@ struct surface {
     D[0][13] = D1_1_2 * b.e2 - D1_2_2 * b.e1 + D1_3_2 * b.e0;
   }
 
-  // -Jdot v - d/dt(dC/dt): 123 +, 159 *, 4 call
+  // -Jdot v - d/dt(dC/dt): 120 +, 156 *, 4 call
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -364,8 +364,17 @@ struct surface {
     const Velocity<T>& va = v[0];
     const Pose<T>& b = q[1];
     const Velocity<T>& vb = v[1];
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+    const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
+    const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T ra_d_x = b.x - a.x + rb_x;
@@ -374,17 +383,11 @@ struct surface {
     const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T d_x = ra_d_x - ra_x;
     const T d_y = ra_d_y - ra_y;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T ra_d_z = b.z - a.z + rb_z;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T d_z = ra_d_z - ra_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T s_x = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T s_y = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
     const T g1_1 = p.k * s_x;
     const T g1_2 = cos(g1_1);
@@ -392,28 +395,20 @@ struct surface {
     const T g1_4 = p.height * p.k;
     const T g1_5 = sin(g1_3) * g1_4;
     const T g1_6 = g1_2 * g1_5;
+    const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
+    const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
     const T g1_7 = sin(g1_1);
     const T g1_8 = g1_4 * cos(g1_3);
     const T g1_9 = g1_7 * g1_8;
-    const T n_x = fa_z_x - g1_6 * fa_x_x - g1_9 * fa_y_x;
-    const T n_y = fa_z_y - g1_6 * fa_x_y - g1_9 * fa_y_y;
-    const T rb_x_w_b_z = vb.wy * rb_x - vb.wx * rb_y;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T n_z = fa_z_z - g1_6 * fa_x_z - g1_9 * fa_y_z;
-    const T rb_x_w_b_x = vb.wz * rb_y - vb.wy * rb_z;
-    const T rb_x_w_b_y = vb.wx * rb_z - vb.wz * rb_x;
-    const T n_x_rb_x_w_b_x = n_y * rb_x_w_b_z - n_z * rb_x_w_b_y;
-    const T n_x_rb_x_w_b_y = n_z * rb_x_w_b_x - n_x * rb_x_w_b_z;
-    const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-    const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-    const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
-    const T g1_10 = g1_7 * p.k * g1_5;
-    const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-    const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-    const T dot_d_w_a_x_fa_x = d_x * w_a_x_fa_x_x + d_y * w_a_x_fa_x_y + d_z * w_a_x_fa_x_z;
     const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
     const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
+    const T g1_10 = g1_7 * p.k * g1_5;
+    const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
+    const T dot_d_w_a_x_fa_x = d_x * w_a_x_fa_x_x + d_y * w_a_x_fa_x_y + d_z * w_a_x_fa_x_z;
+    const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
     const T dot_d_w_a_x_fa_y = d_x * w_a_x_fa_y_x + d_y * w_a_x_fa_y_y + d_z * w_a_x_fa_y_z;
+    const T rb_x_w_b_x = vb.wz * rb_y - vb.wy * rb_z;
+    const T rb_x_w_b_y = vb.wx * rb_z - vb.wz * rb_x;
     const T g1_11 = va.x - vb.x;
     const T g1_12 = rb_x_w_b_x + g1_11;
     const T ra_x_w_a_x = va.wz * ra_y - va.wy * ra_z;
@@ -422,6 +417,7 @@ struct surface {
     const T g1_13 = va.y - vb.y;
     const T g1_14 = rb_x_w_b_y + g1_13;
     const T d_dot_y = ra_x_w_a_y - g1_14;
+    const T rb_x_w_b_z = vb.wy * rb_x - vb.wx * rb_y;
     const T g1_15 = va.z - vb.z;
     const T g1_16 = rb_x_w_b_z + g1_15;
     const T ra_x_w_a_z = va.wy * ra_x - va.wx * ra_y;
@@ -433,21 +429,25 @@ struct surface {
     const T s_y_dot = dot_d_w_a_x_fa_y + dot_d_dot_fa_y;
     const T g1_18 = g1_17 * s_y_dot - g1_10 * s_x_dot;
     const T g1_19 = g1_17 * s_x_dot - g1_10 * s_y_dot;
-    const T n_dot_z = w_a_x_fa_z_z - g1_6 * w_a_x_fa_x_z - g1_9 * w_a_x_fa_y_z - fa_x_z * g1_18 -
-        fa_y_z * g1_19;
-    const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
-    const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
     const T n_dot_x = w_a_x_fa_z_x - g1_6 * w_a_x_fa_x_x - g1_9 * w_a_x_fa_y_x - fa_x_x * g1_18 -
         fa_y_x * g1_19;
     const T n_dot_y = w_a_x_fa_z_y - g1_6 * w_a_x_fa_x_y - g1_9 * w_a_x_fa_y_y - fa_x_y * g1_18 -
         fa_y_y * g1_19;
+    const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
+    const T n_dot_z = w_a_x_fa_z_z - g1_6 * w_a_x_fa_x_z - g1_9 * w_a_x_fa_y_z - fa_x_z * g1_18 -
+        fa_y_z * g1_19;
     const T rb_x_n_dot_x = n_dot_z * rb_y - n_dot_y * rb_z;
     const T rb_x_n_dot_y = n_dot_x * rb_z - n_dot_z * rb_x;
-    const T rb_x_n_dot_n_x_rb_x_w_b_x = n_x_rb_x_w_b_x + rb_x_n_dot_x;
-    const T rb_x_n_dot_n_x_rb_x_w_b_y = n_x_rb_x_w_b_y + rb_x_n_dot_y;
-    const T n_x_rb_x_w_b_z = n_x * rb_x_w_b_y - n_y * rb_x_w_b_x;
+    const T n_z = fa_z_z - g1_6 * fa_x_z - g1_9 * fa_y_z;
+    const T n_x = fa_z_x - g1_6 * fa_x_x - g1_9 * fa_y_x;
+    const T n_y = fa_z_y - g1_6 * fa_x_y - g1_9 * fa_y_y;
+    const T n_x_rb_x_w_b_x = n_y * rb_x_w_b_z - n_z * rb_x_w_b_y;
+    const T n_x_rb_x_w_b_y = n_z * rb_x_w_b_x - n_x * rb_x_w_b_z;
+    const T rb_x_n_dot_n_x_rb_x_w_b_x = rb_x_n_dot_x + n_x_rb_x_w_b_x;
+    const T rb_x_n_dot_n_x_rb_x_w_b_y = rb_x_n_dot_y + n_x_rb_x_w_b_y;
     const T rb_x_n_dot_z = n_dot_y * rb_x - n_dot_x * rb_y;
-    const T rb_x_n_dot_n_x_rb_x_w_b_z = n_x_rb_x_w_b_z + rb_x_n_dot_z;
+    const T n_x_rb_x_w_b_z = n_x * rb_x_w_b_y - n_y * rb_x_w_b_x;
+    const T rb_x_n_dot_n_x_rb_x_w_b_z = rb_x_n_dot_z + n_x_rb_x_w_b_z;
     const T dot_w_b_rb_x_n_dot_n_x_rb_x_w_b = vb.wx * rb_x_n_dot_n_x_rb_x_w_b_x + vb.wy *
         rb_x_n_dot_n_x_rb_x_w_b_y + vb.wz * rb_x_n_dot_n_x_rb_x_w_b_z;
     const T ra_d_x_n_dot_x = ra_d_y * n_dot_z - ra_d_z * n_dot_y;
@@ -465,7 +465,7 @@ struct surface {
     C_t[0] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 346 +, 443 *, 4 call
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 343 +, 440 *, 4 call
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
       T (&H)[12][12]) {
@@ -515,7 +515,7 @@ struct surface {
     const T H1_1_4 = ra_z + d_z;
     const T H1_2_2 = ra_y + d_y;
     const T H1_3_2 = H1_1_2 * H1_1_4 - H1_1_3 * H1_2_2;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
     const T H1_1_5 = lambda[0] * fa_z_z;
     const T H1_2_3 = H1_7 * H1_9;
     const T H1_3_3 = H1_2 * H1_2_3;
@@ -524,8 +524,8 @@ struct surface {
     const T H1_6_2 = H1_2 * H1_5_2;
     const T H1_7_2 = H1_6_2 + d_x * H1_13;
     const T H1_8_2 = ra_x * H1_1_3 - H1_1_5 + fa_x_z * H1_4_2 + fa_y_z * H1_7_2 - H1_14 * H1_1_4;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
     const T H1_1_6 = lambda[0] * fa_z_y;
     const T H1_2_4 = H1_1_6 - ra_x * H1_1_2 - fa_x_y * H1_4_2 - fa_y_y * H1_7_2 + H1_14 * H1_2_2;
     const T H1_1_7 = rb_y * H1_1_3 - rb_z * H1_1_2;
@@ -620,8 +620,8 @@ struct surface {
     const T H10_5 = fa_x_x * H10_3 + fa_y_x * H10_4;
     const T H10_1_2 = fa_x_y * H10_3 + fa_y_y * H10_4;
     const T H10_1_3 = fa_x_z * H10_3 + fa_y_z * H10_4;
-    const T H10_1_4 = fa_z_y * rb_y;
-    const T H10_2_2 = fa_z_z * rb_z;
+    const T H10_1_4 = rb_y * fa_z_y;
+    const T H10_2_2 = rb_z * fa_z_z;
     const T H10_3_2 = H1_3_3 * rb_y;
     const T H10_4_2 = d_z * H10_3 - H10_3_2;
     const T H10_5_2 = H1_6_2 * rb_y;
@@ -643,7 +643,7 @@ struct surface {
     const T H11_2_2 = H11_1_4 + d_z * H11_3;
     const T H11_3_2 = H1_6_2 * rb_x;
     const T H11_4_2 = H11_3_2 + d_z * H11_4;
-    const T H11_1_5 = fa_z_x * rb_x;
+    const T H11_1_5 = rb_x * fa_z_x;
     const T H11_2_3 = d_x * H11_3 - H10_7;
     const T H11_3_3 = d_x * H11_4 - H10_9;
     const T H11_1_6 = H11_1_3 + H5_2_2;

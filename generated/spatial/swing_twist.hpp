@@ -10,12 +10,9 @@
 // K = inv_m_a E + S(ra) inv_I_a S(ra)' + inv_m_b E + S(rb) inv_I_b S(rb)'
 //
 // coordinate twist = twist(fa, fb)
-// J_twist = [ 0
-//           | -(1/(fa_x · fb_x + 1)) (fa_x + fb_x)'
-//           | 0
-//           | (1/(fa_x · fb_x + 1)) (fa_x + fb_x)' ]              (columns v_a | w_a | v_b | w_b)
-// K_twist = (fa_x + fb_x)' inv_I_a (fa_x + fb_x)/(fa_x · fb_x + 1)^2
-//           + (fa_x + fb_x)' inv_I_b (fa_x + fb_x)/(fa_x · fb_x + 1)^2
+// axis_twist = (1/(fa_x · fb_x + 1)) (fa_x + fb_x)
+// J_twist = [ 0 | -axis_twist' | 0 | axis_twist' ]                (columns v_a | w_a | v_b | w_b)
+// K_twist = axis_twist' inv_I_a axis_twist + axis_twist' inv_I_b axis_twist
 //
 // coordinate swing = angle(fa_x, fb_x)
 // J_swing = [ 0 | -unit(fa_x × fb_x)' | 0 | unit(fa_x × fb_x)' ]  (columns v_a | w_a | v_b | w_b)
@@ -611,7 +608,7 @@ struct swing_twist {
       C[0] = atan2(dot_fa_z_fb_y - dot_fa_y_fb_z, dot_fa_y_fb_y + dot_fa_z_fb_z);
     }
 
-    // C and J: 52 +, 72 *, 1 /, 1 <, 1 call
+    // C and J: 46 +, 66 *, 1 /, 1 <, 1 call
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -620,28 +617,28 @@ struct swing_twist {
       const Pose<T>& b = q[1];
       const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
       const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-      const T dot_fa_y_fb_z = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
-      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-      const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
-      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-      const T dot_fa_z_fb_z = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
       const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
       const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+      const T fb_z_x = fb_x_y * fb_y_z - fb_y_y * fb_x_z;
+      const T fb_z_y = fb_y_x * fb_x_z - fb_x_x * fb_y_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T fb_z_z = fb_x_x * fb_y_y - fb_y_x * fb_x_y;
+      const T dot_fa_y_fb_z = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+      const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+      const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+      const T dot_fa_z_fb_y = fb_y_x * fa_z_x + fb_y_y * fa_z_y + fb_y_z * fa_z_z;
+      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+      const T dot_fa_z_fb_z = fa_z_z * fb_z_z + fa_z_y * fb_z_y + fa_z_x * fb_z_x;
       const T fa_x_fb_x_x = fa_x_x + fb_x_x;
       const T fa_x_fb_x_y = fa_x_y + fb_x_y;
-      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
       const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
       const T wa_x_1 = inverse(dot_fa_x_fb_x + T(1));
       const T fa_x_fb_x_z = fa_x_z + fb_x_z;
@@ -1727,7 +1724,7 @@ struct swing_twist::twist::a_immovable : swing_twist::twist {
     T wb_x, wb_y, wb_z;
   };
 
-  // C and J: 52 +, 72 *, 1 /, 1 <, 1 call
+  // C and J: 46 +, 66 *, 1 /, 1 <, 1 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -1736,28 +1733,28 @@ struct swing_twist::twist::a_immovable : swing_twist::twist {
     const Pose<T>& b = q[1];
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T dot_fa_y_fb_z = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
-    const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-    const T dot_fa_z_fb_z = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
     const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+    const T fb_z_x = fb_x_y * fb_y_z - fb_y_y * fb_x_z;
+    const T fb_z_y = fb_y_x * fb_x_z - fb_x_x * fb_y_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T fb_z_z = fb_x_x * fb_y_y - fb_y_x * fb_x_y;
+    const T dot_fa_y_fb_z = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
+    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+    const T fa_z_x = fa_x_y * fa_y_z - fa_y_y * fa_x_z;
+    const T fa_z_y = fa_y_x * fa_x_z - fa_x_x * fa_y_z;
+    const T fa_z_z = fa_x_x * fa_y_y - fa_y_x * fa_x_y;
+    const T dot_fa_z_fb_y = fb_y_x * fa_z_x + fb_y_y * fa_z_y + fb_y_z * fa_z_z;
+    const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+    const T dot_fa_z_fb_z = fa_z_z * fb_z_z + fa_z_y * fb_z_y + fa_z_x * fb_z_x;
     const T fa_x_fb_x_x = fa_x_x + fb_x_x;
     const T fa_x_fb_x_y = fa_x_y + fb_x_y;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
     const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
     const T wb_x_1 = inverse(dot_fa_x_fb_x + T(1));
     const T fa_x_fb_x_z = fa_x_z + fb_x_z;

@@ -4,6 +4,8 @@
 //     the arm fa.y of a.
 // Source: Lesson 11-C, Body Coordinates Formulation (course of P. E. Nikravesh): spherical and n1
 //
+// s1 = (fa_x · fb_z)^2 + (fa_z · fb_z)^2
+// s2 = (fa_y · fb_x)^2 + (fa_y · fb_y)^2
 // C_pin = pa - pb
 // C_angular = fa_y · fb_z
 // J = [ E | -S(ra)         | -E | S(rb)
@@ -15,38 +17,14 @@
 //                       + (fa_y × fb_z)' inv_I_b (fa_y × fb_z)
 //
 // coordinate bend_a = atan2(fa_x · fb_z, fa_z · fb_z)
-// J_bend_a = [ 0
-//            | (((fa_z · fb_z)/((fa_x · fb_z)^2 + (fa_z · fb_z)^2)) (fa_x × fb_z) - ((fa_x ·
-//                fb_z)/((fa_x · fb_z)^2 + (fa_z · fb_z)^2)) (fa_z × fb_z))'
-//            | 0
-//            | -((((fa_z · fb_z)/((fa_x · fb_z)^2 + (fa_z · fb_z)^2)) fa_x - ((fa_x · fb_z)/((fa_x
-//                · fb_z)^2 + (fa_z · fb_z)^2)) fa_z) × fb_z)' ]
-//              (columns v_a | w_a | v_b | w_b)
-// K_bend_a = (((fa_z · fb_z)/((fa_x · fb_z)^2 + (fa_z · fb_z)^2)) (fa_x × fb_z) - ((fa_x ·
-//     fb_z)/((fa_x · fb_z)^2 + (fa_z · fb_z)^2)) (fa_z × fb_z))' inv_I_a (((fa_z · fb_z)/((fa_x ·
-//     fb_z)^2 + (fa_z · fb_z)^2)) (fa_x × fb_z) - ((fa_x · fb_z)/((fa_x · fb_z)^2 + (fa_z ·
-//     fb_z)^2)) (fa_z × fb_z))
-//            + ((((fa_z · fb_z)/((fa_x · fb_z)^2 + (fa_z · fb_z)^2)) fa_x - ((fa_x · fb_z)/((fa_x
-//                · fb_z)^2 + (fa_z · fb_z)^2)) fa_z) × fb_z)' inv_I_b ((((fa_z · fb_z)/((fa_x ·
-//                fb_z)^2 + (fa_z · fb_z)^2)) fa_x - ((fa_x · fb_z)/((fa_x · fb_z)^2 + (fa_z ·
-//                fb_z)^2)) fa_z) × fb_z)
+// axis_bend_a = (((fa_z · fb_z) fa_x - (fa_x · fb_z) fa_z)/s1) × fb_z
+// J_bend_a = [ 0 | axis_bend_a' | 0 | -axis_bend_a' ]             (columns v_a | w_a | v_b | w_b)
+// K_bend_a = axis_bend_a' inv_I_a axis_bend_a + axis_bend_a' inv_I_b axis_bend_a
 //
 // coordinate bend_b = atan2(fa_y · fb_x, fa_y · fb_y)
-// J_bend_b = [ 0
-//            | -((((fa_y · fb_y)/((fa_y · fb_x)^2 + (fa_y · fb_y)^2)) fb_x - ((fa_y · fb_x)/((fa_y
-//                · fb_x)^2 + (fa_y · fb_y)^2)) fb_y) × fa_y)'
-//            | 0
-//            | (((fa_y · fb_x)/((fa_y · fb_x)^2 + (fa_y · fb_y)^2)) (fa_y × fb_y) - ((fa_y ·
-//                fb_y)/((fa_y · fb_x)^2 + (fa_y · fb_y)^2)) (fa_y × fb_x))' ]
-//              (columns v_a | w_a | v_b | w_b)
-// K_bend_b = (((fa_y · fb_x)/((fa_y · fb_x)^2 + (fa_y · fb_y)^2)) (fa_y × fb_y) - ((fa_y ·
-//     fb_y)/((fa_y · fb_x)^2 + (fa_y · fb_y)^2)) (fa_y × fb_x))' inv_I_b (((fa_y · fb_x)/((fa_y ·
-//     fb_x)^2 + (fa_y · fb_y)^2)) (fa_y × fb_y) - ((fa_y · fb_y)/((fa_y · fb_x)^2 + (fa_y ·
-//     fb_y)^2)) (fa_y × fb_x))
-//            + ((((fa_y · fb_y)/((fa_y · fb_x)^2 + (fa_y · fb_y)^2)) fb_x - ((fa_y · fb_x)/((fa_y
-//                · fb_x)^2 + (fa_y · fb_y)^2)) fb_y) × fa_y)' inv_I_a ((((fa_y · fb_y)/((fa_y ·
-//                fb_x)^2 + (fa_y · fb_y)^2)) fb_x - ((fa_y · fb_x)/((fa_y · fb_x)^2 + (fa_y ·
-//                fb_y)^2)) fb_y) × fa_y)
+// axis_bend_b = (((fa_y · fb_x) fb_y - (fa_y · fb_y) fb_x)/s2) × fa_y
+// J_bend_b = [ 0 | axis_bend_b' | 0 | -axis_bend_b' ]             (columns v_a | w_a | v_b | w_b)
+// K_bend_b = axis_bend_b' inv_I_a axis_bend_b + axis_bend_b' inv_I_b axis_bend_b
 #pragma once
 
 #include <cdot/kernel.hpp>
@@ -777,7 +755,7 @@ struct universal {
 
     template <class T>
     struct Jacobian {
-      T wa_x, wa_y, wa_z, wb_x, wb_y, wb_z;
+      T axis_bend_a_x, axis_bend_a_y, axis_bend_a_z;
     };
 
     // C: 22 +, 33 *, 1 call
@@ -800,7 +778,7 @@ struct universal {
       C[0] = atan2(dot_fa_x_fb_z, dot_fa_z_fb_z);
     }
 
-    // C and J: 38 +, 67 *, 1 /, 1 <, 1 call
+    // C and J: 29 +, 49 *, 1 /, 1 <, 1 call
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -818,39 +796,29 @@ struct universal {
       const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
       const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
       const T dot_fa_z_fb_z = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-      const T wa_x_1 = inverse(dot_fa_x_fb_z * dot_fa_x_fb_z + dot_fa_z_fb_z * dot_fa_z_fb_z);
-      const T wa_x_2 = dot_fa_x_fb_z * wa_x_1;
-      const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
-      const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-      const T wa_x_3 = dot_fa_z_fb_z * wa_x_1;
-      const T fa_x_x_fb_z_x = fa_x_y * fb_z_z - fa_x_z * fb_z_y;
-      const T fa_x_x_fb_z_y = fa_x_z * fb_z_x - fa_x_x * fb_z_z;
-      const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
-      const T fa_x_x_fb_z_z = fa_x_x * fb_z_y - fa_x_y * fb_z_x;
-      const T wb_x_1 = wa_x_3 * fa_x_z - wa_x_2 * fa_z_z;
-      const T wb_x_2 = wa_x_3 * fa_x_y - wa_x_2 * fa_z_y;
-      const T wb_y_1 = wa_x_3 * fa_x_x - wa_x_2 * fa_z_x;
+      const T axis_bend_a_x_1 = inverse(dot_fa_x_fb_z * dot_fa_x_fb_z + dot_fa_z_fb_z *
+          dot_fa_z_fb_z);
+      const T axis_bend_a_x_2 = dot_fa_z_fb_z * axis_bend_a_x_1;
+      const T axis_bend_a_x_3 = dot_fa_x_fb_z * axis_bend_a_x_1;
+      const T axis_bend_a_x_4 = axis_bend_a_x_2 * fa_x_z - axis_bend_a_x_3 * fa_z_z;
+      const T axis_bend_a_x_5 = axis_bend_a_x_2 * fa_x_y - axis_bend_a_x_3 * fa_z_y;
+      const T axis_bend_a_y_1 = axis_bend_a_x_2 * fa_x_x - axis_bend_a_x_3 * fa_z_x;
       C[0] = atan2(dot_fa_x_fb_z, dot_fa_z_fb_z);
-      J.wa_x = wa_x_3 * fa_x_x_fb_z_x - wa_x_2 * fa_z_x_fb_z_x;
-      J.wa_y = wa_x_3 * fa_x_x_fb_z_y - wa_x_2 * fa_z_x_fb_z_y;
-      J.wa_z = wa_x_3 * fa_x_x_fb_z_z - wa_x_2 * fa_z_x_fb_z_z;
-      J.wb_x = fb_z_y * wb_x_1 - fb_z_z * wb_x_2;
-      J.wb_y = fb_z_z * wb_y_1 - fb_z_x * wb_x_1;
-      J.wb_z = fb_z_x * wb_x_2 - fb_z_y * wb_y_1;
+      J.axis_bend_a_x = fb_z_z * axis_bend_a_x_5 - fb_z_y * axis_bend_a_x_4;
+      J.axis_bend_a_y = fb_z_x * axis_bend_a_x_4 - fb_z_z * axis_bend_a_y_1;
+      J.axis_bend_a_z = fb_z_y * axis_bend_a_y_1 - fb_z_x * axis_bend_a_x_5;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 11 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      const T K11_1 = J.wa_z * T(2);
-      const T K11_2 = J.wb_z * T(2);
-      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
-          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
-          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
+      const T K11_1 = J.axis_bend_a_z * T(2);
+      K[0] = J.axis_bend_a_z * J.axis_bend_a_z * (ma.Izz + mb.Izz) + J.axis_bend_a_x *
+          (J.axis_bend_a_x * (ma.Ixx + mb.Ixx) + J.axis_bend_a_y * T(2) * (ma.Ixy + mb.Ixy) +
+          K11_1 * (ma.Ixz + mb.Ixz)) + J.axis_bend_a_y *
+          (J.axis_bend_a_y * (ma.Iyy + mb.Iyy) + K11_1 * (ma.Iyz + mb.Iyz));
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -865,16 +833,16 @@ struct universal {
       lambda[0] = F[0] * rhs[0];
     }
 
-    // J v: 5 +, 6 *
+    // J v: 5 +, 3 *
     template <class T>
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.wb_x * vb.wx + J.wb_y * vb.wy +
-          J.wb_z * vb.wz;
+      Jv[0] = J.axis_bend_a_x * (va.wx - vb.wx) + J.axis_bend_a_y * (va.wy - vb.wy) +
+          J.axis_bend_a_z * (va.wz - vb.wz);
     }
 
-    // v += M^-1 J^T lambda: 18 +, 24 *
+    // v += M^-1 J^T lambda: 18 +, 21 *
     template <class T>
     static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
         Velocity<T> (&v)[2]) {
@@ -882,35 +850,32 @@ struct universal {
       const InverseMass<T>& ma = m[0];
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
-      const T v1_1 = J.wa_x * lambda[0];
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
-      const T v2_1 = lambda[0] * J.wb_x;
-      const T v2_2 = lambda[0] * J.wb_y;
-      const T v2_3 = lambda[0] * J.wb_z;
+      const T v1_1 = J.axis_bend_a_x * lambda[0];
+      const T v1_2 = lambda[0] * J.axis_bend_a_y;
+      const T v1_3 = lambda[0] * J.axis_bend_a_z;
       v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
       v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
       v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
-      v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
-      v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
-      v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+      v[1].wx = vb.wx - v1_1 * mb.Ixx - v1_2 * mb.Ixy - v1_3 * mb.Ixz;
+      v[1].wy = vb.wy - v1_1 * mb.Ixy - v1_2 * mb.Iyy - v1_3 * mb.Iyz;
+      v[1].wz = vb.wz - v1_1 * mb.Ixz - v1_2 * mb.Iyz - v1_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: nothing
+    // J with its zeros: v, w of each body: 3 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
         for (T& entry : row) entry = T(0);
       }
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
-      D[0][9] = J.wb_x;
-      D[0][10] = J.wb_y;
-      D[0][11] = J.wb_z;
+      D[0][3] = J.axis_bend_a_x;
+      D[0][4] = J.axis_bend_a_y;
+      D[0][5] = J.axis_bend_a_z;
+      D[0][9] = -J.axis_bend_a_x;
+      D[0][10] = -J.axis_bend_a_y;
+      D[0][11] = -J.axis_bend_a_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 12 +, 18 *
+    // (M^-1 J^T)^T, laid out like dense: 15 +, 18 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -919,22 +884,23 @@ struct universal {
       }
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
-      D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
-      D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
-      D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+      D[0][3] = ma.Ixx * J.axis_bend_a_x + ma.Ixy * J.axis_bend_a_y + ma.Ixz * J.axis_bend_a_z;
+      D[0][4] = ma.Ixy * J.axis_bend_a_x + ma.Iyy * J.axis_bend_a_y + ma.Iyz * J.axis_bend_a_z;
+      D[0][5] = ma.Ixz * J.axis_bend_a_x + ma.Iyz * J.axis_bend_a_y + ma.Izz * J.axis_bend_a_z;
+      D[0][9] = -mb.Ixx * J.axis_bend_a_x - mb.Ixy * J.axis_bend_a_y - mb.Ixz * J.axis_bend_a_z;
+      D[0][10] = -mb.Ixy * J.axis_bend_a_x - mb.Iyy * J.axis_bend_a_y - mb.Iyz * J.axis_bend_a_z;
+      D[0][11] = -mb.Ixz * J.axis_bend_a_x - mb.Iyz * J.axis_bend_a_y - mb.Izz * J.axis_bend_a_z;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
+    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+      const T dot_axis_bend_a_axis_bend_a = J.axis_bend_a_x * J.axis_bend_a_x + J.axis_bend_a_y *
+          J.axis_bend_a_y + J.axis_bend_a_z * J.axis_bend_a_z;
+      K[0] = dot_axis_bend_a_axis_bend_a * (ma.I + mb.I);
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -947,15 +913,15 @@ struct universal {
       const IsotropicInverseMass<T>& mb = m[1];
       const T v1_1 = ma.I * lambda[0];
       const T v2_1 = lambda[0] * mb.I;
-      v[0].wx = va.wx + v1_1 * J.wa_x;
-      v[0].wy = va.wy + v1_1 * J.wa_y;
-      v[0].wz = va.wz + v1_1 * J.wa_z;
-      v[1].wx = vb.wx + v2_1 * J.wb_x;
-      v[1].wy = vb.wy + v2_1 * J.wb_y;
-      v[1].wz = vb.wz + v2_1 * J.wb_z;
+      v[0].wx = va.wx + v1_1 * J.axis_bend_a_x;
+      v[0].wy = va.wy + v1_1 * J.axis_bend_a_y;
+      v[0].wz = va.wz + v1_1 * J.axis_bend_a_z;
+      v[1].wx = vb.wx - v2_1 * J.axis_bend_a_x;
+      v[1].wy = vb.wy - v2_1 * J.axis_bend_a_y;
+      v[1].wz = vb.wz - v2_1 * J.axis_bend_a_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -964,15 +930,15 @@ struct universal {
       }
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
-      D[0][9] = mb.I * J.wb_x;
-      D[0][10] = mb.I * J.wb_y;
-      D[0][11] = mb.I * J.wb_z;
+      D[0][3] = ma.I * J.axis_bend_a_x;
+      D[0][4] = ma.I * J.axis_bend_a_y;
+      D[0][5] = ma.I * J.axis_bend_a_z;
+      D[0][9] = -mb.I * J.axis_bend_a_x;
+      D[0][10] = -mb.I * J.axis_bend_a_y;
+      D[0][11] = -mb.I * J.axis_bend_a_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -980,15 +946,15 @@ struct universal {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-      D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-      D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-      D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+      D[0][3] = J.axis_bend_a_x * a.xx + J.axis_bend_a_y * a.yx + J.axis_bend_a_z * a.zx;
+      D[0][4] = J.axis_bend_a_x * a.xy + J.axis_bend_a_y * a.yy + J.axis_bend_a_z * a.zy;
+      D[0][5] = J.axis_bend_a_x * a.xz + J.axis_bend_a_y * a.yz + J.axis_bend_a_z * a.zz;
+      D[0][9] = -J.axis_bend_a_x * b.xx - J.axis_bend_a_y * b.yx - J.axis_bend_a_z * b.zx;
+      D[0][10] = -J.axis_bend_a_x * b.xy - J.axis_bend_a_y * b.yy - J.axis_bend_a_z * b.zy;
+      D[0][11] = -J.axis_bend_a_x * b.xz - J.axis_bend_a_y * b.yz - J.axis_bend_a_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 27 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -996,17 +962,20 @@ struct universal {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-      D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-      D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-      D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+      const T D1_1 = J.axis_bend_a_x * T(2);
+      const T D1_2 = J.axis_bend_a_y * T(2);
+      const T D1_3 = J.axis_bend_a_z * T(2);
+      D[0][3] = -D1_1 * a.e1 - D1_2 * a.e2 - D1_3 * a.e3;
+      D[0][4] = D1_1 * a.e0 + D1_2 * a.e3 - D1_3 * a.e2;
+      D[0][5] = D1_2 * a.e0 - D1_1 * a.e3 + D1_3 * a.e1;
+      D[0][6] = D1_1 * a.e2 - D1_2 * a.e1 + D1_3 * a.e0;
+      D[0][10] = D1_1 * b.e1 + D1_2 * b.e2 + D1_3 * b.e3;
+      D[0][11] = D1_3 * b.e2 - D1_1 * b.e0 - D1_2 * b.e3;
+      D[0][12] = D1_1 * b.e3 - D1_2 * b.e0 - D1_3 * b.e1;
+      D[0][13] = D1_2 * b.e1 - D1_1 * b.e2 - D1_3 * b.e0;
     }
 
-    // -Jdot v - d/dt(dC/dt): 71 +, 112 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 71 +, 108 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1014,29 +983,16 @@ struct universal {
       const Velocity<T>& va = v[0];
       const Pose<T>& b = q[1];
       const Velocity<T>& vb = v[1];
-      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
       const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
       const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
       const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-      const T dot_fa_x_fb_z = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
       const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
       const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T dot_fa_z_fb_z = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-      const T g1_1 = inverse(dot_fa_x_fb_z * dot_fa_x_fb_z + dot_fa_z_fb_z * dot_fa_z_fb_z);
+      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
       const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
       const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
+      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
       const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
-      const T dot_w_b_x_fb_z_fa_x = fa_x_x * w_b_x_fb_z_x + fa_x_y * w_b_x_fb_z_y + fa_x_z *
-          w_b_x_fb_z_z;
-      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-      const T dot_w_a_x_fa_x_fb_z = fb_z_x * w_a_x_fa_x_x + fb_z_y * w_a_x_fa_x_y + fb_z_z *
-          w_a_x_fa_x_z;
-      const T g1_2 = dot_w_b_x_fb_z_fa_x + dot_w_a_x_fa_x_fb_z;
       const T dot_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_fb_z_x + fa_z_y * w_b_x_fb_z_y + fa_z_z *
           w_b_x_fb_z_z;
       const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
@@ -1044,34 +1000,39 @@ struct universal {
       const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
       const T dot_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_fa_z_x + fb_z_y * w_a_x_fa_z_y + fb_z_z *
           w_a_x_fa_z_z;
-      const T g1_3 = dot_w_b_x_fb_z_fa_z + dot_w_a_x_fa_z_fb_z;
-      const T g1_4 = T(2) * (g1_2 * dot_fa_z_fb_z - g1_3 * dot_fa_x_fb_z) * g1_1;
-      const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
-      const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
-      const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-      const T dot_w_b_x_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_w_b_x_fb_z_x + fa_z_y *
-          w_b_x_w_b_x_fb_z_y + fa_z_z * w_b_x_w_b_x_fb_z_z;
-      const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-      const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-      const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-      const T dot_w_a_x_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_w_a_x_fa_z_x + fb_z_y *
-          w_a_x_w_a_x_fa_z_y + fb_z_z * w_a_x_w_a_x_fa_z_z;
-      const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
-          w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
-      const T dot_w_b_x_w_b_x_fb_z_fa_x = fa_x_x * w_b_x_w_b_x_fb_z_x + fa_x_y *
-          w_b_x_w_b_x_fb_z_y + fa_x_z * w_b_x_w_b_x_fb_z_z;
-      const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-      const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-      const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-      const T dot_w_a_x_w_a_x_fa_x_fb_z = fb_z_x * w_a_x_w_a_x_fa_x_x + fb_z_y *
-          w_a_x_w_a_x_fa_x_y + fb_z_z * w_a_x_w_a_x_fa_x_z;
-      const T dot_w_a_x_fa_x_w_b_x_fb_z = w_a_x_fa_x_z * w_b_x_fb_z_z + w_a_x_fa_x_y *
-          w_b_x_fb_z_y + w_a_x_fa_x_x * w_b_x_fb_z_x;
-      g[0] = g1_1 * (dot_fa_x_fb_z *
-          (g1_4 * g1_2 + dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z +
-          dot_w_a_x_fa_z_w_b_x_fb_z * T(2)) + dot_fa_z_fb_z *
-          (g1_4 * g1_3 - dot_w_b_x_w_b_x_fb_z_fa_x - dot_w_a_x_w_a_x_fa_x_fb_z -
-          dot_w_a_x_fa_x_w_b_x_fb_z * T(2)));
+      const T g1_1 = dot_w_b_x_fb_z_fa_z + dot_w_a_x_fa_z_fb_z;
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T dot_fa_x_fb_z = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
+      const T dot_fa_z_fb_z = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+      const T g1_2 = inverse(dot_fa_x_fb_z * dot_fa_x_fb_z + dot_fa_z_fb_z * dot_fa_z_fb_z);
+      const T dot_w_b_x_fb_z_fa_x = fa_x_x * w_b_x_fb_z_x + fa_x_y * w_b_x_fb_z_y + fa_x_z *
+          w_b_x_fb_z_z;
+      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
+      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
+      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
+      const T dot_w_a_x_fa_x_fb_z = fb_z_x * w_a_x_fa_x_x + fb_z_y * w_a_x_fa_x_y + fb_z_z *
+          w_a_x_fa_x_z;
+      const T g1_3 = dot_w_b_x_fb_z_fa_x + dot_w_a_x_fa_x_fb_z;
+      const T g1_4 = g1_2 * T(2) * (g1_3 * dot_fa_x_fb_z + g1_1 * dot_fa_z_fb_z);
+      const T g1_5 = dot_fa_z_fb_z * g1_2;
+      const T g1_6 = g1_1 * g1_2 - g1_4 * g1_5;
+      const T g1_7 = dot_fa_x_fb_z * g1_2;
+      const T g1_8 = g1_3 * g1_2 - g1_4 * g1_7;
+      const T g1_9 = fa_x_z * g1_6 - fa_z_z * g1_8 + g1_5 * w_a_x_fa_x_z - g1_7 * w_a_x_fa_z_z;
+      const T g1_10 = fa_x_y * g1_6 - fa_z_y * g1_8 + g1_5 * w_a_x_fa_x_y - g1_7 * w_a_x_fa_z_y;
+      const T g1_11 = g1_5 * fa_x_y - g1_7 * fa_z_y;
+      const T g1_12 = g1_5 * fa_x_z - g1_7 * fa_z_z;
+      const T axis_bend_a_dot_x = fb_z_z * g1_10 - fb_z_y * g1_9 + w_b_x_fb_z_z * g1_11 -
+          w_b_x_fb_z_y * g1_12;
+      const T g1_13 = fa_x_x * g1_6 - fa_z_x * g1_8 + g1_5 * w_a_x_fa_x_x - g1_7 * w_a_x_fa_z_x;
+      const T g1_14 = g1_5 * fa_x_x - g1_7 * fa_z_x;
+      const T axis_bend_a_dot_y = fb_z_x * g1_9 - fb_z_z * g1_13 - w_b_x_fb_z_z * g1_14 +
+          w_b_x_fb_z_x * g1_12;
+      const T axis_bend_a_dot_z = fb_z_y * g1_13 - fb_z_x * g1_10 + w_b_x_fb_z_y * g1_14 -
+          w_b_x_fb_z_x * g1_11;
+      g[0] = axis_bend_a_dot_x * (vb.wx - va.wx) + axis_bend_a_dot_y * (vb.wy - va.wy) +
+          axis_bend_a_dot_z * (vb.wz - va.wz);
     }
 
     // dC/dt at fixed q: nothing
@@ -1080,7 +1041,7 @@ struct universal {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 163 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 166 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -1104,107 +1065,107 @@ struct universal {
       const T H4_2 = lambda[0] * H4_1;
       const T H4_3 = dot_fa_z_fb_z * H4_2;
       const T H4_4 = H4_3 * fb_z_y;
-      const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
-      const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-      const T H4_5 = T(2) * H4_1 * H4_2;
-      const T fa_x_x_fb_z_x = fa_x_y * fb_z_z - fa_x_z * fb_z_y;
-      const T fa_x_x_fb_z_y = fa_x_z * fb_z_x - fa_x_x * fb_z_z;
-      const T H4_6 = H4_5 * (dot_fa_x_fb_z * fa_z_x_fb_z_x - dot_fa_z_fb_z * fa_x_x_fb_z_x);
-      const T H4_7 = H4_6 * dot_fa_x_fb_z - H4_2 * fa_z_x_fb_z_x;
-      const T H4_8 = fb_z_z * H4_7 - H4_4;
-      const T H4_9 = dot_fa_x_fb_z * H4_2;
-      const T H4_10 = H4_9 * fb_z_y;
-      const T H4_11 = H4_2 * fa_x_x_fb_z_x + H4_6 * dot_fa_z_fb_z;
-      const T H4_12 = H4_10 + fb_z_z * H4_11;
-      const T H4_13 = H4_3 * fb_z_z;
-      const T H4_14 = H4_13 + fb_z_y * H4_7;
-      const T H4_15 = H4_9 * fb_z_z;
-      const T H4_16 = fb_z_y * H4_11 - H4_15;
-      const T H4_17 = fa_x_y * H4_8 + fa_z_y * H4_12 - fa_x_z * H4_14 - fa_z_z * H4_16;
-      const T H4_1_2 = fa_x_z * H4_7 + fa_z_z * H4_11;
-      const T H4_2_2 = fb_z_x * H4_1_2 - fa_x_x * H4_8 - fa_z_x * H4_12;
-      const T H4_1_3 = fa_x_y * H4_7 + fa_z_y * H4_11;
-      const T H4_2_3 = fa_x_x * H4_14 + fa_z_x * H4_16 - fb_z_x * H4_1_3;
-      const T H4_1_4 = H4_3 * fa_x_y - H4_9 * fa_z_y;
-      const T H4_2_4 = H4_1_2 + H4_1_4;
-      const T H4_3_2 = H4_3 * fa_x_z - H4_9 * fa_z_z;
+      const T H4_5 = fa_z_z * fb_z_y - fa_z_y * fb_z_z;
+      const T H4_6 = T(2) * H4_1 * H4_2;
+      const T H4_7 = fa_x_z * fb_z_y - fa_x_y * fb_z_z;
+      const T H4_8 = H4_6 * (dot_fa_z_fb_z * H4_7 - dot_fa_x_fb_z * H4_5);
+      const T H4_9 = H4_2 * H4_5 + H4_8 * dot_fa_x_fb_z;
+      const T H4_10 = fb_z_z * H4_9 - H4_4;
+      const T H4_11 = dot_fa_x_fb_z * H4_2;
+      const T H4_12 = H4_11 * fb_z_y;
+      const T H4_13 = H4_8 * dot_fa_z_fb_z - H4_2 * H4_7;
+      const T H4_14 = H4_12 + fb_z_z * H4_13;
+      const T H4_15 = H4_3 * fb_z_z;
+      const T H4_16 = H4_15 + fb_z_y * H4_9;
+      const T H4_17 = H4_11 * fb_z_z;
+      const T H4_18 = fb_z_y * H4_13 - H4_17;
+      const T H4_19 = fa_x_y * H4_10 + fa_z_y * H4_14 - fa_x_z * H4_16 - fa_z_z * H4_18;
+      const T H4_1_2 = fa_x_z * H4_9 + fa_z_z * H4_13;
+      const T H4_2_2 = fb_z_x * H4_1_2 - fa_x_x * H4_10 - fa_z_x * H4_14;
+      const T H4_1_3 = fa_x_y * H4_9 + fa_z_y * H4_13;
+      const T H4_2_3 = fa_x_x * H4_16 + fa_z_x * H4_18 - fb_z_x * H4_1_3;
+      const T H4_1_4 = H4_2 * (fa_z_y * dot_fa_x_fb_z - fa_x_y * dot_fa_z_fb_z);
+      const T H4_2_4 = H4_1_2 - H4_1_4;
+      const T H4_3_2 = H4_2 * (fa_x_z * dot_fa_z_fb_z - fa_z_z * dot_fa_x_fb_z);
       const T H4_4_2 = H4_1_3 - H4_3_2;
       const T H4_5_2 = fb_z_y * H4_2_4 - fb_z_z * H4_4_2;
-      const T H4_1_5 = fa_x_x * H4_7 + fa_z_x * H4_11;
+      const T H4_1_5 = fa_x_x * H4_9 + fa_z_x * H4_13;
       const T H4_2_5 = fb_z_z * H4_1_5 - fb_z_x * H4_2_4;
       const T H4_1_6 = fb_z_x * H4_4_2 - fb_z_y * H4_1_5;
       const T H5_1 = H4_3 * fb_z_x;
-      const T H5_2 = H4_5 * (dot_fa_x_fb_z * fa_z_x_fb_z_y - fa_x_x_fb_z_y * dot_fa_z_fb_z);
-      const T H5_3 = H5_2 * dot_fa_x_fb_z - H4_2 * fa_z_x_fb_z_y;
-      const T H5_4 = H5_1 + fb_z_z * H5_3;
-      const T H5_5 = H4_9 * fb_z_x;
-      const T H5_6 = H4_2 * fa_x_x_fb_z_y + H5_2 * dot_fa_z_fb_z;
-      const T H5_7 = fb_z_z * H5_6 - H5_5;
-      const T H5_8 = fa_x_z * H5_3 + fa_z_z * H5_6;
-      const T H5_9 = fa_x_y * H5_4 + fa_z_y * H5_7 - fb_z_y * H5_8;
-      const T H5_1_2 = fb_z_x * H5_3 - H4_13;
-      const T H5_2_2 = H4_15 + fb_z_x * H5_6;
-      const T H5_3_2 = fa_x_z * H5_1_2 - fa_x_x * H5_4 - fa_z_x * H5_7 + fa_z_z * H5_2_2;
-      const T H5_1_3 = fa_x_x * H5_3 + fa_z_x * H5_6;
+      const T H5_2 = fa_z_x * fb_z_z - fa_z_z * fb_z_x;
+      const T H5_3 = fa_x_x * fb_z_z - fa_x_z * fb_z_x;
+      const T H5_4 = H4_6 * (H5_3 * dot_fa_z_fb_z - dot_fa_x_fb_z * H5_2);
+      const T H5_5 = H4_2 * H5_2 + H5_4 * dot_fa_x_fb_z;
+      const T H5_6 = H5_1 + fb_z_z * H5_5;
+      const T H5_7 = H4_11 * fb_z_x;
+      const T H5_8 = H5_4 * dot_fa_z_fb_z - H4_2 * H5_3;
+      const T H5_9 = fb_z_z * H5_8 - H5_7;
+      const T H5_10 = fa_x_z * H5_5 + fa_z_z * H5_8;
+      const T H5_11 = fa_x_y * H5_6 + fa_z_y * H5_9 - fb_z_y * H5_10;
+      const T H5_1_2 = fb_z_x * H5_5 - H4_15;
+      const T H5_2_2 = H4_17 + fb_z_x * H5_8;
+      const T H5_3_2 = fa_x_z * H5_1_2 - fa_x_x * H5_6 - fa_z_x * H5_9 + fa_z_z * H5_2_2;
+      const T H5_1_3 = fa_x_x * H5_5 + fa_z_x * H5_8;
       const T H5_2_3 = fb_z_y * H5_1_3 - fa_x_y * H5_1_2 - fa_z_y * H5_2_2;
-      const T H5_1_4 = H4_3 * fa_x_x - H4_9 * fa_z_x;
-      const T H5_2_4 = H5_8 - H5_1_4;
-      const T H5_3_3 = fa_x_y * H5_3 + fa_z_y * H5_6;
+      const T H5_1_4 = H4_2 * (fa_x_x * dot_fa_z_fb_z - fa_z_x * dot_fa_x_fb_z);
+      const T H5_2_4 = H5_10 - H5_1_4;
+      const T H5_3_3 = fa_x_y * H5_5 + fa_z_y * H5_8;
       const T H5_4_2 = fb_z_y * H5_2_4 - fb_z_z * H5_3_3;
       const T H5_1_5 = H5_1_3 + H4_3_2;
       const T H5_2_5 = fb_z_z * H5_1_5 - fb_z_x * H5_2_4;
       const T H5_1_6 = fb_z_x * H5_3_3 - fb_z_y * H5_1_5;
-      const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
-      const T fa_x_x_fb_z_z = fa_x_x * fb_z_y - fa_x_y * fb_z_x;
-      const T H6_1 = H4_5 * (dot_fa_x_fb_z * fa_z_x_fb_z_z - fa_x_x_fb_z_z * dot_fa_z_fb_z);
-      const T H6_2 = H6_1 * dot_fa_x_fb_z - H4_2 * fa_z_x_fb_z_z;
-      const T H6_3 = fb_z_y * H6_2 - H5_1;
-      const T H6_4 = H4_2 * fa_x_x_fb_z_z + H6_1 * dot_fa_z_fb_z;
-      const T H6_5 = H5_5 + fb_z_y * H6_4;
-      const T H6_6 = fa_x_y * H6_2 + fa_z_y * H6_4;
-      const T H6_7 = fb_z_z * H6_6 - fa_x_z * H6_3 - fa_z_z * H6_5;
-      const T H6_1_2 = H4_4 + fb_z_x * H6_2;
-      const T H6_2_2 = fb_z_x * H6_4 - H4_10;
-      const T H6_3_2 = fa_x_x * H6_2 + fa_z_x * H6_4;
+      const T H6_1 = fa_z_y * fb_z_x - fa_z_x * fb_z_y;
+      const T H6_2 = fa_x_y * fb_z_x - fa_x_x * fb_z_y;
+      const T H6_3 = H4_6 * (H6_2 * dot_fa_z_fb_z - dot_fa_x_fb_z * H6_1);
+      const T H6_4 = H4_2 * H6_1 + H6_3 * dot_fa_x_fb_z;
+      const T H6_5 = fb_z_y * H6_4 - H5_1;
+      const T H6_6 = H6_3 * dot_fa_z_fb_z - H4_2 * H6_2;
+      const T H6_7 = H5_7 + fb_z_y * H6_6;
+      const T H6_8 = fa_x_y * H6_4 + fa_z_y * H6_6;
+      const T H6_9 = fb_z_z * H6_8 - fa_x_z * H6_5 - fa_z_z * H6_7;
+      const T H6_1_2 = H4_4 + fb_z_x * H6_4;
+      const T H6_2_2 = fb_z_x * H6_6 - H4_12;
+      const T H6_3_2 = fa_x_x * H6_4 + fa_z_x * H6_6;
       const T H6_4_2 = fa_x_z * H6_1_2 + fa_z_z * H6_2_2 - fb_z_z * H6_3_2;
-      const T H6_1_3 = fa_x_x * H6_3 + fa_z_x * H6_5 - fa_x_y * H6_1_2 - fa_z_y * H6_2_2;
-      const T H6_1_4 = fa_x_z * H6_2 + fa_z_z * H6_4;
-      const T H6_2_3 = H6_6 + H5_1_4;
+      const T H6_1_3 = fa_x_x * H6_5 + fa_z_x * H6_7 - fa_x_y * H6_1_2 - fa_z_y * H6_2_2;
+      const T H6_1_4 = fa_x_z * H6_4 + fa_z_z * H6_6;
+      const T H6_2_3 = H6_8 + H5_1_4;
       const T H6_3_3 = fb_z_y * H6_1_4 - fb_z_z * H6_2_3;
-      const T H6_1_5 = H6_3_2 - H4_1_4;
+      const T H6_1_5 = H6_3_2 + H4_1_4;
       const T H6_2_4 = fb_z_z * H6_1_5 - fb_z_x * H6_1_4;
       const T H6_1_6 = fb_z_x * H6_2_3 - fb_z_y * H6_1_5;
-      H[3][3] = H4_17;
+      H[3][3] = H4_19;
       H[3][4] = H4_2_2;
       H[3][5] = H4_2_3;
       H[3][9] = H4_5_2;
       H[3][10] = H4_2_5;
       H[3][11] = H4_1_6;
-      H[4][3] = H5_9;
+      H[4][3] = H5_11;
       H[4][4] = H5_3_2;
       H[4][5] = H5_2_3;
       H[4][9] = H5_4_2;
       H[4][10] = H5_2_5;
       H[4][11] = H5_1_6;
-      H[5][3] = H6_7;
+      H[5][3] = H6_9;
       H[5][4] = H6_4_2;
       H[5][5] = H6_1_3;
       H[5][9] = H6_3_3;
       H[5][10] = H6_2_4;
       H[5][11] = H6_1_6;
-      H[9][3] = -H4_17;
+      H[9][3] = -H4_19;
       H[9][4] = -H4_2_2;
       H[9][5] = -H4_2_3;
       H[9][9] = -H4_5_2;
       H[9][10] = -H4_2_5;
       H[9][11] = -H4_1_6;
-      H[10][3] = -H5_9;
+      H[10][3] = -H5_11;
       H[10][4] = -H5_3_2;
       H[10][5] = -H5_2_3;
       H[10][9] = -H5_4_2;
       H[10][10] = -H5_2_5;
       H[10][11] = -H5_1_6;
-      H[11][3] = -H6_7;
+      H[11][3] = -H6_9;
       H[11][4] = -H6_4_2;
       H[11][5] = -H6_1_3;
       H[11][9] = -H6_3_3;
@@ -1230,7 +1191,7 @@ struct universal {
 
     template <class T>
     struct Jacobian {
-      T wa_x, wa_y, wa_z, wb_x, wb_y, wb_z;
+      T axis_bend_b_x, axis_bend_b_y, axis_bend_b_z;
     };
 
     // C: 22 +, 33 *, 1 call
@@ -1253,7 +1214,7 @@ struct universal {
       C[0] = atan2(dot_fa_y_fb_x, dot_fa_y_fb_y);
     }
 
-    // C and J: 38 +, 67 *, 1 /, 1 <, 1 call
+    // C and J: 29 +, 49 *, 1 /, 1 <, 1 call
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -1271,39 +1232,29 @@ struct universal {
       const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
       const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
       const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-      const T wa_x_1 = inverse(dot_fa_y_fb_x * dot_fa_y_fb_x + dot_fa_y_fb_y * dot_fa_y_fb_y);
-      const T wa_x_2 = dot_fa_y_fb_y * wa_x_1;
-      const T wa_x_3 = dot_fa_y_fb_x * wa_x_1;
-      const T wa_x_4 = wa_x_2 * fb_x_z - wa_x_3 * fb_y_z;
-      const T wa_x_5 = wa_x_2 * fb_x_y - wa_x_3 * fb_y_y;
-      const T wa_y_1 = wa_x_2 * fb_x_x - wa_x_3 * fb_y_x;
-      const T fa_y_x_fb_y_x = fa_y_y * fb_y_z - fa_y_z * fb_y_y;
-      const T fa_y_x_fb_y_y = fa_y_z * fb_y_x - fa_y_x * fb_y_z;
-      const T fa_y_x_fb_x_x = fa_y_y * fb_x_z - fa_y_z * fb_x_y;
-      const T fa_y_x_fb_x_y = fa_y_z * fb_x_x - fa_y_x * fb_x_z;
-      const T fa_y_x_fb_y_z = fa_y_x * fb_y_y - fa_y_y * fb_y_x;
-      const T fa_y_x_fb_x_z = fa_y_x * fb_x_y - fa_y_y * fb_x_x;
+      const T axis_bend_b_x_1 = inverse(dot_fa_y_fb_x * dot_fa_y_fb_x + dot_fa_y_fb_y *
+          dot_fa_y_fb_y);
+      const T axis_bend_b_x_2 = dot_fa_y_fb_y * axis_bend_b_x_1;
+      const T axis_bend_b_x_3 = dot_fa_y_fb_x * axis_bend_b_x_1;
+      const T axis_bend_b_x_4 = axis_bend_b_x_3 * fb_y_z - axis_bend_b_x_2 * fb_x_z;
+      const T axis_bend_b_x_5 = axis_bend_b_x_3 * fb_y_y - axis_bend_b_x_2 * fb_x_y;
+      const T axis_bend_b_y_1 = axis_bend_b_x_3 * fb_y_x - axis_bend_b_x_2 * fb_x_x;
       C[0] = atan2(dot_fa_y_fb_x, dot_fa_y_fb_y);
-      J.wa_x = fa_y_y * wa_x_4 - fa_y_z * wa_x_5;
-      J.wa_y = fa_y_z * wa_y_1 - fa_y_x * wa_x_4;
-      J.wa_z = fa_y_x * wa_x_5 - fa_y_y * wa_y_1;
-      J.wb_x = wa_x_3 * fa_y_x_fb_y_x - wa_x_2 * fa_y_x_fb_x_x;
-      J.wb_y = wa_x_3 * fa_y_x_fb_y_y - wa_x_2 * fa_y_x_fb_x_y;
-      J.wb_z = wa_x_3 * fa_y_x_fb_y_z - wa_x_2 * fa_y_x_fb_x_z;
+      J.axis_bend_b_x = fa_y_z * axis_bend_b_x_5 - fa_y_y * axis_bend_b_x_4;
+      J.axis_bend_b_y = fa_y_x * axis_bend_b_x_4 - fa_y_z * axis_bend_b_y_1;
+      J.axis_bend_b_z = fa_y_y * axis_bend_b_y_1 - fa_y_x * axis_bend_b_x_5;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 11 +, 22 *
+    // K = J M^-1 J^T, lower triangle, from J: 11 +, 11 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      const T K11_1 = J.wa_z * T(2);
-      const T K11_2 = J.wb_z * T(2);
-      K[0] = ma.Izz * J.wa_z * J.wa_z + mb.Izz * J.wb_z * J.wb_z + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
-          (ma.Iyy * J.wa_y + K11_1 * ma.Iyz) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y * T(2) + K11_2 * mb.Ixz) + J.wb_y *
-          (mb.Iyy * J.wb_y + K11_2 * mb.Iyz);
+      const T K11_1 = J.axis_bend_b_z * T(2);
+      K[0] = J.axis_bend_b_z * J.axis_bend_b_z * (ma.Izz + mb.Izz) + J.axis_bend_b_x *
+          (J.axis_bend_b_x * (ma.Ixx + mb.Ixx) + J.axis_bend_b_y * T(2) * (ma.Ixy + mb.Ixy) +
+          K11_1 * (ma.Ixz + mb.Ixz)) + J.axis_bend_b_y *
+          (J.axis_bend_b_y * (ma.Iyy + mb.Iyy) + K11_1 * (ma.Iyz + mb.Iyz));
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1318,16 +1269,16 @@ struct universal {
       lambda[0] = F[0] * rhs[0];
     }
 
-    // J v: 5 +, 6 *
+    // J v: 5 +, 3 *
     template <class T>
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.wb_x * vb.wx + J.wb_y * vb.wy +
-          J.wb_z * vb.wz;
+      Jv[0] = J.axis_bend_b_x * (va.wx - vb.wx) + J.axis_bend_b_y * (va.wy - vb.wy) +
+          J.axis_bend_b_z * (va.wz - vb.wz);
     }
 
-    // v += M^-1 J^T lambda: 18 +, 24 *
+    // v += M^-1 J^T lambda: 18 +, 21 *
     template <class T>
     static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
         Velocity<T> (&v)[2]) {
@@ -1335,35 +1286,32 @@ struct universal {
       const InverseMass<T>& ma = m[0];
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
-      const T v1_1 = J.wa_x * lambda[0];
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
-      const T v2_1 = lambda[0] * J.wb_x;
-      const T v2_2 = lambda[0] * J.wb_y;
-      const T v2_3 = lambda[0] * J.wb_z;
+      const T v1_1 = J.axis_bend_b_x * lambda[0];
+      const T v1_2 = lambda[0] * J.axis_bend_b_y;
+      const T v1_3 = lambda[0] * J.axis_bend_b_z;
       v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
       v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
       v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
-      v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
-      v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
-      v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+      v[1].wx = vb.wx - v1_1 * mb.Ixx - v1_2 * mb.Ixy - v1_3 * mb.Ixz;
+      v[1].wy = vb.wy - v1_1 * mb.Ixy - v1_2 * mb.Iyy - v1_3 * mb.Iyz;
+      v[1].wz = vb.wz - v1_1 * mb.Ixz - v1_2 * mb.Iyz - v1_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: nothing
+    // J with its zeros: v, w of each body: 3 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
         for (T& entry : row) entry = T(0);
       }
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
-      D[0][9] = J.wb_x;
-      D[0][10] = J.wb_y;
-      D[0][11] = J.wb_z;
+      D[0][3] = J.axis_bend_b_x;
+      D[0][4] = J.axis_bend_b_y;
+      D[0][5] = J.axis_bend_b_z;
+      D[0][9] = -J.axis_bend_b_x;
+      D[0][10] = -J.axis_bend_b_y;
+      D[0][11] = -J.axis_bend_b_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 12 +, 18 *
+    // (M^-1 J^T)^T, laid out like dense: 15 +, 18 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1372,22 +1320,23 @@ struct universal {
       }
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
-      D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
-      D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
-      D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+      D[0][3] = ma.Ixx * J.axis_bend_b_x + ma.Ixy * J.axis_bend_b_y + ma.Ixz * J.axis_bend_b_z;
+      D[0][4] = ma.Ixy * J.axis_bend_b_x + ma.Iyy * J.axis_bend_b_y + ma.Iyz * J.axis_bend_b_z;
+      D[0][5] = ma.Ixz * J.axis_bend_b_x + ma.Iyz * J.axis_bend_b_y + ma.Izz * J.axis_bend_b_z;
+      D[0][9] = -mb.Ixx * J.axis_bend_b_x - mb.Ixy * J.axis_bend_b_y - mb.Ixz * J.axis_bend_b_z;
+      D[0][10] = -mb.Ixy * J.axis_bend_b_x - mb.Iyy * J.axis_bend_b_y - mb.Iyz * J.axis_bend_b_z;
+      D[0][11] = -mb.Ixz * J.axis_bend_b_x - mb.Iyz * J.axis_bend_b_y - mb.Izz * J.axis_bend_b_z;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
+    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+      const T dot_axis_bend_b_axis_bend_b = J.axis_bend_b_x * J.axis_bend_b_x + J.axis_bend_b_y *
+          J.axis_bend_b_y + J.axis_bend_b_z * J.axis_bend_b_z;
+      K[0] = dot_axis_bend_b_axis_bend_b * (ma.I + mb.I);
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -1400,15 +1349,15 @@ struct universal {
       const IsotropicInverseMass<T>& mb = m[1];
       const T v1_1 = ma.I * lambda[0];
       const T v2_1 = lambda[0] * mb.I;
-      v[0].wx = va.wx + v1_1 * J.wa_x;
-      v[0].wy = va.wy + v1_1 * J.wa_y;
-      v[0].wz = va.wz + v1_1 * J.wa_z;
-      v[1].wx = vb.wx + v2_1 * J.wb_x;
-      v[1].wy = vb.wy + v2_1 * J.wb_y;
-      v[1].wz = vb.wz + v2_1 * J.wb_z;
+      v[0].wx = va.wx + v1_1 * J.axis_bend_b_x;
+      v[0].wy = va.wy + v1_1 * J.axis_bend_b_y;
+      v[0].wz = va.wz + v1_1 * J.axis_bend_b_z;
+      v[1].wx = vb.wx - v2_1 * J.axis_bend_b_x;
+      v[1].wy = vb.wy - v2_1 * J.axis_bend_b_y;
+      v[1].wz = vb.wz - v2_1 * J.axis_bend_b_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1417,15 +1366,15 @@ struct universal {
       }
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
-      D[0][9] = mb.I * J.wb_x;
-      D[0][10] = mb.I * J.wb_y;
-      D[0][11] = mb.I * J.wb_z;
+      D[0][3] = ma.I * J.axis_bend_b_x;
+      D[0][4] = ma.I * J.axis_bend_b_y;
+      D[0][5] = ma.I * J.axis_bend_b_z;
+      D[0][9] = -mb.I * J.axis_bend_b_x;
+      D[0][10] = -mb.I * J.axis_bend_b_y;
+      D[0][11] = -mb.I * J.axis_bend_b_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -1433,15 +1382,15 @@ struct universal {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-      D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-      D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-      D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+      D[0][3] = J.axis_bend_b_x * a.xx + J.axis_bend_b_y * a.yx + J.axis_bend_b_z * a.zx;
+      D[0][4] = J.axis_bend_b_x * a.xy + J.axis_bend_b_y * a.yy + J.axis_bend_b_z * a.zy;
+      D[0][5] = J.axis_bend_b_x * a.xz + J.axis_bend_b_y * a.yz + J.axis_bend_b_z * a.zz;
+      D[0][9] = -J.axis_bend_b_x * b.xx - J.axis_bend_b_y * b.yx - J.axis_bend_b_z * b.zx;
+      D[0][10] = -J.axis_bend_b_x * b.xy - J.axis_bend_b_y * b.yy - J.axis_bend_b_z * b.zy;
+      D[0][11] = -J.axis_bend_b_x * b.xz - J.axis_bend_b_y * b.yz - J.axis_bend_b_z * b.zz;
     }
 
-    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 17 +, 27 *
     template <class T>
     static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
       for (auto& row : D) {
@@ -1449,17 +1398,20 @@ struct universal {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-      D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-      D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-      D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+      const T D1_1 = J.axis_bend_b_x * T(2);
+      const T D1_2 = J.axis_bend_b_y * T(2);
+      const T D1_3 = J.axis_bend_b_z * T(2);
+      D[0][3] = -D1_1 * a.e1 - D1_2 * a.e2 - D1_3 * a.e3;
+      D[0][4] = D1_1 * a.e0 + D1_2 * a.e3 - D1_3 * a.e2;
+      D[0][5] = D1_2 * a.e0 - D1_1 * a.e3 + D1_3 * a.e1;
+      D[0][6] = D1_1 * a.e2 - D1_2 * a.e1 + D1_3 * a.e0;
+      D[0][10] = D1_1 * b.e1 + D1_2 * b.e2 + D1_3 * b.e3;
+      D[0][11] = D1_3 * b.e2 - D1_1 * b.e0 - D1_2 * b.e3;
+      D[0][12] = D1_1 * b.e3 - D1_2 * b.e0 - D1_3 * b.e1;
+      D[0][13] = D1_2 * b.e1 - D1_1 * b.e2 - D1_3 * b.e0;
     }
 
-    // -Jdot v - d/dt(dC/dt): 71 +, 112 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 71 +, 108 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1469,21 +1421,18 @@ struct universal {
       const Velocity<T>& vb = v[1];
       const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
       const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
       const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-      const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
       const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
       const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
-      const T g1_1 = inverse(dot_fa_y_fb_x * dot_fa_y_fb_x + dot_fa_y_fb_y * dot_fa_y_fb_y);
-      const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
-      const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
-      const T dot_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_fb_x_x + fa_y_y * w_b_x_fb_x_y + fa_y_z *
-          w_b_x_fb_x_z;
+      const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
+      const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
+      const T dot_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_fb_y_x + fa_y_y * w_b_x_fb_y_y + fa_y_z *
+          w_b_x_fb_y_z;
+      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
       const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
       const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
       const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
@@ -1491,40 +1440,35 @@ struct universal {
           w_a_x_fa_y_z;
       const T dot_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_fa_y_x + fb_y_y * w_a_x_fa_y_y + fb_y_z *
           w_a_x_fa_y_z;
-      const T g1_2 = dot_w_b_x_fb_x_fa_y + dot_w_a_x_fa_y_fb_x;
-      const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
-      const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
-      const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
-      const T dot_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_fb_y_x + fa_y_y * w_b_x_fb_y_y + fa_y_z *
-          w_b_x_fb_y_z;
-      const T g1_3 = dot_w_b_x_fb_y_fa_y + dot_w_a_x_fa_y_fb_y;
-      const T g1_4 = T(2) * (g1_2 * dot_fa_y_fb_y - g1_3 * dot_fa_y_fb_x) * g1_1;
-      const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
-      const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
-      const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
-      const T dot_w_b_x_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_w_b_x_fb_y_x + fa_y_y *
-          w_b_x_w_b_x_fb_y_y + fa_y_z * w_b_x_w_b_x_fb_y_z;
-      const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-      const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-      const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-      const T dot_w_a_x_w_a_x_fa_y_fb_x = fb_x_x * w_a_x_w_a_x_fa_y_x + fb_x_y *
-          w_a_x_w_a_x_fa_y_y + fb_x_z * w_a_x_w_a_x_fa_y_z;
-      const T dot_w_a_x_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_w_a_x_fa_y_x + fb_y_y *
-          w_a_x_w_a_x_fa_y_y + fb_y_z * w_a_x_w_a_x_fa_y_z;
-      const T dot_w_a_x_fa_y_w_b_x_fb_x = w_a_x_fa_y_z * w_b_x_fb_x_z + w_a_x_fa_y_y *
-          w_b_x_fb_x_y + w_a_x_fa_y_x * w_b_x_fb_x_x;
-      const T dot_w_a_x_fa_y_w_b_x_fb_y = w_a_x_fa_y_z * w_b_x_fb_y_z + w_a_x_fa_y_y *
-          w_b_x_fb_y_y + w_a_x_fa_y_x * w_b_x_fb_y_x;
-      const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-      const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-      const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-      const T dot_w_b_x_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_w_b_x_fb_x_x + fa_y_y *
-          w_b_x_w_b_x_fb_x_y + fa_y_z * w_b_x_w_b_x_fb_x_z;
-      g[0] = g1_1 * (dot_fa_y_fb_x *
-          (g1_4 * g1_2 + dot_w_b_x_w_b_x_fb_y_fa_y + dot_w_a_x_w_a_x_fa_y_fb_y +
-          dot_w_a_x_fa_y_w_b_x_fb_y * T(2)) + dot_fa_y_fb_y *
-          (g1_4 * g1_3 - dot_w_b_x_w_b_x_fb_x_fa_y - dot_w_a_x_w_a_x_fa_y_fb_x -
-          dot_w_a_x_fa_y_w_b_x_fb_x * T(2)));
+      const T g1_1 = dot_w_b_x_fb_y_fa_y + dot_w_a_x_fa_y_fb_y;
+      const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
+      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+      const T g1_2 = inverse(dot_fa_y_fb_x * dot_fa_y_fb_x + dot_fa_y_fb_y * dot_fa_y_fb_y);
+      const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
+      const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
+      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
+      const T dot_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_fb_x_x + fa_y_y * w_b_x_fb_x_y + fa_y_z *
+          w_b_x_fb_x_z;
+      const T g1_3 = dot_w_b_x_fb_x_fa_y + dot_w_a_x_fa_y_fb_x;
+      const T g1_4 = g1_2 * T(2) * (g1_3 * dot_fa_y_fb_x + g1_1 * dot_fa_y_fb_y);
+      const T g1_5 = dot_fa_y_fb_y * g1_2;
+      const T g1_6 = g1_1 * g1_2 - g1_4 * g1_5;
+      const T g1_7 = dot_fa_y_fb_x * g1_2;
+      const T g1_8 = g1_3 * g1_2 - g1_4 * g1_7;
+      const T g1_9 = fb_y_z * g1_8 - fb_x_z * g1_6 - g1_5 * w_b_x_fb_x_z + g1_7 * w_b_x_fb_y_z;
+      const T g1_10 = fb_y_y * g1_8 - fb_x_y * g1_6 - g1_5 * w_b_x_fb_x_y + g1_7 * w_b_x_fb_y_y;
+      const T g1_11 = g1_7 * fb_y_y - g1_5 * fb_x_y;
+      const T g1_12 = g1_7 * fb_y_z - g1_5 * fb_x_z;
+      const T axis_bend_b_dot_x = fa_y_z * g1_10 - fa_y_y * g1_9 + w_a_x_fa_y_z * g1_11 -
+          w_a_x_fa_y_y * g1_12;
+      const T g1_13 = fb_y_x * g1_8 - fb_x_x * g1_6 - g1_5 * w_b_x_fb_x_x + g1_7 * w_b_x_fb_y_x;
+      const T g1_14 = g1_7 * fb_y_x - g1_5 * fb_x_x;
+      const T axis_bend_b_dot_y = fa_y_x * g1_9 - fa_y_z * g1_13 - w_a_x_fa_y_z * g1_14 +
+          w_a_x_fa_y_x * g1_12;
+      const T axis_bend_b_dot_z = fa_y_y * g1_13 - fa_y_x * g1_10 + w_a_x_fa_y_y * g1_14 -
+          w_a_x_fa_y_x * g1_11;
+      g[0] = axis_bend_b_dot_x * (vb.wx - va.wx) + axis_bend_b_dot_y * (vb.wy - va.wy) +
+          axis_bend_b_dot_z * (vb.wz - va.wz);
     }
 
     // dC/dt at fixed q: nothing
@@ -1533,7 +1477,7 @@ struct universal {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 116 +, 166 *, 1 /, 1 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 119 +, 164 *, 1 /, 1 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -1544,10 +1488,10 @@ struct universal {
       const Pose<T>& b = q[1];
       const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
       const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
       const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
       const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
       const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
       const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
       const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
       const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
@@ -1555,113 +1499,118 @@ struct universal {
       const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
       const T H4_1 = inverse(dot_fa_y_fb_x * dot_fa_y_fb_x + dot_fa_y_fb_y * dot_fa_y_fb_y);
       const T H4_2 = lambda[0] * H4_1;
-      const T H4_3 = H4_2 * (fb_y_y * dot_fa_y_fb_x - fb_x_y * dot_fa_y_fb_y);
-      const T fa_y_x_fb_y_x = fa_y_y * fb_y_z - fa_y_z * fb_y_y;
-      const T fa_y_x_fb_y_y = fa_y_z * fb_y_x - fa_y_x * fb_y_z;
-      const T H4_4 = T(2) * H4_1 * H4_2;
-      const T fa_y_x_fb_x_x = fa_y_y * fb_x_z - fa_y_z * fb_x_y;
-      const T fa_y_x_fb_x_y = fa_y_z * fb_x_x - fa_y_x * fb_x_z;
-      const T H4_5 = H4_4 * (dot_fa_y_fb_x * fa_y_x_fb_y_x - dot_fa_y_fb_y * fa_y_x_fb_x_x);
-      const T H4_6 = H4_5 * dot_fa_y_fb_x - H4_2 * fa_y_x_fb_y_x;
-      const T H4_7 = H4_2 * fa_y_x_fb_x_x + H4_5 * dot_fa_y_fb_y;
-      const T H4_8 = fb_x_z * H4_6 + fb_y_z * H4_7;
-      const T H4_9 = H4_3 + H4_8;
-      const T H4_10 = H4_2 * (fb_x_z * dot_fa_y_fb_y - fb_y_z * dot_fa_y_fb_x);
-      const T H4_11 = fb_x_y * H4_6 + fb_y_y * H4_7;
-      const T H4_12 = H4_10 + H4_11;
-      const T H4_13 = fa_y_y * H4_9 - fa_y_z * H4_12;
-      const T H4_1_2 = fb_x_x * H4_6 + fb_y_x * H4_7;
-      const T H4_2_2 = fa_y_z * H4_1_2 - fa_y_x * H4_9;
-      const T H4_1_3 = fa_y_x * H4_12 - fa_y_y * H4_1_2;
-      const T H4_1_4 = dot_fa_y_fb_y * H4_2;
-      const T H4_2_3 = H4_1_4 * fa_y_y;
-      const T H4_3_2 = H4_2_3 + fa_y_z * H4_6;
-      const T H4_4_2 = dot_fa_y_fb_x * H4_2;
-      const T H4_5_2 = H4_4_2 * fa_y_y;
-      const T H4_6_2 = fa_y_z * H4_7 - H4_5_2;
-      const T H4_7_2 = H4_1_4 * fa_y_z;
-      const T H4_8_2 = fa_y_y * H4_6 - H4_7_2;
-      const T H4_9_2 = H4_4_2 * fa_y_z;
-      const T H4_10_2 = H4_9_2 + fa_y_y * H4_7;
-      const T H4_11_2 = fb_x_y * H4_3_2 + fb_y_y * H4_6_2 - fb_x_z * H4_8_2 - fb_y_z * H4_10_2;
-      const T H4_1_5 = fa_y_x * H4_8 - fb_x_x * H4_3_2 - fb_y_x * H4_6_2;
-      const T H4_1_6 = fb_x_x * H4_8_2 + fb_y_x * H4_10_2 - fa_y_x * H4_11;
-      const T H5_1 = H4_2 * (fb_x_x * dot_fa_y_fb_y - fb_y_x * dot_fa_y_fb_x);
-      const T H5_2 = H4_4 * (dot_fa_y_fb_x * fa_y_x_fb_y_y - dot_fa_y_fb_y * fa_y_x_fb_x_y);
-      const T H5_3 = H5_2 * dot_fa_y_fb_x - H4_2 * fa_y_x_fb_y_y;
-      const T H5_4 = H4_2 * fa_y_x_fb_x_y + H5_2 * dot_fa_y_fb_y;
-      const T H5_5 = fb_x_z * H5_3 + fb_y_z * H5_4;
-      const T H5_6 = H5_1 + H5_5;
-      const T H5_7 = fb_x_y * H5_3 + fb_y_y * H5_4;
-      const T H5_8 = fa_y_y * H5_6 - fa_y_z * H5_7;
-      const T H5_1_2 = fb_x_x * H5_3 + fb_y_x * H5_4;
-      const T H5_2_2 = H5_1_2 - H4_10;
-      const T H5_3_2 = fa_y_z * H5_2_2 - fa_y_x * H5_6;
-      const T H5_1_3 = fa_y_x * H5_7 - fa_y_y * H5_2_2;
-      const T H5_1_4 = H4_1_4 * fa_y_x;
-      const T H5_2_3 = fa_y_z * H5_3 - H5_1_4;
-      const T H5_3_3 = H4_4_2 * fa_y_x;
-      const T H5_4_2 = H5_3_3 + fa_y_z * H5_4;
-      const T H5_5_2 = fb_x_y * H5_2_3 + fb_y_y * H5_4_2 - fa_y_y * H5_5;
-      const T H5_1_5 = H4_7_2 + fa_y_x * H5_3;
-      const T H5_2_4 = fa_y_x * H5_4 - H4_9_2;
+      const T H4_3 = fa_y_y * fb_y_z;
+      const T H4_4 = fb_y_y * fa_y_z;
+      const T H4_5 = H4_3 - H4_4;
+      const T H4_6 = dot_fa_y_fb_x * H4_2;
+      const T H4_7 = H4_1 * T(2);
+      const T H4_8 = H4_6 * H4_7;
+      const T H4_9 = dot_fa_y_fb_y * H4_2;
+      const T H4_10 = H4_9 * H4_7;
+      const T H4_11 = fa_y_y * fb_x_z;
+      const T H4_12 = fb_x_y * fa_y_z;
+      const T H4_13 = H4_11 - H4_12;
+      const T H4_14 = H4_8 * H4_5 - H4_10 * H4_13;
+      const T H4_15 = H4_14 * dot_fa_y_fb_x - H4_2 * H4_5;
+      const T H4_16 = H4_2 * H4_13 + H4_14 * dot_fa_y_fb_y;
+      const T H4_17 = fb_x_z * H4_15 + fb_y_z * H4_16;
+      const T H4_18 = H4_9 * fb_x_y - H4_6 * fb_y_y;
+      const T H4_19 = H4_17 - H4_18;
+      const T H4_20 = fb_x_y * H4_15 + fb_y_y * H4_16;
+      const T H4_21 = H4_6 * fb_y_z - H4_9 * fb_x_z;
+      const T H4_22 = H4_20 - H4_21;
+      const T H4_23 = fa_y_y * H4_19 - fa_y_z * H4_22;
+      const T H4_1_2 = fb_x_x * H4_15 + fb_y_x * H4_16;
+      const T H4_2_2 = fa_y_z * H4_1_2 - fa_y_x * H4_19;
+      const T H4_1_3 = fa_y_x * H4_22 - fa_y_y * H4_1_2;
+      const T H4_1_4 = H4_9 * fa_y_y;
+      const T H4_2_3 = H4_1_4 + fa_y_z * H4_15;
+      const T H4_3_2 = H4_6 * fa_y_y;
+      const T H4_4_2 = fa_y_z * H4_16 - H4_3_2;
+      const T H4_5_2 = H4_9 * fa_y_z;
+      const T H4_6_2 = fa_y_y * H4_15 - H4_5_2;
+      const T H4_7_2 = H4_6 * fa_y_z;
+      const T H4_8_2 = H4_7_2 + fa_y_y * H4_16;
+      const T H4_9_2 = fb_x_y * H4_2_3 + fb_y_y * H4_4_2 - fb_x_z * H4_6_2 - fb_y_z * H4_8_2;
+      const T H4_1_5 = fa_y_x * H4_17 - fb_x_x * H4_2_3 - fb_y_x * H4_4_2;
+      const T H4_1_6 = fb_x_x * H4_6_2 + fb_y_x * H4_8_2 - fa_y_x * H4_20;
+      const T H5_1 = H4_6 * fb_y_x - H4_9 * fb_x_x;
+      const T H5_2 = fb_y_x * fa_y_z;
+      const T H5_3 = H5_2 - fa_y_x * fb_y_z;
+      const T H5_4 = fa_y_z * fb_x_x;
+      const T H5_5 = H5_4 - fa_y_x * fb_x_z;
+      const T H5_6 = H4_8 * H5_3 - H4_10 * H5_5;
+      const T H5_7 = H5_6 * dot_fa_y_fb_x - H4_2 * H5_3;
+      const T H5_8 = H4_2 * H5_5 + H5_6 * dot_fa_y_fb_y;
+      const T H5_9 = fb_x_z * H5_7 - H5_1 + fb_y_z * H5_8;
+      const T H5_10 = fb_x_y * H5_7 + fb_y_y * H5_8;
+      const T H5_11 = fa_y_y * H5_9 - fa_y_z * H5_10;
+      const T H5_1_2 = fb_x_x * H5_7 + fb_y_x * H5_8;
+      const T H5_2_2 = H5_1_2 + H4_21;
+      const T H5_3_2 = fa_y_z * H5_2_2 - fa_y_x * H5_9;
+      const T H5_1_3 = fa_y_x * H5_10 - fa_y_y * H5_2_2;
+      const T H5_1_4 = H4_9 * fa_y_x;
+      const T H5_2_3 = fa_y_z * H5_7 - H5_1_4;
+      const T H5_3_3 = H4_6 * fa_y_x;
+      const T H5_4_2 = H5_3_3 + fa_y_z * H5_8;
+      const T H5_5_2 = fb_x_y * H5_2_3 - H4_11 * H5_7 - H4_3 * H5_8 + fb_y_y * H5_4_2;
+      const T H5_1_5 = H4_5_2 + fa_y_x * H5_7;
+      const T H5_2_4 = fa_y_x * H5_8 - H4_7_2;
       const T H5_3_4 = fb_x_z * H5_1_5 - fb_x_x * H5_2_3 - fb_y_x * H5_4_2 + fb_y_z * H5_2_4;
       const T H5_1_6 = fa_y_y * H5_1_2 - fb_x_y * H5_1_5 - fb_y_y * H5_2_4;
-      const T fa_y_x_fb_y_z = fa_y_x * fb_y_y - fa_y_y * fb_y_x;
-      const T fa_y_x_fb_x_z = fa_y_x * fb_x_y - fa_y_y * fb_x_x;
-      const T H6_1 = H4_4 * (dot_fa_y_fb_x * fa_y_x_fb_y_z - dot_fa_y_fb_y * fa_y_x_fb_x_z);
-      const T H6_2 = H6_1 * dot_fa_y_fb_x - H4_2 * fa_y_x_fb_y_z;
-      const T H6_3 = H4_2 * fa_y_x_fb_x_z + H6_1 * dot_fa_y_fb_y;
-      const T H6_4 = fb_x_z * H6_2 + fb_y_z * H6_3;
-      const T H6_5 = fb_x_y * H6_2 + fb_y_y * H6_3;
-      const T H6_6 = H6_5 - H5_1;
-      const T H6_7 = fa_y_y * H6_4 - fa_y_z * H6_6;
-      const T H6_1_2 = fb_x_x * H6_2 + fb_y_x * H6_3;
-      const T H6_2_2 = H6_1_2 - H4_3;
-      const T H6_3_2 = fa_y_z * H6_2_2 - fa_y_x * H6_4;
-      const T H6_1_3 = fa_y_x * H6_6 - fa_y_y * H6_2_2;
-      const T H6_1_4 = H5_1_4 + fa_y_y * H6_2;
-      const T H6_2_3 = fa_y_y * H6_3 - H5_3_3;
-      const T H6_3_3 = fa_y_z * H6_5 - fb_x_z * H6_1_4 - fb_y_z * H6_2_3;
-      const T H6_1_5 = fa_y_x * H6_2 - H4_2_3;
-      const T H6_2_4 = H4_5_2 + fa_y_x * H6_3;
-      const T H6_3_4 = fb_x_z * H6_1_5 + fb_y_z * H6_2_4 - fa_y_z * H6_1_2;
+      const T H6_1 = fa_y_x * fb_y_y - fa_y_y * fb_y_x;
+      const T H6_2 = fa_y_x * fb_x_y - fa_y_y * fb_x_x;
+      const T H6_3 = H4_8 * H6_1 - H4_10 * H6_2;
+      const T H6_4 = H6_3 * dot_fa_y_fb_x - H4_2 * H6_1;
+      const T H6_5 = H4_2 * H6_2 + H6_3 * dot_fa_y_fb_y;
+      const T H6_6 = fb_x_z * H6_4 + fb_y_z * H6_5;
+      const T H6_7 = H5_1 + fb_x_y * H6_4 + fb_y_y * H6_5;
+      const T H6_8 = fa_y_y * H6_6 - fa_y_z * H6_7;
+      const T H6_1_2 = H4_18 + fb_x_x * H6_4 + fb_y_x * H6_5;
+      const T H6_2_2 = fa_y_z * H6_1_2 - fa_y_x * H6_6;
+      const T H6_1_3 = fa_y_x * H6_7 - fa_y_y * H6_1_2;
+      const T H6_1_4 = H5_1_4 + fa_y_y * H6_4;
+      const T H6_2_3 = fa_y_y * H6_5 - H5_3_3;
+      const T H6_3_2 = H4_12 * H6_4 + H4_4 * H6_5 - fb_x_z * H6_1_4 - fb_y_z * H6_2_3;
+      const T H6_1_5 = fa_y_x * H6_4 - H4_1_4;
+      const T H6_2_4 = H4_3_2 + fa_y_x * H6_5;
+      const T H6_3_3 = fb_x_z * H6_1_5 - H5_4 * H6_4 - H5_2 * H6_5 + fb_y_z * H6_2_4;
       const T H6_1_6 = fb_x_x * H6_1_4 + fb_y_x * H6_2_3 - fb_x_y * H6_1_5 - fb_y_y * H6_2_4;
-      H[3][3] = H4_13;
+      H[3][3] = H4_23;
       H[3][4] = H4_2_2;
       H[3][5] = H4_1_3;
-      H[3][9] = H4_11_2;
+      H[3][9] = H4_9_2;
       H[3][10] = H4_1_5;
       H[3][11] = H4_1_6;
-      H[4][3] = H5_8;
+      H[4][3] = H5_11;
       H[4][4] = H5_3_2;
       H[4][5] = H5_1_3;
       H[4][9] = H5_5_2;
       H[4][10] = H5_3_4;
       H[4][11] = H5_1_6;
-      H[5][3] = H6_7;
-      H[5][4] = H6_3_2;
+      H[5][3] = H6_8;
+      H[5][4] = H6_2_2;
       H[5][5] = H6_1_3;
-      H[5][9] = H6_3_3;
-      H[5][10] = H6_3_4;
+      H[5][9] = H6_3_2;
+      H[5][10] = H6_3_3;
       H[5][11] = H6_1_6;
-      H[9][3] = -H4_13;
+      H[9][3] = -H4_23;
       H[9][4] = -H4_2_2;
       H[9][5] = -H4_1_3;
-      H[9][9] = -H4_11_2;
+      H[9][9] = -H4_9_2;
       H[9][10] = -H4_1_5;
       H[9][11] = -H4_1_6;
-      H[10][3] = -H5_8;
+      H[10][3] = -H5_11;
       H[10][4] = -H5_3_2;
       H[10][5] = -H5_1_3;
       H[10][9] = -H5_5_2;
       H[10][10] = -H5_3_4;
       H[10][11] = -H5_1_6;
-      H[11][3] = -H6_7;
-      H[11][4] = -H6_3_2;
+      H[11][3] = -H6_8;
+      H[11][4] = -H6_2_2;
       H[11][5] = -H6_1_3;
-      H[11][9] = -H6_3_3;
-      H[11][10] = -H6_3_4;
+      H[11][9] = -H6_3_2;
+      H[11][10] = -H6_3_3;
       H[11][11] = -H6_1_6;
     }
 
@@ -2200,7 +2149,8 @@ struct universal::bend_a::a_immovable : universal::bend_a {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& mb = m[1];
-    K[0] = mb.I * (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+    const T dot_axis_bend_a_axis_bend_a = J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z;
+    K[0] = mb.I * dot_axis_bend_a_axis_bend_a;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
@@ -2233,59 +2183,21 @@ struct universal::bend_a::a_immovable : universal::bend_a {
 struct universal::bend_a::b_immovable : universal::bend_a {
   static constexpr int immovable_body = 1;
 
-  template <class T>
-  struct Jacobian {
-    T wa_x, wa_y, wa_z;
-  };
-
-  // C and J: 32 +, 55 *, 1 /, 1 <, 1 call
-  template <class T>
-  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
-      Jacobian<T>& J) {
-    using std::atan2;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T dot_fa_x_fb_z = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T dot_fa_z_fb_z = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-    const T wa_x_1 = inverse(dot_fa_x_fb_z * dot_fa_x_fb_z + dot_fa_z_fb_z * dot_fa_z_fb_z);
-    const T wa_x_2 = dot_fa_x_fb_z * wa_x_1;
-    const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
-    const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-    const T wa_x_3 = dot_fa_z_fb_z * wa_x_1;
-    const T fa_x_x_fb_z_x = fa_x_y * fb_z_z - fa_x_z * fb_z_y;
-    const T fa_x_x_fb_z_y = fa_x_z * fb_z_x - fa_x_x * fb_z_z;
-    const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
-    const T fa_x_x_fb_z_z = fa_x_x * fb_z_y - fa_x_y * fb_z_x;
-    C[0] = atan2(dot_fa_x_fb_z, dot_fa_z_fb_z);
-    J.wa_x = wa_x_3 * fa_x_x_fb_z_x - wa_x_2 * fa_z_x_fb_z_x;
-    J.wa_y = wa_x_3 * fa_x_x_fb_z_y - wa_x_2 * fa_z_x_fb_z_y;
-    J.wa_z = wa_x_3 * fa_x_x_fb_z_z - wa_x_2 * fa_z_x_fb_z_z;
-  }
-
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    const T K11_1 = J.wa_z * T(2);
-    K[0] = ma.Izz * J.wa_z * J.wa_z + J.wa_x *
-        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y * T(2) + K11_1 * ma.Ixz) + J.wa_y *
-        (ma.Iyy * J.wa_y + K11_1 * ma.Iyz);
+    const T K11_1 = J.axis_bend_a_z * T(2);
+    K[0] = ma.Izz * J.axis_bend_a_z * J.axis_bend_a_z + J.axis_bend_a_x *
+        (ma.Ixx * J.axis_bend_a_x + ma.Ixy * J.axis_bend_a_y * T(2) + K11_1 * ma.Ixz) +
+        J.axis_bend_a_y * (ma.Iyy * J.axis_bend_a_y + K11_1 * ma.Iyz);
   }
 
   // J v: 2 +, 3 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz;
+    Jv[0] = J.axis_bend_a_x * va.wx + J.axis_bend_a_y * va.wy + J.axis_bend_a_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 9 +, 12 *
@@ -2294,9 +2206,9 @@ struct universal::bend_a::b_immovable : universal::bend_a {
       Velocity<T> (&v)[2]) {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
-    const T v1_1 = J.wa_x * lambda[0];
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1 = J.axis_bend_a_x * lambda[0];
+    const T v1_2 = lambda[0] * J.axis_bend_a_y;
+    const T v1_3 = lambda[0] * J.axis_bend_a_z;
     v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
     v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
     v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
@@ -2308,9 +2220,9 @@ struct universal::bend_a::b_immovable : universal::bend_a {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = J.axis_bend_a_x;
+    D[0][4] = J.axis_bend_a_y;
+    D[0][5] = J.axis_bend_a_z;
   }
 
   // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
@@ -2321,9 +2233,9 @@ struct universal::bend_a::b_immovable : universal::bend_a {
       for (T& entry : row) entry = T(0);
     }
     const InverseMass<T>& ma = m[0];
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = ma.Ixx * J.axis_bend_a_x + ma.Ixy * J.axis_bend_a_y + ma.Ixz * J.axis_bend_a_z;
+    D[0][4] = ma.Ixy * J.axis_bend_a_x + ma.Iyy * J.axis_bend_a_y + ma.Iyz * J.axis_bend_a_z;
+    D[0][5] = ma.Ixz * J.axis_bend_a_x + ma.Iyz * J.axis_bend_a_y + ma.Izz * J.axis_bend_a_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
@@ -2331,7 +2243,9 @@ struct universal::bend_a::b_immovable : universal::bend_a {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_axis_bend_a_axis_bend_a = J.axis_bend_a_x * J.axis_bend_a_x + J.axis_bend_a_y *
+        J.axis_bend_a_y + J.axis_bend_a_z * J.axis_bend_a_z;
+    K[0] = ma.I * dot_axis_bend_a_axis_bend_a;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
@@ -2341,9 +2255,9 @@ struct universal::bend_a::b_immovable : universal::bend_a {
     const Velocity<T> va = v[0];
     const IsotropicInverseMass<T>& ma = m[0];
     const T v1_1 = ma.I * lambda[0];
-    v[0].wx = va.wx + v1_1 * J.wa_x;
-    v[0].wy = va.wy + v1_1 * J.wa_y;
-    v[0].wz = va.wz + v1_1 * J.wa_z;
+    v[0].wx = va.wx + v1_1 * J.axis_bend_a_x;
+    v[0].wy = va.wy + v1_1 * J.axis_bend_a_y;
+    v[0].wz = va.wz + v1_1 * J.axis_bend_a_z;
   }
 
   // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
@@ -2354,9 +2268,9 @@ struct universal::bend_a::b_immovable : universal::bend_a {
       for (T& entry : row) entry = T(0);
     }
     const IsotropicInverseMass<T>& ma = m[0];
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = ma.I * J.axis_bend_a_x;
+    D[0][4] = ma.I * J.axis_bend_a_y;
+    D[0][5] = ma.I * J.axis_bend_a_z;
   }
 };
 
@@ -2369,7 +2283,7 @@ struct universal::bend_b::a_immovable : universal::bend_b {
     T wb_x, wb_y, wb_z;
   };
 
-  // C and J: 32 +, 55 *, 1 /, 1 <, 1 call
+  // C and J: 29 +, 49 *, 1 /, 1 <, 1 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -2388,18 +2302,15 @@ struct universal::bend_b::a_immovable : universal::bend_b {
     const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
     const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
     const T wb_x_1 = inverse(dot_fa_y_fb_x * dot_fa_y_fb_x + dot_fa_y_fb_y * dot_fa_y_fb_y);
-    const T wb_x_2 = dot_fa_y_fb_x * wb_x_1;
-    const T fa_y_x_fb_y_x = fa_y_y * fb_y_z - fa_y_z * fb_y_y;
-    const T fa_y_x_fb_y_y = fa_y_z * fb_y_x - fa_y_x * fb_y_z;
-    const T wb_x_3 = dot_fa_y_fb_y * wb_x_1;
-    const T fa_y_x_fb_x_x = fa_y_y * fb_x_z - fa_y_z * fb_x_y;
-    const T fa_y_x_fb_x_y = fa_y_z * fb_x_x - fa_y_x * fb_x_z;
-    const T fa_y_x_fb_y_z = fa_y_x * fb_y_y - fa_y_y * fb_y_x;
-    const T fa_y_x_fb_x_z = fa_y_x * fb_x_y - fa_y_y * fb_x_x;
+    const T wb_x_2 = dot_fa_y_fb_y * wb_x_1;
+    const T wb_x_3 = dot_fa_y_fb_x * wb_x_1;
+    const T wb_x_4 = wb_x_3 * fb_y_z - wb_x_2 * fb_x_z;
+    const T wb_x_5 = wb_x_3 * fb_y_y - wb_x_2 * fb_x_y;
+    const T wb_y_1 = wb_x_3 * fb_y_x - wb_x_2 * fb_x_x;
     C[0] = atan2(dot_fa_y_fb_x, dot_fa_y_fb_y);
-    J.wb_x = wb_x_2 * fa_y_x_fb_y_x - wb_x_3 * fa_y_x_fb_x_x;
-    J.wb_y = wb_x_2 * fa_y_x_fb_y_y - wb_x_3 * fa_y_x_fb_x_y;
-    J.wb_z = wb_x_2 * fa_y_x_fb_y_z - wb_x_3 * fa_y_x_fb_x_z;
+    J.wb_x = fa_y_y * wb_x_4 - fa_y_z * wb_x_5;
+    J.wb_y = fa_y_z * wb_y_1 - fa_y_x * wb_x_4;
+    J.wb_z = fa_y_x * wb_x_5 - fa_y_y * wb_y_1;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 11 *
@@ -2462,7 +2373,8 @@ struct universal::bend_b::a_immovable : universal::bend_b {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& mb = m[1];
-    K[0] = mb.I * (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+    const T dot_axis_bend_a_axis_bend_a = J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z;
+    K[0] = mb.I * dot_axis_bend_a_axis_bend_a;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *

@@ -54,6 +54,13 @@ JointType described(const Registered& own) {
   return type;
 }
 
+template <class T>
+auto bounds_of(std::shared_ptr<const OwnKernel> kernel, std::size_t i) {
+  return [kernel = std::move(kernel), i](T C, const T* parameters, T time, RowBounds<T>& B) {
+    run_own<T>(kernel->bounded[i].bounds, {.parameters = parameters, .time = &time, .C = &C}, &B.lower);
+  };
+}
+
 template <class S>
 JointEntry<S> entry_of(std::shared_ptr<const OwnKernel> kernel) {
   using T = typename S::Scalar;
@@ -71,10 +78,7 @@ JointEntry<S> entry_of(std::shared_ptr<const OwnKernel> kernel) {
   const std::vector<const Law<S>*> laws = own_bounded_laws<S>(*kernel);
   for (std::size_t i = 0; i < laws.size(); ++i) {
     const OwnBound& bound = kernel->bounded[i];
-    entry.bounded.push_back(
-        {bound.coordinate, bound.name, laws[i], [&bound](T C, const T* parameters, T time, RowBounds<T>& B) {
-           run_own<T>(bound.bounds, {.parameters = parameters, .time = &time, .C = &C}, &B.lower);
-         }});
+    entry.bounded.push_back({bound.coordinate, bound.name, laws[i], bounds_of<T>(kernel, i)});
   }
   return entry;
 }
@@ -104,11 +108,7 @@ FunctionsOnCoordinate functions_of(const std::shared_ptr<const OwnKernel>& kerne
     functions.has_value = [kernel](double C, const double* parameters, double time) {
       return has_value(*kernel->law, C, parameters, time);
     };
-  else
-    functions.bounds = [kernel](double C, const double* parameters, double time, RowBounds<double>& B) {
-      const OwnFunction& bounds = kernel->bounded.front().bounds;
-      run_own<double>(bounds, {.parameters = parameters, .time = &time, .C = &C}, &B.lower);
-    };
+  else functions.bounds = bounds_of<double>(kernel, 0);
   return functions;
 }
 

@@ -23,6 +23,7 @@ class OwnEffect {
   explicit OwnEffect(const void* law)
       : acts(static_cast<const OwnLaw*>(law)->acts), law_(*static_cast<const OwnLaw*>(law)) {}
   const std::vector<bool>& acts;
+  bool stores() const { return law_.energy.exists(); }
 
   template <class T>
   void energy(const T (&C)[rows], const OwnParameters<T>& p, T mass, T& E) const {
@@ -37,12 +38,6 @@ class OwnEffect {
                 T (&F)[rows]) const {
     std::fill_n(F, rows, T(0));
     if (law_.unstored.exists()) run_own<T>(law_.unstored, at(C, rate, p, time, mass), F);
-    if (law_.energy.exists()) return;
-    T lower[rows], upper[rows];
-    std::fill_n(lower, rows, T(-unbounded)), std::fill_n(upper, rows, T(unbounded));
-    force(C, rate, p, time, mass, F);
-    limits(C, p, time, lower, upper);
-    for (int r = 0; r < rows; ++r) F[r] = std::max(lower[r], std::min(F[r], upper[r]));
   }
   template <class T>
   void slopes(const T (&C)[rows], const T (&rate)[rows], const OwnParameters<T>& p, T time, T mass, T (&k)[rows][rows],

@@ -6,6 +6,7 @@ namespace cdot::derive {
 namespace {
 
 constexpr double too_small = 1e-3;  // to divide by
+constexpr const char* right_if_C_is = ", which is right only with a C scaled alike";
 
 // Some of a matrix: rows and columns, the ends not included.
 struct Region {
@@ -96,14 +97,16 @@ std::optional<Slip> reciprocal(const Whole& whole) {
 
 }  // namespace
 
+std::optional<Slip> slip_of_scale(const Whole& whole) {
+  const bool scales = whole.part && whole.what != "C" && whole.what != "K" && whole.what != "update";
+  std::string all = factor_with(ratios(whole, {0, whole.mine.rows, 0, whole.mine.columns}), whole);
+  if (whole.what == "J" && all.starts_with('-')) all.erase(0, 1);  // of either sign
+  if (all.empty()) return {};
+  return Slip{"factor", fmt::format("all of it is {} times what it should be{}", all, scales ? right_if_C_is : "")};
+}
+
 std::optional<Slip> slip_of_factor(const Whole& whole) {
   const int rows = whole.mine.rows, columns = whole.mine.columns;
-  const bool scales = whole.part && whole.what != "C" && whole.what != "K" && whole.what != "update";
-  std::string all = factor_with(ratios(whole, {0, rows, 0, columns}), whole);
-  if (whole.what == "J" && all.starts_with('-')) all.erase(0, 1);  // of either sign
-  if (!all.empty())
-    return Slip{"factor", fmt::format("all of it is {} times what it should be{}", all,
-                                      scales ? ", which is right only with a C scaled alike" : "")};
   for (int r = 0; r < rows && whole.what != "K"; ++r) {
     const std::string k = factor_with(ratios(whole, {r, r + 1, 0, columns}), whole);
     if (!k.empty()) return Slip{"factor", fmt::format("row {} is {} times what it should be", whole.row_name(r), k)};

@@ -42,6 +42,16 @@ Slip in_name(const Whole& whole, Expr stands, Expr belongs) {
   return slip;
 }
 
+// belongs or -belongs, whichever is nearer to what stands there: a J has either sign.
+Expr nearer_sign(const Whole& whole, Expr stands, Expr belongs) {
+  double apart = 0;
+  for (const Sample& sample : whole.samples()) {
+    const List is = values_at(components_of(stands), sample), right = values_at(components_of(belongs), sample);
+    for (std::size_t i = 0; i < is.size(); ++i) apart += std::abs(is[i] - right[i]) - std::abs(is[i] + right[i]);
+  }
+  return apart > 0 ? -belongs : belongs;
+}
+
 }  // namespace
 
 std::optional<Slip> slip_of_name(const Whole& whole) {
@@ -52,7 +62,8 @@ std::optional<Slip> slip_of_name(const Whole& whole) {
     for (const Expr belongs : nodes) {
       if (belongs->vector != stands->vector || is_tensor(belongs) || belongs->kind == Kind::number) continue;
       for (const Rational sign : {Rational(1), Rational(-1)})
-        if (whole.is_right_with({{&*stands, sign * belongs}})) return in_name(whole, stands, sign * belongs);
+        if (whole.is_right_with({{&*stands, sign * belongs}}))
+          return in_name(whole, stands, whole.what == "J" ? nearer_sign(whole, stands, belongs) : sign * belongs);
     }
   return {};
 }

@@ -70,8 +70,8 @@ std::vector<Expr> Whole::substituted(const Matrix& in, const std::map<const Node
 std::optional<Slip> slip_of_whole(Entry& entry, const Part* part, const std::string& what, const Matrix& published,
                                   const Matrix& generated) {
   const Whole whole(entry, part, what, published, generated);
-  return first_of({slip_of_order, slip_of_frame, slip_of_sign, slip_of_masses, slip_of_symbol, slip_of_factor,
-                   slip_of_name, slip_of_exchange},
+  return first_of({slip_of_order, slip_of_frame, slip_of_sign, slip_of_masses, slip_of_diagonal, slip_of_scale,
+                   slip_of_symbol, slip_of_factor, slip_of_name, slip_of_exchange, slip_of_rows},
                   whole);
 }
 

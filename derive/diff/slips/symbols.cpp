@@ -10,16 +10,22 @@ bool is_with(const Whole& whole, std::map<const Node*, Expr> named, Expr lever, 
   return whole.is([&](std::size_t i) { return values_at(entries, whole.samples()[i]); });
 }
 
-// An arm, or a name that the spec gives to a vector, times 0, 1/2, 2 or -1.
+// An arm, a number, or a name that the spec gives to a vector, times 0, 1/2, 2 or -1; the inverse of a number.
 std::optional<Slip> lever(const Whole& whole) {
   std::vector<std::pair<std::string, Expr>> levers;
   for (const Parameter& p : whole.entry.joint.parameters)
-    if (p.kind == ParameterKind::point && p.body >= 0) levers.emplace_back(p.symbol->symbol, p.symbol);
+    if ((p.kind == ParameterKind::point && p.body >= 0) || p.kind == ParameterKind::scalar)
+      levers.emplace_back(p.symbol->symbol, p.symbol);
   for (const Let& let : whole.entry.joint.lets)
     if (let.value->vector) levers.emplace_back(let.name, let.value);
   std::map<const Node*, Expr> named;  // stays as it is
   for (const Let& let : whole.entry.joint.lets) named.emplace(&*let.value, let.value);
-  for (const auto& [name, lever] : levers)
+  for (const auto& [name, lever] : levers) {
+    if (!lever->vector && is_with(whole, named, lever, pow(lever, -1)))
+      return Slip{"factor", fmt::format("1/{0} stands where {0} belongs", name)};
+    if (lever->vector && whole.entry.joint.dimension == 2 &&
+        (is_with(whole, named, lever, perp(lever)) || is_with(whole, named, lever, -perp(lever))))
+      return Slip{"factor", fmt::format("{0} and perp({0}) are exchanged", name)};
     for (const auto& [factor, words] : {std::pair(Rational(1, 2), "half of {} stands where {} belongs"),
                                         std::pair(Rational(2), "twice {} stands where {} belongs"),
                                         std::pair(Rational(0), "the terms with {} are missing"),
@@ -29,6 +35,7 @@ std::optional<Slip> lever(const Whole& whole) {
                     : factor == Rational(-1) ? "sign"
                                              : "factor",
                     fmt::format(fmt::runtime(words), name, name)};
+  }
   return {};
 }
 

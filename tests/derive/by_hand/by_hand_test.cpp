@@ -1,5 +1,5 @@
-// Generated kernels of points on curves and surfaces beside those of planar.hpp and spatial.hpp: the same C, J and K,
-// and in no quantity more operations. ledger.csv has both counts (CDOT_UPDATE=1 rewrites it).
+// Generated kernels beside those of planar.hpp, spatial.hpp and turns.hpp: the same C, J and K, and in no quantity more
+// operations. ledger.csv has both counts (CDOT_UPDATE=1 rewrites it).
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -13,8 +13,15 @@
 #include <cdot/planar/registry.hpp>
 #include <cdot/spatial/registry.hpp>
 
+#include "generated/spatial/brake.hpp"
+#include "generated/spatial/constant_velocity.hpp"
+#include "generated/spatial/hinge.hpp"
+#include "generated/spatial/six_dof.hpp"
+#include "generated/spatial/swing_twist.hpp"
+#include "generated/spatial/universal.hpp"
 #include "tests/derive/by_hand/planar.hpp"
 #include "tests/derive/by_hand/spatial.hpp"
+#include "tests/derive/by_hand/turns.hpp"
 #include "tests/kernels/counted.hpp"
 
 namespace {
@@ -108,6 +115,9 @@ struct Space {
   static std::vector<Counted> columns(const by_hand::SpatialRow<Counted>& J) {
     return {J.n.x, J.n.y, J.n.z, J.wa.x, J.wa.y, J.wa.z, -J.n.x, -J.n.y, -J.n.z, -J.wb.x, -J.wb.y, -J.wb.z};
   }
+  static std::vector<Counted> columns(const by_hand::Turn<Counted>& J) {
+    return {0, 0, 0, -J.w.x, -J.w.y, -J.w.z, 0, 0, 0, J.w.x, J.w.y, J.w.z};
+  }
 };
 
 // C, J and K, and their costs; the cost of J contains that of C.
@@ -143,9 +153,15 @@ Evaluated written(const typename In::Pose (&q)[2], const typename In::Mass (&m)[
   Counted C, K;
   Row J;
   Evaluated out;
-  out.of_C = cost_of([&] { by_hand::position<Hand>(q, p, C); });
-  out.C = {C.value};
-  out.of_J = cost_of([&] { by_hand::jacobian<Hand>(q, p, C, J); });
+  if constexpr (std::is_same_v<Row, by_hand::Turn<Counted>>) {
+    out.of_C = cost_of([&] { Hand::position(q, p, C); });
+    out.C = {C.value};
+    out.of_J = cost_of([&] { Hand::jacobian(q, p, C, J); });
+  } else {
+    out.of_C = cost_of([&] { by_hand::position<Hand>(q, p, C); });
+    out.C = {C.value};
+    out.of_J = cost_of([&] { by_hand::jacobian<Hand>(q, p, C, J); });
+  }
   out.C.push_back(C.value);
   out.of_K = cost_of([&] { by_hand::effective_mass(J, m, K); });
   int sign = 1;
@@ -177,13 +193,14 @@ void expect_equal(const std::string& what, const std::vector<double>& ours, cons
   }
 }
 
-template <class Kernel, class Hand, class In, class Row>
+// A kernel of `Joint`: its rows, or one of its coordinates.
+template <class Joint, class Kernel, class Hand, class In, class Row>
 void compare(std::vector<Line>& lines) {
   Random random;
-  const std::string name =
-      std::string(In::columns(Row{}).size() == 6 ? "planar," : "spatial,") + std::string(Kernel::name);
+  std::string name = std::string(In::columns(Row{}).size() == 6 ? "planar," : "spatial,") + std::string(Joint::name);
+  if (!std::is_same_v<Joint, Kernel>) name += "." + std::string(Kernel::name);
   for (int sample = 0; sample < 20; ++sample) {
-    const auto p = random_parameters<Kernel>(random);
+    const auto p = random_parameters<Joint>(random);
     const typename In::Pose q[2] = {In::pose(random), In::pose(random)};
     const typename In::Mass m[2] = {In::mass(random), In::mass(random)};
     const Evaluated ours = generated<Kernel, In>(q, m, p), theirs = written<Hand, In, Row>(q, m, p);
@@ -199,11 +216,35 @@ void compare(std::vector<Line>& lines) {
 
 template <class Kernel, class Hand>
 void in_the_plane(std::vector<Line>& lines) {
-  compare<Kernel, Hand, Plane, by_hand::PlanarRow<Counted>>(lines);
+  compare<Kernel, Kernel, Hand, Plane, by_hand::PlanarRow<Counted>>(lines);
 }
 template <class Kernel, class Hand>
 void in_space(std::vector<Line>& lines) {
-  compare<Kernel, Hand, Space, by_hand::SpatialRow<Counted>>(lines);
+  compare<Kernel, Kernel, Hand, Space, by_hand::SpatialRow<Counted>>(lines);
+}
+template <class Joint, class Coordinate, class Hand>
+void turn(std::vector<Line>& lines) {
+  compare<Joint, Coordinate, Hand, Space, by_hand::Turn<Counted>>(lines);
+}
+
+// Coordinates of the catalogue that are angles.
+void turns(std::vector<Line>& lines) {
+  using namespace cdot::spatial;
+  using namespace by_hand;
+  turn<brake, brake::turn, bend<2, 1, 1, false, 1>>(lines);
+  turn<constant_velocity, constant_velocity::bend_y, bend<2, 0, 0, false, -1>>(lines);
+  turn<constant_velocity, constant_velocity::bend_z, bend<1, 0, 0, false, 1>>(lines);
+  turn<hinge, hinge::angle, by_hand::twist<0>>(lines);
+  turn<six_dof, six_dof::turn_x, bend<1, 2, 2, false, -1>>(lines);
+  turn<six_dof, six_dof::turn_y, latitude>(lines);
+  turn<six_dof, six_dof::turn_z, bend<1, 0, 0, true, -1>>(lines);
+  turn<six_dof, six_dof::twist_x, by_hand::twist<0>>(lines);
+  turn<six_dof, six_dof::twist_y, by_hand::twist<1>>(lines);
+  turn<six_dof, six_dof::twist_z, by_hand::twist<2>>(lines);
+  turn<swing_twist, swing_twist::swing, by_hand::swing>(lines);
+  turn<swing_twist, swing_twist::twist, by_hand::twist<0>>(lines);
+  turn<universal, universal::bend_a, bend<0, 2, 2, false, 1>>(lines);
+  turn<universal, universal::bend_b, bend<0, 1, 1, true, 1>>(lines);
 }
 
 const std::vector<Line>& all() {
@@ -224,6 +265,7 @@ const std::vector<Line>& all() {
     in_space<spatial::ring, by_hand::ring>(lines);
     in_space<spatial::saddle, by_hand::saddle>(lines);
     in_space<spatial::torus, by_hand::torus>(lines);
+    turns(lines);
     return lines;
   }();
   return lines;
@@ -239,7 +281,9 @@ std::string content(const std::string& path) {
 }  // namespace
 
 TEST(ByHand, NobodyIsCheaper) {
-  ASSERT_EQ(all().size(), 3 * (std::tuple_size_v<cdot::planar::Joints> + std::tuple_size_v<cdot::spatial::Joints>));
+  constexpr std::size_t angles = 14;
+  ASSERT_EQ(all().size(),
+            3 * (std::tuple_size_v<cdot::planar::Joints> + std::tuple_size_v<cdot::spatial::Joints> + angles));
   for (const Line& line : all()) {
     EXPECT_LE(total(line.generated), total(line.by_hand)) << line.joint << " " << line.quantity;
     EXPECT_LE(weighted(line.generated), weighted(line.by_hand)) << line.joint << " " << line.quantity << ", weighted";

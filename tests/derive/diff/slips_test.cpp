@@ -35,6 +35,18 @@ TEST(Slips, AreTheOnlySentence) {
        "  K = [1/m(a)+ra.y^2/I(a)+rb.y^2/I(b), -ra.x*ra.y/I(a)-rb.x*rb.y/I(b) ; "
        "-ra.x*ra.y/I(a)-rb.x*rb.y/I(b), 1/m(a)+ra.x^2/I(a)+rb.x^2/I(b)]\n",
        "K: the terms with the inverse mass of b are missing"},
+      {"revolute",
+       "  K = [1/(m(a)+m(b))+ra.y^2/I(a)+rb.y^2/I(b), -ra.x*ra.y/I(a)-rb.x*rb.y/I(b) ; "
+       "-ra.x*ra.y/I(a)-rb.x*rb.y/I(b), 1/(m(a)+m(b))+ra.x^2/I(a)+rb.x^2/I(b)]\n",
+       "K: 1/(m(a) + m(b)) stands where 1/m(a) + 1/m(b) belongs"},
+      {"target",
+       "  free gamma\n  K = [1/m(a)+ra.y^2/I(a)-gamma, -ra.x*ra.y/I(a) ; -ra.x*ra.y/I(a), "
+       "1/m(a)+ra.x^2/I(a)-gamma]\n",
+       "K: softness makes K larger: the diagonal has -gamma where +gamma belongs"},
+      {"revolute",
+       "  K = [2/m(a)+ra.y^2/I(a)+rb.y^2/I(b), -ra.x*ra.y/I(a)-rb.x*rb.y/I(b) ; "
+       "-ra.x*ra.y/I(a)-rb.x*rb.y/I(b), 2/m(a)+ra.x^2/I(a)+rb.x^2/I(b)]\n",
+       "K, rows 1 and 2 of the diagonal: it has 2*inv_m_a where inv_m_a + inv_m_b belongs"},
       {"spherical",
        "  update v(a) += lambda/m(a)\n  update w(a) += I(a)^-1*cross(ra, lambda)\n"
        "  update v(b) -= lambda/m(b)\n  update w(b) -= cross(rb, lambda)\n",
@@ -46,7 +58,27 @@ TEST(Slips, AreTheOnlySentence) {
        "J: all of it is 1/norm(u) times what it should be, which is right only with a C scaled alike"},
       {"pulley", "  J = [na', cross(ra, na), nb', cross(rb, nb)]\n",
        "J: the factor ratio is missing in the columns of b"},
+      {"spherical_spherical", "  J = [-2*d', -2*cross(ra, d)', 2*d', 2*cross(rb, d)']\n",
+       "J: all of it is 2 times what it should be, which is right only with a C scaled alike"},
+      // Rows.
+      {"point_on_line",
+       "  let p = fa.y + fa.z\n  let q = fa.z - 2*fa.y\n  J = [-p', -cross(ra + d, p)', p', cross(rb, p)' ; "
+       "-q', -cross(ra + d, q)', q', cross(rb, q)']\n",
+       "J: its rows are combinations of the right ones, which is right only with a C combined alike"},
+      {"point_on_line",
+       "  let y = fa.y\n  J = [-y', -cross(ra + d, y)', y', cross(rb, y)' ; -y', -cross(ra + d, y)', y', cross(rb, "
+       "y)']\n",
+       "J: row 2 repeats row 1, so one row is missing"},
       // Symbols and names.
+      {"rolling", "  J = [n', 0, -n', -cross(rb + u, n) ; e', -radius, -e', radius - cross(rb + u, e)]\n",
+       "J: -radius stands where radius belongs"},
+      {"rolling",
+       "  J = [n', 0, -n', -cross(rb + u, n) ; e', 1/radius, -e', -1/radius - cross(rb + u, "
+       "e)]\n",
+       "J: 1/radius stands where radius belongs"},
+      {"target", "  K = E/m(a) + ra*ra'/I(a)\n", "K: ra and perp(ra) are exchanged"},
+      {"sine_track", "  let n = f.y - amplitude*cos(k*s.x)*f.x\n  J = [n', cross(ra, n), -n', -cross(rb + u, n)]\n",
+       "J: in n: the factor k is missing in -amplitude*cos(k*s_x)*f_x"},
       {"hinge",
        "  rows parallel\n  J = [0, cross(fa.y, fb.y)', 0, -cross(fa.y, fb.y)' ; 0, cross(fa.z, fb.y)', 0, "
        "-cross(fa.z, fb.y)']\n",
@@ -64,7 +96,8 @@ TEST(Slips, AreTheOnlySentence) {
        "J: the terms with d are missing"},
       // Two bodies with opposite columns.
       {"universal", "  rows bend_a\n  J = [0, fa.y', 0, -fa.y']\n",
-       "J, row bend_a, w_a and, with the opposite sign, w_b: it is not the generated one; equal where C = 0"},
+       "J, row bend_a, w_a and, with the opposite sign, w_b: it has fa.y where -axis_bend_a belongs; equal where C = "
+       "0"},
   };
   for (const OneThing& row : table) {
     const Judgement j = judged(row.joint, row.items);
@@ -75,6 +108,14 @@ TEST(Slips, AreTheOnlySentence) {
 }
 
 // A block of nine numbers that no reading explains is one item at each body.
+// I(a) as the argument of an operator is the inertia, not its inverse.
+TEST(Slips, BothWaysToInvertAnInertiaAgree) {
+  const char* const K =
+      "  let s = cross(ra + d, n)\n  let t = cross(rb, n)\n"
+      "  K = 1/m(a) + 1/m(b) + s'*inverse(I(a))*s + t'*I(b)^-1*t\n";
+  EXPECT_EQ(judged("n2", K).agreement, Agreement::agrees);
+}
+
 TEST(Slips, ABlockIsToldAsAWhole) {
   const Judgement j =
       judged("fixed", "  let W = (fb.x*fa.x' + fb.y*fa.y' + fb.z*fa.z')/2\n  rows angular\n  J = [0, W, 0, -W']\n");

@@ -39,8 +39,8 @@ TEST(Gradient, HasANameInThePlane) {
                 "joint ellipse planar\n  \"A point on an ellipse.\"\n"
                 "  point pa on a\n  point pb on b\n  frame f on b\n  scalar p [m]\n"
                 "  let u = pa - pb\n  let s = local(u, f)\n  (s.x / p)^2 + 2 * (s.y / p)^2 = 1\n");
-  EXPECT_EQ(names_and_J(ellipse), (Lines{"n = 2 (s_x/p^2) f_x - 4 ((u × f_x)/p^2) perp(f_x)",
-                                         "J = [ n' | ra × n | -n' | -((rb + u) × n) ]"}));
+  EXPECT_EQ(names_and_J(ellipse),
+            (Lines{"n = (2 s_x f_x - 4 (u × f_x) perp(f_x))/p^2", "J = [ n' | ra × n | -n' | -((rb + u) × n) ]"}));
 }
 
 TEST(Gradient, HasANameInSpace) {

@@ -8,6 +8,7 @@
 //   E::limits   (C, p, t, lower, upper)   of the force, on some rows; missing: none           [rows]
 //   E::acts     false for rows that only tell where a direction points                         [rows]
 //   E::law_in_time   the force depends on the time
+//   E::stores   whether it has an energy; missing: it has one if there is E::energy
 //
 // Of an effect on the coordinate of any joint:
 //
@@ -100,13 +101,17 @@ struct EffectLaw {
     }
   }
 
+  static bool stores(const Batch<S>& batch) {
+    if constexpr (requires { &Effect::stores; }) return effect_of<Effect>(batch).stores();
+    else return has_energy;
+  }
   static void unstored(const Batch<S>& batch, int slot, const T* rate, T* force) {
+    if (!stores(batch)) return EffectLaw::force(batch, slot, rate, force);
     if constexpr (requires { &Effect::template unstored<T>; }) {
       const auto effect = effect_of<Effect>(batch);
       const auto f = [&](const auto&... numbers) { effect.unstored(numbers..., reinterpret_cast<T(&)[rows]>(*force)); };
       with_mass(batch, slot, f, C(batch, slot), reinterpret_cast<Row>(*rate), parameters(batch, slot), batch.time);
-    } else if constexpr (has_energy) std::fill_n(force, rows, T(0));
-    else EffectLaw::force(batch, slot, rate, force);
+    } else std::fill_n(force, rows, T(0));
   }
 
   static constexpr bool has_energy = requires { &Effect::template energy<T>; };
