@@ -98,12 +98,14 @@ double small_energy(const WorldData<S>& world) {
   const Bodies<S>& all = world.bodies;
   double small = 0;
   for (const Island<S>& island : world.islands) {
-    const double size = double(island.size), square = motion * motion * size * size;
+    double weight = 0, mass = 0;
     for (int i : island.bodies) {
       const auto linear = S::damped(all.acceleration[i], 1, 0);
-      const double mass = 1 / double(all.inverse_mass[i].m);
-      small += of_weight * mass * std::sqrt(S::dot(linear, linear)) * size + 0.5 * mass * square;
+      const double m = 1 / double(all.inverse_mass[i].m);
+      weight += m * std::sqrt(S::dot(linear, linear)), mass += m;
     }
+    const double size = double(island.size);
+    small += of_weight * weight * size + 0.5 * mass * motion * motion * size * size;
   }
   return small;
 }

@@ -143,14 +143,15 @@ void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& 
 }
 
 // All rows that may do work, given J v of mean velocities by batch.ops->velocity(..., mean). `acted` finds J v at which
-// whole springs acted, into Batch::impulse.
+// whole springs acted, into Batch::impulse. alone: rows that are no springs have no impulse.
 template <class S, class Lambda, class Acted>
 void work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S::Velocity* mean, Lambda lambda,
-                  Acted acted, Springs springs, Kick kick, typename S::Scalar time, double h, Work& work) {
+                  Acted acted, Springs springs, bool alone, Kick kick, typename S::Scalar time, double h, Work& work) {
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     const int begin = segment.begin, end = segment.end, rows = batch.ops->rows;
     if (!batch.law && !batch.explicit_time()) continue;
+    if (alone && !(batch.law && batch.law->spring)) continue;
     if (springs == Springs::none && batch.law && (batch.law->spring || batch.law->force)) continue;
     batch.ops->velocity(batch, begin, end, mean, batch.rate.data());
     const auto of_row = [&](int i) { return lambda(batch, i); };
@@ -276,7 +277,7 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
         batch.ops->velocity(batch, begin, end, acted, batch.impulse.data());
         return batch.impulse.data();
       },
-      springs_of(impulses), kick_of(impulses), island.evaluated_at, double(h), work);
+      springs_of(impulses), impulses == Impulses::dampers, kick_of(impulses), island.evaluated_at, double(h), work);
   if (impulses == Impulses::rattle_start || impulses == Impulses::rattle_end)
     work_of_stiffness(world, island, start.data(), double(h), work);
   if (!of_rows) work_of_drives(island, double(h), work);
@@ -298,7 +299,7 @@ void find_power(WorldData<S>& world, Island<S>& island, typename S::Scalar time,
         batch.ops->effective_mass(batch, begin, end, world.bodies);
         return batch.rate.data();
       },
-      Springs::whole, Kick::only, time, 1, work);
+      Springs::whole, false, Kick::only, time, 1, work);
   work_of_stiffness(world, island, v, 1, work);
   work_of_drives(island, 1, work);
   power[0] = T(work.put_in), power[1] = T(work.taken);

@@ -73,16 +73,22 @@ void ErrorEstimate<S>::choose(By by) {
   spacing_ = std::clamp(steps_ / samples, 1LL, most_spacing);
 }
 
+// The steps taken instead come first: the World then goes back but once.
 template <class S>
-void ErrorEstimate<S>::before_step(const BasicWorld<S>& run, long long k, double h) {
+void ErrorEstimate<S>::before_step(BasicWorld<S>& run, long long k, double h) {
   if (k != next_) return;
   run.snapshot_into(start_);
   length_ = h;
+  const bool by_sweeps = by_ == By::more_sweeps;
+  if (by_sweeps && !sweeper_) sweeper_ = build_world_in<S>(with_more_sweeps(scene_));
+  if (by_sweeps) sweeper_->restore(start_);
+  taken_ = take_instead(by_sweeps ? *sweeper_ : run, by_ == By::shorter_steps ? parts : 1);
+  if (!by_sweeps) run.restore(start_);
 }
 
+// From the start of the window on.
 template <class S>
 bool ErrorEstimate<S>::take_instead(BasicWorld<S>& world, int steps) {
-  world.restore(start_);
   const long long divided = world.step_counts().retried;
   for (int k = 0; k < steps; ++k)
     if (!world.step(window_ * length_ / steps)) return false;
@@ -91,32 +97,29 @@ bool ErrorEstimate<S>::take_instead(BasicWorld<S>& world, int steps) {
 }
 
 template <class S>
-bool ErrorEstimate<S>::compare(BasicWorld<S>& run, int steps, const Frame& before, const Frame& after, long long k) {
-  const bool by_sweeps = by_ == By::more_sweeps;
-  if (by_sweeps && !sweeper_) sweeper_ = build_world_in<S>(with_more_sweeps(scene_));
-  if (!take_instead(by_sweeps ? *sweeper_ : run, steps)) return false;
-  const double shorter = by_sweeps ? parts : static_cast<double>(steps) / window_;
+double ErrorEstimate<S>::weight(int steps, long long k) const {
+  const double shorter = by_ == By::more_sweeps ? parts : static_cast<double>(steps) / window_;
   const double share = 1 / (1 - std::pow(shorter, -row_of(scene_.settings.integrator).order));
-  add(before, after, share * static_cast<double>(k - last_) / window_);
-  return true;
+  return share * static_cast<double>(k - last_) / window_;
 }
 
 template <class S>
 void ErrorEstimate<S>::after_step(BasicWorld<S>& run, const Frame& before, const Frame& after, long long k) {
   if (k != next_ + window_ - 1) return;
-  const bool in_run = by_ != By::more_sweeps;
-  if (in_run) run.snapshot_into(end_);
   const Total kept = total_;
-  bool compared = compare(run, by_ == By::shorter_steps ? parts : 1, before, after, k);
+  if (taken_) add(before, after, weight(by_ == By::shorter_steps ? parts : 1, k));
   const double promised = total_.error.share * static_cast<double>(steps_) / static_cast<double>(k);
-  if (by_ == By::longer_steps && (!compared || promised > doubted * warned_)) {
+  if (by_ == By::longer_steps && (!taken_ || promised > doubted * warned_)) {
     total_ = kept;
     by_ = By::shorter_steps;
-    compared = compare(run, parts * window_, before, after, k);
+    run.snapshot_into(end_);
+    run.restore(start_);
+    taken_ = take_instead(run, parts * window_);
+    if (taken_) add(before, after, weight(parts * window_, k));
+    run.restore(end_);
     choose(by_);
   }
-  if (in_run) run.restore(end_);
-  if (compared) last_ = k;
+  if (taken_) last_ = k;
   // Between half and one and a half of the spacing, spread evenly by the golden ratio: no multiple of a period.
   const double turns = 0.6180339887498949 * (total_.error.samples + 1);
   next_ = k + std::max(1LL, static_cast<long long>(static_cast<double>(spacing_) * (0.5 + turns - std::floor(turns))));

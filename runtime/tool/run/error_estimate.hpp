@@ -1,6 +1,6 @@
 // The error of a run's trajectory, estimated while it runs, for a few per cent of its cost.
 //
-// After some triples of steps the World goes back, takes them as one, and goes on. A method of order p errs in the
+// Before some triples of steps the World takes them as one, goes back, and goes on. A method of order p errs in the
 // three by e = d / (1 - 3^p), d being the difference (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary
 // Differential Equations I", 1993, II.4). That formula need not hold for a step of three times the length.
 // Where such steps fail, are divided, or promise a warning, steps are taken in three parts from there on: dearer, and
@@ -37,7 +37,7 @@ class ErrorEstimate {
   ErrorEstimate(const Scene& scene, long long steps);
   // Call before step `k` of length h, counted from 1, and after it with the frames of its ends. The run goes on as if
   // neither had been called.
-  void before_step(const BasicWorld<S>& run, long long k, double h);
+  void before_step(BasicWorld<S>& run, long long k, double h);
   void after_step(BasicWorld<S>& run, const Frame& before, const Frame& after, long long k);
   const TrajectoryError& error() const { return total_.error; }
 
@@ -54,9 +54,9 @@ class ErrorEstimate {
   enum class By { longer_steps, shorter_steps, more_sweeps };
 
   void choose(By by);
-  // Adds the error of the window that ends with step `k`, by so many steps taken instead. False if one of them fails,
-  // or is divided.
-  bool compare(BasicWorld<S>& run, int steps, const Frame& before, const Frame& after, long long k);
+  // Of the difference that so many steps instead make in the window that ends with step `k`.
+  double weight(int steps, long long k) const;
+  // False if one of them fails, or is divided.
   bool take_instead(BasicWorld<S>& world, int steps);
   void add(const Frame& before, const Frame& after, double scale);
   void judge(const Frame& after, std::size_t body, double linear, double angular);
@@ -69,6 +69,7 @@ class ErrorEstimate {
   long long spacing_, next_, last_ = 0;   // first step of the next sample, last step of the previous one
   Snapshot start_, end_;                  // of a window
   double length_ = 0;                     // of a step in it [s]
+  bool taken_ = false;                    // the steps instead were
   std::optional<BasicWorld<S>> sweeper_;  // the second World
   std::vector<BodyState> instead_;        // at the end of the steps taken instead
   Total total_;

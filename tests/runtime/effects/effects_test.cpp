@@ -44,6 +44,24 @@ TEST(Motor, AcceleratesWithItsLargestForceUntilItHasItsSpeed) {
   }
 }
 
+// A bar of 1 m blocks an arm of 1 m at its tip: it takes the whole torque of the motor, and the arm stands.
+TEST(Motor, PushesWithItsBoundAgainstWhatBlocksIt) {
+  constexpr double most = 5;
+  for (const auto& [name, integrator] : integrators) {
+    Settings s = settings(Solver::direct);
+    s.integrator = integrator;
+    World<double> world(s);
+    const int arm = world.add_body({.x = 0.5, .mass = 1, .inertia = 0.1});
+    const int pin = revolute(world, world.ground(), arm, 0, 0, -0.5, 0);
+    const int bar =
+        world.add_joint({"distance", {world.ground(), arm}, {{"pa", {1, -1}}, {"pb", {0.5, 0}}, {"l", {1}}}, {}});
+    add_motor(world, pin, "angle", {.speed = 1, .max_force = most});
+    run(world, 0.5, 0.01);
+    EXPECT_NEAR(world.reaction(bar, arm).force_y, -most, 1e-9) << name;
+    EXPECT_NEAR(world.velocity(arm).w, 0, 1e-9) << name;
+  }
+}
+
 // Each row alone would set the wheel's speed; against the load neither reaches it: the wheel turns by the rest of the
 // torques. At rest the friction holds it. Both from the first step on.
 TEST(Motor, PullsAWheelAgainstItsFrictionWithAllItHas) {
