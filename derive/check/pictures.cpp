@@ -4,7 +4,7 @@
 
 #include "derive/check/check.hpp"
 #include "derive/check/parts.hpp"
-#include "derive/explain/mathml.hpp"
+#include "derive/explain/formats/mathml.hpp"
 #include "derive/picture/picture.hpp"
 
 namespace cdot::derive {

@@ -5,7 +5,7 @@
 #include "derive/commands/commands.hpp"
 #include "derive/engines/engines.hpp"
 #include "derive/pipeline/pipeline.hpp"
-#include "derive/pipeline/waiting.hpp"
+#include "runtime/command_line/waiting.hpp"
 #include "runtime/text/colour.hpp"
 
 namespace cdot::derive {
@@ -40,7 +40,7 @@ int emit(const EmitOptions& options) {
   try {
     std::optional<EmittedJoint> made;
     const Outcome outcome = [&] {
-      const Waiting waiting("cdot emit " + options.spec);
+      const command_line::Waiting waiting("cdot emit " + options.spec);
       return derive_spec(spec, folder, ProofRecord(), usual_bounds,
                          [&](const Kernel& kernel) { made = emitted(engine, kernel, options); });
     }();

@@ -7,9 +7,9 @@
 #include "derive/check/check.hpp"
 #include "derive/commands/commands.hpp"
 #include "derive/derivation/derivation.hpp"
-#include "derive/explain/mathml.hpp"
+#include "derive/explain/formats/mathml.hpp"
 #include "derive/language/specs_folder.hpp"
-#include "derive/pipeline/waiting.hpp"
+#include "runtime/command_line/waiting.hpp"
 #include "runtime/text/colour.hpp"
 #include "runtime/text/stage.hpp"
 
@@ -41,7 +41,7 @@ constexpr const char* json_schema =
     "Python read them. A spec's name that Python reserves gets an underscore at its end.";
 
 std::string explanation(const Joint& joint, const Options& options) {
-  const Waiting waiting("cdot explain " + joint.name);
+  const command_line::Waiting waiting("cdot explain " + joint.name);
   const text::Stage deriving("deriving");
   const Derivation derivation = derive(joint);
   const text::Stage explaining("explaining");

@@ -8,7 +8,9 @@
 #include "derive/compile/bill.hpp"
 #include "derive/compile/header.hpp"
 #include "runtime/command_line/command_line.hpp"
+#include "runtime/command_line/waiting.hpp"
 #include "runtime/text/colour.hpp"
+#include "runtime/text/stage.hpp"
 #include "runtime/tool/run/output.hpp"
 #include "runtime/tool/scene/scene.hpp"
 
@@ -35,14 +37,23 @@ std::string command_of(const Options& options) {
   return command;
 }
 
+std::string compiled(const Options& options) {
+  const command_line::Waiting waiting("cdot compile " + std::filesystem::path(options.scene).filename().string());
+  const text::Stage reading("reading the scene");
+  const Mechanism mechanism = read_mechanism(options.scene, options.wishes);
+  const derive::SpecsFolder specs(options.specs);
+  if (options.bill) {
+    const text::Stage counting("counting what each part costs");
+    return bill_of(mechanism, specs, options.json);
+  }
+  const text::Stage writing("eliminating and sharing");
+  return header_of(mechanism, {options.struct_name, command_of(options)}, specs).text;
+}
+
 int run(const Options& options) {
   if (options.json && !options.bill)
     throw std::runtime_error("--json prints the bill: a header is no JSON. Fix: give --bill, or leave out --json");
-  const Mechanism mechanism = read_mechanism(options.scene, options.wishes);
-  const derive::SpecsFolder specs(options.specs);
-  const std::string text = options.bill ? bill_of(mechanism, specs, options.json)
-                                        : header_of(mechanism, {options.struct_name, command_of(options)}, specs).text;
-  write_file(options.output, text);
+  write_file(options.output, compiled(options));
   return 0;
 }
 

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "derive/diff/diff.hpp"
-#include "derive/explain/mathml.hpp"
+#include "derive/explain/formats/mathml.hpp"
 
 namespace cdot::derive {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "derive/diff/entry.hpp"
 #include "derive/diff/terms.hpp"
-#include "derive/explain/mathml.hpp"
+#include "derive/explain/formats/mathml.hpp"
 
 namespace cdot::derive {
 namespace {

@@ -63,7 +63,8 @@ std::string chain_text(const Chain& chain, std::size_t page_width);
 // "\mathbf{u} = …" without its rules, for a page that sets formulas.
 std::string chain_latex(const Chain& chain, const std::vector<std::string>& bodies);
 
-// C, Cdot, dC/dt, J, K and gamma as plain infix expressions for other programs; explain/json.cpp gives the schema.
+// C, Cdot, dC/dt, J, K and gamma as plain infix expressions for other programs; explain/formats/json.cpp gives the
+// schema.
 std::string explanation_json(const Derivation& derivation);
 
 }  // namespace cdot::derive

@@ -10,27 +10,27 @@
 #include "derive/expression/matrix.hpp"
 #include "derive/expression/symbols.hpp"
 #include "derive/kernel/factor.hpp"
+#include "derive/kernel/stored_jacobian.hpp"
 
 namespace cdot::derive {
 namespace {
 
-// A number of J as coef * product of fields.
-struct StoredEntry {
-  Rational coef;
-  std::vector<int> fields;
-};
-
 class BlockPlanner {
  public:
   BlockPlanner(const Joint& joint, const Block& block, std::string name)
-      : joint_(joint), pool_(*joint.pool), block_(block), width_(columns_per_body(joint.dimension)), pose_(joint) {
+      : joint_(joint),
+        pool_(*joint.pool),
+        block_(block),
+        width_(columns_per_body(joint.dimension)),
+        pose_(joint),
+        J_(joint, block) {
     out_.name = std::move(name);
+    out_.fields = J_.fields();
     out_.block = &block;
   }
 
   KernelBlock plan() {
     if (rows() == 0) return std::move(out_);
-    store_jacobian();
     add_position_and_jacobian();
     add_effective_mass();
     add("factor", "K = L D L^T; F holds L and, on the diagonal, D^-1", factor_outputs(block_));
@@ -56,95 +56,6 @@ class BlockPlanner {
   void add(std::string name, std::string summary, const std::vector<NamedExpr>& outputs) {
     if (isotropic_) summary += ", for sphere-like bodies";
     out_.functions.push_back({std::move(name), std::move(summary), assemble(outputs), isotropic_, {}});
-  }
-
-  // Chooses the numbers of Jacobian<T>: the factors of J's entries that are neither zero nor one.
-  void store_jacobian() {
-    Components components;
-    for (std::size_t i = 0; i < rows(); ++i) {
-      std::vector<StoredEntry> row;
-      for (std::size_t b = 0; b < bodies(); ++b) {
-        const std::string suffix = joint_.bodies[b] + (rows() > 1 ? "_" + std::to_string(i + 1) : "");
-        const std::vector<Expr> entries = columns_of(block_.rows[i].J[b]);
-        for (std::size_t k = 0; k < width_; ++k) {
-          row.push_back(store(entries[k], components.of(entries[k]), column_name(k, suffix)));
-        }
-      }
-      J_.push_back(std::move(row));
-    }
-  }
-
-  // v_a_1_x, w_a_1 in the plane, w_a_1_x in space
-  std::string column_name(std::size_t k, const std::string& suffix) const {
-    const std::size_t linear = static_cast<std::size_t>(joint_.dimension);
-    if (k < linear) return "v" + suffix + "_" + "xyz"[k];
-    return "w" + suffix + (linear == 2 ? "" : std::string("_") + "xyz"[k - linear]);
-  }
-
-  StoredEntry store(Expr entry, Expr components, const std::string& column) {
-    const Term term = split_coefficient(components);
-    if (is_one(term.e)) return {term.coef, {}};
-    StoredEntry stored{term.coef, {}};
-    const bool plain_factors =
-        term.e->kind == Kind::product && term.e->name.empty() &&
-        std::all_of(term.e->args.begin(), term.e->args.end(), [](Expr f) { return simple(f); }) &&
-        std::all_of(term.e->exponents.begin(), term.e->exponents.end(), [](int k) { return k == 1; });
-    if (!plain_factors) {
-      Term part = term;
-      const auto is_field = [&](Expr e) {
-        return std::ranges::find(out_.fields, e, &Field::value) != out_.fields.end();
-      };
-      const Term opposite{-term.coef, -term.e};
-      if (is_field(opposite.e) || (term.coef.sign() < 0 && free_to_turn(term.e) && !is_field(term.e))) part = opposite;
-      else if (term.coef.sign() < 0 && has_both_signs(term.e) && is_lonely_axis(entry))
-        part = {-term.coef, turned(term.e)};
-      stored.coef = part.coef;
-      stored.fields.push_back(field(part.e, column, (Rational(1) / part.coef) * entry));
-      return stored;
-    }
-    for (const Expr factor : term.e->args) stored.fields.push_back(field(factor, column));
-    return stored;
-  }
-
-  // An entry of the only row on the only body that moves, which no other entry repeats with the other sign.
-  bool is_lonely_axis(Expr entry) const {
-    if (rows() > 1 || block_.immovable < 0 || bodies() > 2) return false;
-    const std::vector<Expr> parts = topological(std::span(&entry, 1));
-    return std::ranges::find_first_of(parts, block_.rows[0].axes) != parts.end();
-  }
-
-  // z - x y for the opposite of a name for x y - z.
-  Expr turned(Expr e) const {
-    std::vector<Term> terms;
-    for (std::size_t i = 0; i < e->args.size(); ++i) terms.push_back({-e->coefs[i], e->args[i]});
-    return sum(pool_, terms, false);
-  }
-
-  // The opposite of x y - z costs no more.
-  static bool has_both_signs(Expr e) {
-    return e->kind == Kind::sum && std::ranges::any_of(e->coefs, [](Rational c) { return c.sign() < 0; });
-  }
-  static bool free_to_turn(Expr e) { return has_both_signs(e) && e->name.empty(); }
-
-  static bool simple(Expr e) { return e->kind == Kind::symbol || !e->name.empty(); }
-
-  int field(Expr e, const std::string& column, Expr entry = {}) {
-    for (std::size_t i = 0; i < out_.fields.size(); ++i) {
-      if (out_.fields[i].value == e) return static_cast<int>(i);
-    }
-    std::string name = !e->name.empty() ? e->name : e->kind == Kind::symbol ? e->symbol : column;
-    const auto taken = [&](const Field& f) { return f.name == name; };
-    while (std::any_of(out_.fields.begin(), out_.fields.end(), taken)) name += "_";
-    out_.fields.push_back({name, e, entry ? entry : e, pool_.symbol("J." + name, Role::given)});
-    return static_cast<int>(out_.fields.size()) - 1;
-  }
-
-  // J's entry in terms of the stored fields.
-  Expr stored(std::size_t row, std::size_t column) const {
-    const StoredEntry& entry = J_[row][column];
-    Expr e = pool_.number(entry.coef);
-    for (const int f : entry.fields) e = e * out_.fields[static_cast<std::size_t>(f)].symbol;
-    return e;
   }
 
   void add_position_and_jacobian() {
@@ -213,9 +124,9 @@ class BlockPlanner {
     for (std::size_t b = 0; b < bodies(); ++b) {
       if (static_cast<int>(b) == block_.immovable) continue;
       const Expr inv_I = body_symbols(joint_, static_cast<int>(b)).inv_I;
-      for (std::size_t k = 0; k < 3; ++k) K = K + stored(0, 6 * b + k) * weighted(0, 6 * b + k);
+      for (std::size_t k = 0; k < 3; ++k) K = K + J_.entry(0, 6 * b + k) * weighted(0, 6 * b + k);
       // w' I w = x (I_xx x + 2 (I_xy y + I_xz z)) + y (I_yy y + 2 I_yz z) + I_zz z^2
-      const auto w = [&](std::size_t k) { return stored(0, 6 * b + 3 + k); };
+      const auto w = [&](std::size_t k) { return J_.entry(0, 6 * b + 3 + k); };
       for (std::size_t k = 0; k < 3; ++k) {
         Expr beside = pool_.number(0);
         for (std::size_t l = k + 1; l < 3; ++l) beside = beside + tensor_component(inv_I, k, l) * w(l);
@@ -230,7 +141,7 @@ class BlockPlanner {
     for (std::size_t b = 0; b < bodies(); ++b) {
       if (static_cast<int>(b) == block_.immovable) continue;
       for (std::size_t k = 0; k < width_; ++k) {
-        K = K + stored(i, width_ * b + k) * weighted(j, width_ * b + k);
+        K = K + J_.entry(i, width_ * b + k) * weighted(j, width_ * b + k);
       }
     }
     return K;
@@ -238,7 +149,7 @@ class BlockPlanner {
 
   // A number of (M^-1 J^T)^T.
   Expr weighted(std::size_t row, std::size_t column) const {
-    return inverse_mass_times(column, [&](std::size_t c) { return stored(row, c); });
+    return inverse_mass_times(column, [&](std::size_t c) { return J_.entry(row, c); });
   }
 
   // Row `column` of M^-1 times a column of numbers: 1/m for translation, 1/I or the tensor I^-1 for rotation.
@@ -270,7 +181,7 @@ class BlockPlanner {
       Expr Jv = pool_.number(0);
       for (std::size_t b = 0; b < bodies(); ++b) {
         const std::vector<Expr> v = velocity_components(b);
-        for (std::size_t k = 0; k < width_; ++k) Jv = Jv + stored(i, width_ * b + k) * v[k];
+        for (std::size_t k = 0; k < width_; ++k) Jv = Jv + J_.entry(i, width_ * b + k) * v[k];
       }
       outputs.push_back({element("Jv", i), Jv});
     }
@@ -281,7 +192,7 @@ class BlockPlanner {
   Expr force(std::size_t column) const {
     Expr force = pool_.number(0);
     for (std::size_t i = 0; i < rows(); ++i) {
-      force = force + stored(i, column) * pool_.symbol("lambda_" + std::to_string(i + 1), Role::multiplier);
+      force = force + J_.entry(i, column) * pool_.symbol("lambda_" + std::to_string(i + 1), Role::multiplier);
     }
     return force;
   }
@@ -307,7 +218,7 @@ class BlockPlanner {
   void add_dense() {
     std::vector<NamedExpr> J;
     for (std::size_t i = 0; i < rows(); ++i) {
-      for (std::size_t c = 0; c < width_ * bodies(); ++c) J.push_back({element(element("D", i), c), stored(i, c)});
+      for (std::size_t c = 0; c < width_ * bodies(); ++c) J.push_back({element(element("D", i), c), J_.entry(i, c)});
     }
     add("dense", std::string("J with its zeros: ") + (width_ == 3 ? "v_x, v_y, w" : "v, w") + " of each body", J);
   }
@@ -339,7 +250,7 @@ class BlockPlanner {
     for (std::size_t i = 0; i < rows(); ++i) {
       for (std::size_t b = 0, c = 0; b < bodies(); ++b) {
         std::vector<Expr> global;
-        for (std::size_t k = 0; k < 6; ++k) global.push_back(stored(i, 6 * b + k));
+        for (std::size_t k = 0; k < 6; ++k) global.push_back(J_.entry(i, 6 * b + k));
         for (const Expr e : columns_in(form, global, joint_, static_cast<int>(b))) {
           J.push_back({element(element("D", i), c++), e});
         }
@@ -437,8 +348,8 @@ class BlockPlanner {
   std::size_t width_;       // columns of J per body
   bool isotropic_ = false;  // inverse inertias are numbers, not tensors
   PoseInputs pose_;
+  StoredJacobian J_;
   KernelBlock out_;
-  std::vector<std::vector<StoredEntry>> J_;
 };
 
 KernelBlock plan_block(const Joint& joint, const Block& block, const std::string& name) {

@@ -325,8 +325,13 @@ Value Evaluator::member(const Ast& ast) {
     result.ratio = v.ratio;
     return result;
   }
-  if (v.type == Type::point)
-    return error(ast.where, "a point has no components", "subtract another point: (pa - pb)." + ast.text);
+  if (v.type == Type::point) {
+    const Ast& of = ast.args[0];
+    const bool call = of.kind == Ast::Kind::call && of.args.size() == 1;
+    const std::string point = of.kind == Ast::Kind::name ? of.text : call ? of.text + "(" + of.args[0].text + ")" : "p";
+    return error(ast.where, "a point has no components",
+                 "a vector has: declare `point origin on world` and write `(" + point + " - origin)." + ast.text + "`");
+  }
   return error(ast.where, std::string(in_words(v.type)) + " has no component " + ast.text);
 }
 

@@ -15,7 +15,7 @@
 #include <thread>
 #include <unistd.h>
 
-#include "derive/pipeline/waiting.hpp"
+#include "runtime/command_line/waiting.hpp"
 #include "runtime/text/stage.hpp"
 
 namespace cdot::derive {
@@ -128,7 +128,7 @@ class Running {
       names += (names.empty() ? "" : ", ") + tasks_.names[process.task];
       const std::chrono::duration<double> seconds = Clock::now() - process.begun;
       const char* const stage = process.stage->load();
-      if (seconds.count() > unnoticed && stage != nullptr)
+      if (seconds.count() > command_line::unnoticed && stage != nullptr)
         names += fmt::format(": {} ({:.0f} s)", stage, seconds.count());
     }
     if (terminal_) fmt::print(stderr, "\r\033[K[{} of {}] {}", done_, tasks_.names.size(), names);

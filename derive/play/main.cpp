@@ -6,7 +6,9 @@
 #include "derive/play/page.hpp"
 #include "runtime/command_line/command_line.hpp"
 #include "runtime/command_line/installation.hpp"
+#include "runtime/command_line/waiting.hpp"
 #include "runtime/text/colour.hpp"
+#include "runtime/text/stage.hpp"
 #include "runtime/tool/run/output.hpp"
 #include "runtime/tool/scene/scene.hpp"
 
@@ -30,7 +32,12 @@ fs::path engine_of(const Options& options) {
 
 int run(const Options& options) {
   const std::string start = options.start.empty() ? "" : file_of_scene(options.start);
-  write_file(options.output, playground_page(start, options.specs, engine_of(options)));
+  const std::string page = [&] {
+    const command_line::Waiting waiting("cdot play");
+    const text::Stage stage("deriving what the page begins with");
+    return playground_page(start, options.specs, engine_of(options));
+  }();
+  write_file(options.output, page);
   fmt::print("file://{}\n", fs::absolute(options.output).lexically_normal().string());
   return 0;
 }

@@ -44,6 +44,7 @@ const std::vector<std::string> rooms = {
     "derive/program",      // expressions to straight-line code, simplified
     "derive/interpret",    // expressions of a scene, read and evaluated without a compiler
     "derive/explain",      // the derivation as a lecture
+    "derive/explain/formats",  // as text, HTML, LaTeX and JSON
     "derive/proof",        // the laws, by GiNaC
     "derive/kernel",       // programs to C++
     "derive/engines",      // kernels to joints of other engines

@@ -1,4 +1,5 @@
-// The gradient of a curve or surface has a name: J reads as a person writes it, and every equation on the way is true.
+// The gradient of a curve or surface has a name, and the axis of a turn: J reads as a person writes it, and every
+// equation on the way is true.
 #include <sstream>
 
 #include "support.hpp"
@@ -7,13 +8,15 @@ using namespace cdot::derive;
 
 namespace {
 
-// The lines "n = ...", "grad_x = ..." and "J = ..." of the summary above a kernel, without their notes.
+// The lines "n = ...", "grad_x = ...", "axis_x = ...", "s1 = ..." and "J = ..." of the summary above a kernel, without
+// their notes.
 std::vector<std::string> names_and_J(const Derivation& derivation) {
   std::vector<std::string> lines;
   for (const std::vector<Chain>& part : summarise(derivation)) {
     for (Chain chain : part) {
       const std::string name = chain.left.name;
-      if (name[0] != 'n' && name[0] != 'J' && !name.starts_with("grad")) continue;
+      if (name[0] != 'n' && name[0] != 'J' && !name.starts_with("grad") && !name.starts_with("axis") && name != "s1")
+        continue;
       chain.links[0].rule.clear();
       std::istringstream text(chain_text(chain, 1000));
       for (std::string line; std::getline(text, line);) lines.push_back(line);
@@ -102,4 +105,57 @@ TEST(Gradient, IsNamedAfterItsRow) {
 TEST(Gradient, LeavesAPlainDirectionAlone) {
   EXPECT_EQ(of_curve("  s.y = 0\n"),
             Lines{"J = [ perp(axis_b)' | axis_b · ra | -perp(axis_b)' | -axis_b · (pa - x_b) ]"});
+}
+
+namespace {
+
+Lines of_frames(const std::string& row) {
+  return names_and_J(
+      read_text("turn", "joint turn spatial\n  \"A turn.\"\n  frame fa on a\n  frame fb on b\n  " + row + "\n"));
+}
+
+}  // namespace
+
+TEST(Axis, HasAName) {
+  EXPECT_EQ(of_frames("dot(fa.z, fb.y) = dot(fa.y, fb.z)"),
+            (Lines{"axis = fa_z × fb_y - fa_y × fb_z", "J = [ 0 | axis' | 0 | -axis' ]"}));
+  EXPECT_EQ(of_frames("atan2(dot(fa.x, fb.z), dot(fa.z, fb.z)) = 0"),
+            (Lines{"s1 = (fa_x · fb_z)^2 + (fa_z · fb_z)^2",
+                   "axis = (((fa_z · fb_z) fa_x - (fa_x · fb_z) fa_z)/s1) × fb_z", "J = [ 0 | axis' | 0 | -axis' ]"}));
+  EXPECT_EQ(of_frames("atan2(dot(fa.x, fb.z), dot(fa.x, fb.y)) = 0"),
+            (Lines{"s1 = (fa_x · fb_y)^2 + (fa_x · fb_z)^2",
+                   "axis = (((fa_x · fb_z) fb_y - (fa_x · fb_y) fb_z)/s1) × fa_x", "J = [ 0 | axis' | 0 | -axis' ]"}))
+      << "both columns are sums of their own";
+  EXPECT_EQ(of_frames("dot(fa.x, fb.z) = 0"), Lines{"J = [ 0 | (fa_x × fb_z)' | 0 | -(fa_x × fb_z)' ]"})
+      << "short enough";
+}
+
+TEST(Axis, NeverTakesANameOfTheSpec) {
+  EXPECT_EQ(of_frames("scalar axis_x\n  dot(fa.z, fb.y) = axis_x * dot(fa.y, fb.z)")[0].substr(0, 9), "axis_1 = ");
+}
+
+// An angle about an axis of the frame reads two of its axes: fa.x · (fa.y × fb.y) = fa.z · fb.y.
+TEST(Axis, OfAnAngleAboutAnAxisOfAFrame) {
+  EXPECT_EQ(of_frames("angle(fa.y, fb.y, fa.x) = 0"),
+            (Lines{"s1 = (fa_y · fb_y)^2 + (fa_z · fb_y)^2",
+                   "axis = (((fa_y · fb_y) fa_z - (fa_z · fb_y) fa_y)/s1) × fb_y", "J = [ 0 | axis' | 0 | -axis' ]"}));
+  EXPECT_EQ(of_frames("angle(fb.y, fa.y, fb.z) = 0"),
+            (Lines{"s1 = (fa_y · fb_x)^2 + (fa_y · fb_y)^2",
+                   "axis = (((fa_y · fb_y) fb_x - (fa_y · fb_x) fb_y)/s1) × fa_y", "J = [ 0 | axis' | 0 | -axis' ]"}));
+}
+
+// A twist is one about any axis, whoever writes it out; and a latitude has the rate of an arc sine.
+TEST(Axis, OfATwistIsHalfwayBetweenBoth) {
+  EXPECT_EQ(of_frames("atan2(dot(fa.x, fb.z) - dot(fa.z, fb.x), dot(fa.x, fb.x) + dot(fa.z, fb.z)) = 0"),
+            (Lines{"axis = (1/(fa_y · fb_y + 1)) (fa_y + fb_y)", "J = [ 0 | -axis' | 0 | axis' ]"}));
+  EXPECT_EQ(of_frames("atan2(dot(fa.y, fb.x) - dot(fa.x, fb.y), dot(fa.x, fb.x) + dot(fa.y, fb.y)) = 0"),
+            (Lines{"axis = (1/(fa_z · fb_z + 1)) (fa_z + fb_z)", "J = [ 0 | -axis' | 0 | axis' ]"}));
+}
+
+TEST(Axis, OfALatitude) {
+  const Lines latitude = of_frames("atan2(dot(fa.x, fb.z), sqrt(dot(fa.y, fb.z)^2 + dot(fa.z, fb.z)^2)) = 0");
+  EXPECT_EQ(latitude, (Lines{"s1 = (fa_y · fb_z)^2 + (fa_z · fb_z)^2", "axis = (1/sqrt(s1)) (fa_x × fb_z)",
+                             "J = [ 0 | axis' | 0 | -axis' ]"}));
+  const Lines colatitude = of_frames("atan2(norm(cross(fa.x, fb.z)), dot(fa.x, fb.z)) = 0");
+  EXPECT_EQ(colatitude, Lines{"J = [ 0 | -unit(fa_x × fb_z)' | 0 | unit(fa_x × fb_z)' ]"});
 }

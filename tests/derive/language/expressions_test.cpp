@@ -111,7 +111,9 @@ TEST(Operators, AreAllCalled) {
 TEST(Expressions, OfSpace) {
   EXPECT_EQ(value_of("cross(d, t)", "spatial"), "cross(d, t) [m]");
   EXPECT_EQ(value_of("angle(t, f.x)", "spatial"), "atan2(norm(cross(f_x, t)), dot(f_x, t)) [rad]");
-  EXPECT_EQ(value_of("angle(f.y, g.y, f.x)", "spatial"), "atan2(dot(cross(f_y, g_y), f_x), dot(f_y, g_y)) [rad]");
+  EXPECT_EQ(value_of("angle(f.y, g.y, f.x)", "spatial"), "atan2(dot(f_z, g_y), dot(f_y, g_y)) [rad]")
+      << "f_x · (f_y × g_y) = (f_x × f_y) · g_y";
+  EXPECT_EQ(value_of("angle(g.y, f.y, f.x)", "spatial"), "atan2(-dot(f_z, g_y), dot(f_y, g_y)) [rad]");
   EXPECT_EQ(value_of("twist(f, g)", "spatial"), "twist(f, g) [rad]");
   EXPECT_EQ(value_of("swing(f, g)", "spatial"), "atan2(norm(cross(f_x, g_x)), dot(f_x, g_x)) [rad]");
   EXPECT_EQ(value_of("rotation(f, g)", "spatial"),

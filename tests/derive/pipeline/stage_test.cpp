@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "derive/pipeline/process_pool.hpp"
-#include "derive/pipeline/waiting.hpp"
+#include "runtime/command_line/waiting.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -65,7 +65,7 @@ TEST(Stage, OfATaskIsShown) {
 
 TEST(Stage, OfACommandIsShown) {
   const std::string shown = shown_by("cdot emit hinge: simplifying", [](const auto& until_released) {
-    const Waiting waiting("cdot emit hinge");
+    const command_line::Waiting waiting("cdot emit hinge");
     const text::Stage stage("simplifying");
     until_released();
   });

@@ -2,7 +2,7 @@
 #include <map>
 #include <set>
 
-#include "derive/explain/write.hpp"
+#include "derive/explain/formats/write.hpp"
 
 namespace cdot::derive {
 namespace {

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "derive/explain/explain.hpp"
-#include "derive/explain/symbols.hpp"
+#include "derive/explain/formats/symbols.hpp"
 #include "derive/expression/components.hpp"
 #include "derive/expression/functions.hpp"
 #include "derive/expression/shared.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-namespace cdot::derive {
+namespace cdot::command_line {
 
 constexpr double unnoticed = 1;  // [s]; before it nothing is shown
 
@@ -25,4 +25,4 @@ class Waiting {
   std::thread shows_;
 };
 
-}  // namespace cdot::derive
+}  // namespace cdot::command_line

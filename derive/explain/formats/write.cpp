@@ -1,5 +1,5 @@
 // Precedence of written formulas, names taken apart, and the parts of a document in their order.
-#include "derive/explain/write.hpp"
+#include "derive/explain/formats/write.hpp"
 
 #include <algorithm>
 #include <cstdlib>

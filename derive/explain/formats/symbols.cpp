@@ -1,5 +1,5 @@
 // The meaning, unit and frame of each name; components that turn with a body follow from its angle.
-#include "derive/explain/symbols.hpp"
+#include "derive/explain/formats/symbols.hpp"
 
 #include <array>
 #include <utility>

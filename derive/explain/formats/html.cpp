@@ -3,8 +3,8 @@
 #include <map>
 #include <utility>
 
-#include "derive/explain/mathml.hpp"
-#include "derive/explain/write.hpp"
+#include "derive/explain/formats/mathml.hpp"
+#include "derive/explain/formats/write.hpp"
 
 namespace cdot::derive {
 

@@ -1,4 +1,4 @@
-#include "derive/pipeline/waiting.hpp"
+#include "runtime/command_line/waiting.hpp"
 
 #include <chrono>
 #include <fmt/format.h>
@@ -6,7 +6,7 @@
 
 #include "runtime/text/stage.hpp"
 
-namespace cdot::derive {
+namespace cdot::command_line {
 
 Waiting::Waiting(std::string for_what) {
   if (isatty(STDERR_FILENO) == 1) shows_ = std::thread([this, what = std::move(for_what)] { show(what); });
@@ -37,4 +37,4 @@ void Waiting::show(const std::string& for_what) {
   if (shown) fmt::print(stderr, "\r\033[K");
 }
 
-}  // namespace cdot::derive
+}  // namespace cdot::command_line

@@ -1,7 +1,7 @@
 // The derivation for a terminal: one equation a line, the rule behind it, long sums broken between terms.
 #include <algorithm>
 
-#include "derive/explain/write.hpp"
+#include "derive/explain/formats/write.hpp"
 
 namespace cdot::derive {
 namespace {
