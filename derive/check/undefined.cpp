@@ -144,6 +144,7 @@ class Undefined {
       return draw(ends, fmt::format("at an end of [0, pi], in row {}, the kernel takes {} for the axis of the angle",
                                     name_, axis_taken()));
     }
+    if (is_root(e->args[1])) return latitude(e, name);
     const std::optional<AngleBetween> between = angle_between(e);
     const bool defined = between && between->from->unit_length && between->to->unit_length;
     const Zero both = defined ? Zero{} : zeros_.of(e->args[0], e->args[1]);
@@ -153,6 +154,15 @@ class Undefined {
             (both.reach == Reach::never ? ""
                                         : fmt::format("; {} the kernel takes 0 for it and for its row of J", guarded)));
     draw(both, fmt::format("{} of the angle in row {} the kernel takes 0", guarded, name_));
+  }
+
+  // atan2(y, sqrt(...)) never jumps: it turns back at both ends, where its rate divides by the root.
+  void latitude(Expr e, const std::string& name) {
+    seen_.insert(&*e->args[1]);
+    const Zero ends = zeros_.of(e->args[1]->args[0]);
+    if (ends.reach == Reach::never) return;
+    add(Level::note, name + " in [-pi/2, pi/2] has a corner at both ends; there the kernel takes 0 for its row of J");
+    draw(ends, fmt::format("at an end of [-pi/2, pi/2], in row {}, the kernel takes 0 for the row of J", name_));
   }
 
   // Tested at every pose with C = 0 that was found.

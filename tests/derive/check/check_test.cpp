@@ -212,6 +212,15 @@ TEST(Check, TellsOfAnglesInTheWordsOfTheSpec) {
   EXPECT_FALSE(mentions(about, "^2")) << about;
   const std::string plane = said_of("  unit s on a\n  unit t on b\n  angle(t, s) = 0\n", "planar");
   EXPECT_TRUE(mentions(plane, "C2: angle(t, s) jumps by 2 pi at pi\n")) << plane;
+  // A latitude turns back at its ends, where its rate divides by the root.
+  const std::string latitude = said_of(
+      "  frame fa on a\n  frame fb on b\n"
+      "  coordinate turn [rad] = atan2(dot(fa.x, fb.z), sqrt(dot(fa.y, fb.z)^2 + dot(fa.z, fb.z)^2))\n",
+      "spatial");
+  EXPECT_TRUE(
+      mentions(latitude, "turn in [-pi/2, pi/2] has a corner at both ends; there the kernel takes 0 for its row"))
+      << latitude;
+  EXPECT_FALSE(mentions(latitude, "jumps")) << latitude;
 }
 
 TEST(Check, ARowOfOneBodyIsTold) {
