@@ -126,6 +126,13 @@ TEST(Axis, HasAName) {
             (Lines{"s1 = (fa_x · fb_y)^2 + (fa_x · fb_z)^2",
                    "axis = (((fa_x · fb_z) fb_y - (fa_x · fb_y) fb_z)/s1) × fa_x", "J = [ 0 | axis' | 0 | -axis' ]"}))
       << "both columns are sums of their own";
+  EXPECT_EQ(of_frames("unit k on a\n  unit z on a\n  unit m on b\n  atan2(dot(k, m), dot(z, m)) = 0"),
+            (Lines{"s1 = (k · m)^2 + (m · z)^2", "axis = (((m · z) k - (k · m) z)/s1) × m",
+                   "J = [ 0 | axis' | 0 | -axis' ]"}))
+      << "m × z and k × m";
+  EXPECT_EQ(of_frames("scalar p, q\n  unit k on a\n  unit z on a\n  unit m on b\n  p * dot(k, m) + q * dot(z, m) = 0"),
+            (Lines{"axis = (p k + q z) × m", "J = [ 0 | axis' | 0 | -axis' ]"}))
+      << "k × m and m × z";
   EXPECT_EQ(of_frames("dot(fa.x, fb.z) = 0"), Lines{"J = [ 0 | (fa_x × fb_z)' | 0 | -(fa_x × fb_z)' ]"})
       << "short enough";
 }
