@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "runtime/tool/compiled/compiled_scenes.hpp"
 #include "runtime/tool/accuracy/frontier.hpp"
 #include "runtime/tool/accuracy/reference.hpp"
+#include "runtime/tool/compiled/compiled_scenes.hpp"
 
 namespace cdot {
 struct Point {

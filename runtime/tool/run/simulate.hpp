@@ -32,8 +32,9 @@ struct RunOptions {
   std::function<bool(const Frame&, const StepCounts&)> look;
   // Beyond so many the run is stopped; within a step, an implicit method finishes it then.
   double most_evaluations = std::numeric_limits<double>::infinity();
-  double search_work = 1e8;  // after which the search for a method ends with the best run so far; in units of search/work.hpp
-  Snapshot from;             // to continue from; empty: the scene's start
+  double search_work =
+      1e8;        // after which the search for a method ends with the best run so far; in units of search/work.hpp
+  Snapshot from;  // to continue from; empty: the scene's start
   // When to save RunResult::state: at the first step that ends then or later.
   std::optional<double> save_at;
 };

@@ -81,9 +81,10 @@ TEST(AccuracyReport, CsvHasTheSameColumnsInEveryRow) {
     EXPECT_EQ(commas, 18) << line;
   }
   EXPECT_EQ(count, 5);
-  EXPECT_NE(csv.find("\"euler + projection, direct\",euler,direct,projection,0,double,0,0.001953125,0,0.005,0.005,0.0025,"
-                     "1e-09,1e-08,0.001,8e-05,0,1,\n"),
-            std::string::npos)
+  EXPECT_NE(
+      csv.find("\"euler + projection, direct\",euler,direct,projection,0,double,0,0.001953125,0,0.005,0.005,0.0025,"
+               "1e-09,1e-08,0.001,8e-05,0,1,\n"),
+      std::string::npos)
       << csv;
 }
 
@@ -160,8 +161,9 @@ std::string scene_path(const std::string& name) {
 TEST(AccuracyCommand, WritesThreeFilesAndNoMore) {
   const TemporaryFolder folder;
   const std::string prefix = folder / "pendulum";
-  const CommandResult result = cdot_run(fmt::format("accuracy {} --until 0.5 --levels 6 --rounds 1 --budget 5 --only 'direct, float' -o '{}'",
-                                                    scene_path("simple_pendulum"), prefix));
+  const CommandResult result =
+      cdot_run(fmt::format("accuracy {} --until 0.5 --levels 6 --rounds 1 --budget 5 --only 'direct, float' -o '{}'",
+                           scene_path("simple_pendulum"), prefix));
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.err, "");
   EXPECT_EQ(folder.contents(), (std::vector<std::string>{"pendulum.csv", "pendulum.json", "pendulum.svg"}));
