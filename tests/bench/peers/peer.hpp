@@ -163,7 +163,8 @@ struct Engine {
   std::string changed;  // defaults changed by all its series
   // Empty if the engine cannot pose the problem. The problem outlives the series.
   std::function<std::vector<Series>(const Problem&)> series;
-  int lanes = 1;  // mechanisms in a run, all alike; the price is that of one
+  int lanes = 1;          // mechanisms in a run, all alike; the price is that of one
+  bool is_limit = false;  // no engine, but one mechanism written by hand
 };
 
 // All registered engines by name, Cdot first.

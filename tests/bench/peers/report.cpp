@@ -75,7 +75,8 @@ std::string rival(const Measured& m, double level) {
   const Point *ours = cheapest(m.points, "Cdot", level), *best = nullptr;
   for (const std::string& name : present(m.points)) {
     const Point* point = name.starts_with("Cdot") ? nullptr : cheapest(m.points, name, level);
-    if (point != nullptr && (best == nullptr || cost(*point) < cost(*best))) best = point;
+    if (point == nullptr || point->engine->is_limit) continue;
+    if (best == nullptr || cost(*point) < cost(*best)) best = point;
   }
   if (best == nullptr) return ours == nullptr ? "–" : "only Cdot";
   if (ours == nullptr) return "only " + best->engine->name;

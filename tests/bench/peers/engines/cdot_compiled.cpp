@@ -53,7 +53,7 @@ class CompiledSteps : public SteppedRun {
 
 std::vector<Series> series(const Problem& problem, int lanes) {
   std::vector<Series> all;
-  if (problem.scene.empty()) return all;
+  if (problem.scene.empty() || problem.reference.empty()) return all;
   for (const Way& way : compiled_ways()) {
     if (way.lanes != lanes) continue;
     const std::string name(name_of(integrators, way.integrator));
