@@ -150,6 +150,7 @@ void take_given(const SceneJoint& source, Joint& joint) {
     const bool turns = joint.kind == JointKind::revolute;
     if (effects.friction || (!turns && (effects.motor || effects.limit)) || effects.springs.size() > 1)
       throw CannotSay(source.name + ": no adapter knows friction, two springs at once, motors or stops of a slider");
+    if (effects.load || !effects.specs.empty()) throw CannotSay(source.name + ": no adapter knows effects of specs");
     if (effects.motor) joint.motor = {effects.motor->speed, effects.motor->max_force};
     if (effects.limit) joint.stops = {effects.limit->lower.value(), effects.limit->upper.value()};
     for (const CoordinateSpring& spring : effects.springs) joint.spring = spring_of(source, spring.softness);
