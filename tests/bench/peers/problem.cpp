@@ -141,6 +141,14 @@ void take_turns(const SceneJoint& source, Joint& joint) {
     throw CannotSay(source.name + ": adapters know joints of six degrees without slides and with one turn, or all");
 }
 
+// Many engines know stops at both ends only: a missing one is so far away that nothing here meets it, and within a
+// turn.
+Stops stops_of(const Limit& limit) {
+  constexpr double far = 3;  // [rad]
+  return {limit.lower.value_or(limit.upper.value_or(far) - far),
+          limit.upper.value_or(limit.lower.value_or(-far) + far)};
+}
+
 // Copies properties of a joint from the scene that the World does not report.
 void take_given(const SceneJoint& source, Joint& joint) {
   joint.axis = given_length(source) * joint.axis;
@@ -152,7 +160,7 @@ void take_given(const SceneJoint& source, Joint& joint) {
       throw CannotSay(source.name + ": no adapter knows friction, two springs at once, motors or stops of a slider");
     if (effects.load || !effects.specs.empty()) throw CannotSay(source.name + ": no adapter knows effects of specs");
     if (effects.motor) joint.motor = {effects.motor->speed, effects.motor->max_force};
-    if (effects.limit) joint.stops = {effects.limit->lower.value(), effects.limit->upper.value()};
+    if (effects.limit) joint.stops = stops_of(*effects.limit);
     for (const CoordinateSpring& spring : effects.springs) joint.spring = spring_of(source, spring.softness);
   }
 }
