@@ -213,13 +213,17 @@ TEST(Words, SayWhatJointsCarry) {
     return run->force(0);
   };
   const double right = carried(settings(named("Cdot"), plain).front());
+  int asked = 0;
   for (const Engine& engine : engines()) {
+    const std::vector<Setting> all = settings(engine, plain);
+    if (all.empty()) continue;  // compiled scenes and chains by hand pose the problems of the table alone
+    ++asked;
     double best = never;
-    for (const Setting& setting : settings(engine, plain))
-      best = std::min(best, std::fabs(carried(setting) / right - 1));
+    for (const Setting& setting : all) best = std::min(best, std::fabs(carried(setting) / right - 1));
     std::printf("%s: %.1e off %.2f N\n", engine.name.c_str(), best, right);
     EXPECT_LE(best, 0.02) << engine.name;
   }
+  EXPECT_EQ(asked, 9);
 }
 
 // Box2D's softest pin, a mouse joint, damps the spin of its body in each step.
