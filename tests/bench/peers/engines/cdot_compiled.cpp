@@ -66,7 +66,7 @@ std::vector<Series> series(const Problem& problem, int lanes) {
 
 const Registration alone{{"Cdot compiled", CDOT_VERSION, "double", "#8250df", "the scene by `cdot compile`",
                           [](const Problem& problem) { return series(problem, 1); }}};
-const Registration in_lanes{{"Cdot compiled, 8 lanes", CDOT_VERSION, "double", "#bf8cff",
+const Registration in_lanes{{"Cdot compiled in 8 lanes", CDOT_VERSION, "double", "#bf8cff",
                              "eight mechanisms at a time, alike; the time of each",
                              [](const Problem& problem) { return series(problem, 8); }, 8}};
 
