@@ -154,7 +154,7 @@ std::vector<Series> series(const Problem& problem) {
   return {};
 }
 
-const Registration registration{{.name = "Minimal, by hand",
+const Registration registration{{.name = "Minimal by hand",
                                  .version = "",
                                  .number = "double",
                                  .colour = "#57606a",
