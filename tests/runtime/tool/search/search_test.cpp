@@ -8,7 +8,6 @@
 #include <cdot/methods.hpp>
 
 #include "runtime/tool/run/trajectory.hpp"
-#include "runtime/tool/scene/extent.hpp"
 #include "runtime/tool/search/yardstick.hpp"
 #include "tests/runtime/tool/support.hpp"
 
@@ -336,52 +335,6 @@ TEST(SearchedAccuracy, IsTheSameWithAndWithoutOutputs) {
   EXPECT_EQ(with.choice->local_error, without.choice->local_error);
   EXPECT_EQ(with.choice->achieved, without.choice->achieved);
   EXPECT_EQ(with.energy_end, without.energy_end);
-}
-
-TEST(Extent, IsOfEachMechanism) {
-  const Scene scene = read_scene(std::string_view(R"(
-[[body]]
-name = "near"
-mass = 1
-inertia = 1
-position = [0.3, 0.4]
-[[body]]
-name = "far"
-mass = 1
-shape = { rod = 2 }
-position = [1000, 0]
-[[body]]
-name = "wall"
-static = true
-position = [500, 0]
-[[body]]
-name = "alone"
-mass = 1
-inertia = 1
-[[body]]
-name = "partner"
-mass = 1
-inertia = 1
-position = [0, 0.4]
-[[spring]]
-bodies = ["near", "partner"]
-stiffness = 1
-[[joint]]
-type = "revolute"
-bodies = ["near", "wall"]
-at = [0, 0]
-[[joint]]
-type = "revolute"
-bodies = ["far", "wall"]
-at = [999, 0]
-)"),
-                                 "extent.toml");
-  const Extents extents = extents_of(scene);
-  EXPECT_EQ(extents.mechanisms, 3);
-  EXPECT_NEAR(extents.of_body[0], 0.5, 1e-12);
-  EXPECT_NEAR(extents.of_body[1], std::hypot(2, 0.12), 1e-12);  // the rod's width is 0.06 of its length
-  EXPECT_EQ(extents.of_body[3], 0);
-  EXPECT_EQ(extents.of_body[4], extents.of_body[0]);
 }
 
 // A method on the command line replaces an accuracy, and an accuracy a method.
