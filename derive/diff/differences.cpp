@@ -22,13 +22,6 @@ bool all_same(const Differences& entries, Text text) {
   return true;
 }
 
-// Component i of a vector formula, as the formula: "-cross(ra, n).x" as "-cross(ra, n)". An axis of the world stays.
-std::string without_component(const std::string& text, std::size_t i) {
-  const std::string axis = std::string(".") + "xyz"[i];
-  if (text.find("world" + axis) != text.npos) return text;
-  return std::regex_replace(text, std::regex("\\" + axis + "\\b"), "");
-}
-
 std::string condition_of(const Difference& d) {
   const std::size_t at = d.sentence.find("equal where ");
   return at == std::string::npos ? "" : d.sentence.substr(at);
@@ -127,6 +120,12 @@ Differences merged(Differences entries, const Sides& sides, const Group& rows, c
 }
 
 }  // namespace
+
+std::string without_component(const std::string& text, std::size_t i) {
+  const std::string axis = std::string(".") + "xyz"[i];
+  if (text.find("world" + axis) != text.npos) return text;
+  return std::regex_replace(text, std::regex("\\" + axis + "\\b"), "");
+}
 
 Difference finished(Entry& entry, const HandItem& item, Difference difference, Expr published, Expr generated) {
   if (difference.kind != "sign" && difference.kind != "wrong body") {

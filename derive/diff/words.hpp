@@ -47,6 +47,9 @@ Difference describe_difference(const Place& place, Expr hand, Expr generated, co
 // The axis that the spec calls f.x is a leaf f_x.
 std::string in_names_of_spec(std::string text, const Joint& joint);
 
+// Component i of a vector formula, as the formula: "-cross(ra, n).x" as "-cross(ra, n)". An axis of the world stays.
+std::string without_component(const std::string& text, std::size_t i);
+
 // An undeclared condition under which the two are equal: "C = 0", "ratio = 1"; empty if none is found.
 std::string hidden_assumption(const Joint& joint, const Poses& on_constraint, Expr hand, Expr generated,
                               const Poses& poses);

@@ -1,6 +1,8 @@
-// One slip on every diagonal entry of K: masses that are added before they are inverted, softness that is subtracted.
+// One slip on every diagonal entry of K: masses that are added before they are inverted, softness that is subtracted,
+// squares of whole arms.
 #include "derive/diff/slips/slips.hpp"
 #include "derive/diff/terms.hpp"
+#include "derive/expression/symbols.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -52,11 +54,38 @@ std::optional<Slip> subtracted_softness(const Whole& whole) {
   return Slip{"sign", fmt::format("softness makes K larger: the diagonal has -{0} where +{0} belongs", right)};
 }
 
+// In the plane: |r|^2/I in place of perp(r) perp(r)'/I, as if a pull along the arm turned the body; r r'/I too much.
+std::optional<Slip> whole_arms(const Whole& whole) {
+  const Joint& joint = whole.entry.joint;
+  if (joint.dimension != 2 || whole.mine.rows != 2) return {};
+  std::vector<const Parameter*> arms;
+  for (const Parameter& p : joint.parameters)
+    if (p.kind == ParameterKind::point && p.body >= 0) arms.push_back(&p);
+  const auto is_with = [&](const std::vector<const Parameter*>& some) {
+    return whole.is([&](std::size_t i) {
+      List K = whole.generated[i];
+      for (const Parameter* arm : some) {
+        const List r = values_at(components_of(arm->symbol), whole.samples()[i]);
+        const double inverse = values_at({inverse_inertia(*joint.pool, arm->body)}, whole.samples()[i])[0];
+        for (std::size_t k = 0; k < K.size(); ++k) K[k] += inverse * r[k / 2] * r[k % 2];
+      }
+      return K;
+    });
+  };
+  const auto words = [](const std::string& of, const std::string& r) {
+    return Slip{"factor", fmt::format("{0}|{1}|^2 E stands where perp({1}) perp({1})' belongs", of, r)};
+  };
+  if (arms.size() > 1 && is_with(arms)) return words("of all bodies, ", "r");
+  for (const Parameter* arm : arms)
+    if (is_with({arm})) return words("", arm->symbol->symbol);
+  return {};
+}
+
 }  // namespace
 
 std::optional<Slip> slip_of_diagonal(const Whole& whole) {
   if (whole.what != "K" || whole.mine.rows < 2) return {};
-  return first_of({reduced_masses, subtracted_softness}, whole);
+  return first_of({reduced_masses, subtracted_softness, whole_arms}, whole);
 }
 
 }  // namespace cdot::derive

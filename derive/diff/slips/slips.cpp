@@ -71,7 +71,7 @@ std::optional<Slip> slip_of_whole(Entry& entry, const Part* part, const std::str
                                   const Matrix& generated) {
   const Whole whole(entry, part, what, published, generated);
   return first_of({slip_of_order, slip_of_frame, slip_of_sign, slip_of_masses, slip_of_diagonal, slip_of_scale,
-                   slip_of_symbol, slip_of_factor, slip_of_name, slip_of_exchange, slip_of_rows},
+                   slip_of_symbol, slip_of_factor, slip_of_displacement, slip_of_name, slip_of_exchange, slip_of_rows},
                   whole);
 }
 

@@ -73,16 +73,17 @@ inline std::optional<Slip> first_of(std::initializer_list<Reading> readings, con
   return {};
 }
 
-std::optional<Slip> slip_of_order(const Whole& whole);     // rows, columns, bodies
-std::optional<Slip> slip_of_rows(const Whole& whole);      // of J: a row twice, combinations of the right ones
-std::optional<Slip> slip_of_frame(const Whole& whole);     // angular velocities along other axes
-std::optional<Slip> slip_of_sign(const Whole& whole);      // of a body, of v or w, of masses
-std::optional<Slip> slip_of_masses(const Whole& whole);    // inverses, what is missing, another body's axes
-std::optional<Slip> slip_of_diagonal(const Whole& whole);  // of K: reduced masses, softness
-std::optional<Slip> slip_of_scale(const Whole& whole);     // all of it times one factor
-std::optional<Slip> slip_of_symbol(const Whole& whole);    // an arm halved or exchanged, one symbol for another
-std::optional<Slip> slip_of_exchange(const Whole& whole);  // of two symbols
-std::optional<Slip> slip_of_factor(const Whole& whole);    // all of it, or one row
-std::optional<Slip> slip_of_name(const Whole& whole);      // a let of the entry that stands for something else
+std::optional<Slip> slip_of_order(const Whole& whole);         // rows, columns, bodies
+std::optional<Slip> slip_of_rows(const Whole& whole);          // of J: a row twice, combinations of the right ones
+std::optional<Slip> slip_of_frame(const Whole& whole);         // angular velocities along other axes
+std::optional<Slip> slip_of_sign(const Whole& whole);          // of a body, of v or w, of masses
+std::optional<Slip> slip_of_masses(const Whole& whole);        // inverses, what is missing, another body's axes
+std::optional<Slip> slip_of_diagonal(const Whole& whole);      // of K: reduced masses, softness, arms
+std::optional<Slip> slip_of_scale(const Whole& whole);         // all of it times one factor
+std::optional<Slip> slip_of_symbol(const Whole& whole);        // an arm halved or exchanged, one symbol for another
+std::optional<Slip> slip_of_exchange(const Whole& whole);      // of two symbols
+std::optional<Slip> slip_of_factor(const Whole& whole);        // all of it, or one row
+std::optional<Slip> slip_of_displacement(const Whole& whole);  // a term in the columns of another body
+std::optional<Slip> slip_of_name(const Whole& whole);          // a let of the entry that stands for something else
 
 }  // namespace cdot::derive

@@ -51,6 +51,32 @@ TEST(Slips, AreTheOnlySentence) {
        "  update v(a) += lambda/m(a)\n  update w(a) += I(a)^-1*cross(ra, lambda)\n"
        "  update v(b) -= lambda/m(b)\n  update w(b) -= cross(rb, lambda)\n",
        "update: the inverse inertia of b is missing"},
+      // Of one body alone.
+      {"revolute",
+       "  K = [1/m(a)+m(b)+ra.y^2/I(a)+rb.y^2/I(b), -ra.x*ra.y/I(a)-rb.x*rb.y/I(b) ; "
+       "-ra.x*ra.y/I(a)-rb.x*rb.y/I(b), 1/m(a)+m(b)+ra.x^2/I(a)+rb.x^2/I(b)]\n",
+       "K: the mass m of b stands where 1/m belongs"},
+      {"revolute",
+       "  K = [1/m(a)+1/m(b)+ra.y^2*I(a)+rb.y^2/I(b), -ra.x*ra.y*I(a)-rb.x*rb.y/I(b) ; "
+       "-ra.x*ra.y*I(a)-rb.x*rb.y/I(b), 1/m(a)+1/m(b)+ra.x^2*I(a)+rb.x^2/I(b)]\n",
+       "K: the inertia I of a stands where 1/I belongs"},
+      {"spherical", "  K = (1/m(a)+1/m(b))*E - skew(ra)*R(a)'*I(a)^-1*R(a)*skew(ra) - skew(rb)*I(b)^-1*skew(rb)\n",
+       "K: the inertia of a is left in the axes of its body: A^T I^-1 A stands where I^-1 belongs"},
+      {"revolute", "  K = (1/m(a)+1/m(b)+dot(ra, ra)/I(a)+dot(rb, rb)/I(b))*E\n",
+       "K: of all bodies, |r|^2 E stands where perp(r) perp(r)' belongs"},
+      {"revolute", "  K = (1/m(a)+1/m(b)+dot(ra, ra)/I(a))*E + perp(rb)*perp(rb)'/I(b)\n",
+       "K: |ra|^2 E stands where perp(ra) perp(ra)' belongs"},
+      // A term in the columns of another body.
+      {"line", "  J = [t', 0, -t', cross(ra, t) - cross(rb, t) - cross(u, t)]\n",
+       "J: cross(ra, t) stands in the columns of w_b, but belongs in those of w_a"},
+      {"line", "  J = [t', cross(ra, t) - cross(u, t), -t', -cross(rb, t)]\n",
+       "J: -cross(u, t) stands in the columns of w_a, but belongs in those of w_b"},
+      {"point_on_line",
+       "  let y = fa.y\n  let z = fa.z\n  J = [-y', -cross(ra, y)', y', cross(rb - d, y)' ; -z', -cross(ra, z)', z', "
+       "cross(rb - d, z)']\n",
+       "J: terms stand in the columns of w_b, but belong in those of w_a"},
+      {"n2", "  J = [-n', -cross(ra, n)', n', cross(rb - d, n)']\n",
+       "J: -cross(d, n) stands in the columns of w_b, but belongs in those of w_a"},
       // Factors.
       {"angle_ratio", "  J = [0, -1, 0, 1/ratio]\n",
        "J: all of it is 1/ratio times what it should be, which is right only with a C scaled alike"},
