@@ -257,7 +257,7 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
       system.assemble(world.bodies);
       renewed |= slow;
     }
-    if (round == 0 && (fresh || other_rows)) factor_rows_with_errors(system);
+    if (round == 0 && (fresh || other_rows)) factor_rows_with_errors(system, Rates::kept);
     else if (more || slow) system.factor();
     if (fresh && !island.acceleration_level) drop_rows_that_move_far(world, island, system, worst);
     before = worst;
@@ -289,8 +289,11 @@ void project_relaxed(WorldData<S>& world, Island<S>& island) {
 }  // namespace
 
 template <class S>
-void factor_rows_with_errors(System<S>& system) {
-  system.choose(has_error<S>);
+void factor_rows_with_errors(System<S>& system, Rates rates) {
+  system.choose([rates](const Batch<S>& batch, int i) {
+    const bool of_rate = batch.kinds[static_cast<size_t>(i % batch.ops->rows)] == RowKind::velocity;
+    return (rates == Rates::kept || !of_rate) && has_error(batch, i);
+  });
   system.factor();
 }
 
@@ -321,7 +324,7 @@ const RowSolver<S>& direct_solver() {
 }
 
 #define CDOT_INSTANTIATE(S)                                                                        \
-  template void factor_rows_with_errors(System<S>&);                                               \
+  template void factor_rows_with_errors(System<S>&, Rates);                                        \
   template void exert_correction(const WorldData<S>&, const Island<S>&, System<S>&, S::Velocity*); \
   template const RowSolver<S>& direct_solver();
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)

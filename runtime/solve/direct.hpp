@@ -33,9 +33,11 @@ template <class S, class Array>
   system.pull(world.bodies, to);
 }
 
-// Selects the rows that have an error to correct and factors them.
+// Selects the rows that have an error to correct and factors them. Velocity rows have none: they take part if the
+// correction is to change no rate of theirs.
+enum class Rates : char { free, kept };
 template <class S>
-void factor_rows_with_errors(System<S>& system);
+void factor_rows_with_errors(System<S>& system, Rates rates);
 
 // Stores the solution as the batches' impulse of this projection round, adds it to their correction and applies it to
 // `to`.

@@ -109,7 +109,7 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
                                           std::min(slight<T> * at_first, foreign<T> * island.scale)});
     astray |= vain > 0;
     load_errors(system, T(-1) / h);
-    if (system.lawful()) factor_rows_with_errors(system);
+    if (system.lawful()) factor_rows_with_errors(system, Rates::free);
     system.solve();
     if (!island.flow.search.next(system.lambda.data())) return false;
     exert_correction(world, island, system, world.bodies.velocity.data());

@@ -8,6 +8,7 @@
 #include "runtime/direct/ldlt.hpp"
 #include "runtime/tool/run/frame.hpp"
 #include "tests/torture/draw/scene_text.hpp"
+#include "tests/torture/excuses.hpp"
 #include "tests/torture/observer.hpp"
 #include "tests/torture/pushes.hpp"
 #include "tests/torture/trial.hpp"
@@ -193,6 +194,7 @@ const char* Trial<S>::excuse(BasicWorld<S>& world) const {
   if (heaviest_over_lightest(*scene_) * told_apart < T >> 1)  // rows of effects as well
     return "masses further apart than pivots are told from round-off";
   const SystemMatrix now = system_matrix(world);
+  if (least_share_of_a_body(world, now) < told_apart<T>) return "a body with less than a pivot's resolution of its row";
   if (independence(now, 8 * std::numeric_limits<double>::epsilon()) < std::sqrt(told_apart<T>))
     return "rows so near to dependent that pivots are not told from round-off";
   if (independence(now, 8 * std::numeric_limits<T>::epsilon()) < nearly_lost * independence_)

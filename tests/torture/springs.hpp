@@ -20,16 +20,16 @@ struct SpringRow {
 };
 
 // Forces of a slot's rows at rest at C - 1, which tells the stiffness of linear springs exactly; closer to C where that
-// has no force, as a gas spring shorter than 0.
+// has no force, as a gas spring shorter than 0; on the other side where C itself is next to 0.
 template <class S, class Forces>
 std::vector<double> find_ways_to(Batch<S>& rows, int slot, const Forces& no_rate, Forces& forces) {
   using T = typename S::Scalar;
   const auto count = static_cast<std::size_t>(rows.ops->rows), first = static_cast<std::size_t>(slot) * count;
   const std::vector<T> C(&rows.C[first], &rows.C[first] + count);
   std::vector<double> ways(count, 1.0);
-  for (const double share : {0.0, 1e-3}) {
+  for (const double share : {0.0, 1e-3, -1e-3}) {
     for (std::size_t r = 0; r < count; ++r) {
-      if (share > 0) ways[r] = share * std::max(std::abs(double(C[r])), 1e-6);
+      if (share != 0) ways[r] = share * std::max(std::abs(double(C[r])), 1e-6);
       rows.C[first + r] = T(double(C[r]) - ways[r]);
     }
     rows.law->force(rows, slot, no_rate.data(), forces.data());
