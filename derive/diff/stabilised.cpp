@@ -52,7 +52,7 @@ Matrix without_baumgarte(Entry& entry, const Part& part, const HandItem& item, M
   if (item.what != "b" || item.value->rows != generated.rows || item.value->columns != 1) return generated;
   for (std::size_t r = 0; r < part.rows.size(); ++r) {
     const Expr published = item.value->entries[r], C = scaled(part.scale_of_C[r], part.generated.C.entries[r]);
-    const Expr added = published + scaled(part.scale[r], generated.entries[r]);
+    const Expr added = difference_of(published, -scaled(part.scale[r], generated.entries[r]), entry.joint);
     if (is_zero(C) || entry.poses().equal(added, C->pool->number(0))) continue;
     if (!is_constant_share(added, C, -1, entry.poses())) {
       if (is_constant_share(added, C, 1, entry.poses()))

@@ -109,6 +109,9 @@ std::optional<Slip> slip_of_factor(const Whole& whole) {
   const int rows = whole.mine.rows, columns = whole.mine.columns;
   for (int r = 0; r < rows && whole.what != "K"; ++r) {
     const std::string k = factor_with(ratios(whole, {r, r + 1, 0, columns}), whole);
+    if (k == "-1")
+      return Slip{"sign", fmt::format("row {} has the wrong sign: the rows of one vector equation change it together",
+                                      whole.row_name(r))};
     if (!k.empty()) return Slip{"factor", fmt::format("row {} is {} times what it should be", whole.row_name(r), k)};
   }
   const int width = whole.entry.width();

@@ -87,6 +87,8 @@ TEST(Slips, AreTheOnlySentence) {
       {"spherical_spherical", "  J = [-2*d', -2*cross(ra, d)', 2*d', 2*cross(rb, d)']\n",
        "J: all of it is 2 times what it should be, which is right only with a C scaled alike"},
       // Rows.
+      {"revolute", "  J = [-1, 0, ra.y, 1, 0, -rb.y ; 0, 1, ra.x, 0, -1, -rb.x]\n",
+       "J: row 1 has the wrong sign: the rows of one vector equation change it together"},
       {"point_on_line",
        "  let p = fa.y + fa.z\n  let q = fa.z - 2*fa.y\n  J = [-p', -cross(ra + d, p)', p', cross(rb, p)' ; "
        "-q', -cross(ra + d, q)', q', cross(rb, q)']\n",
