@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fstream>
 
+#include "derive/play/judge.hpp"
 #include "derive/play/live.hpp"
 #include "derive/play/spec.hpp"
 
@@ -36,6 +37,8 @@ json Engine::answer(const json& request) {
   if (wanted == "write") return write_files(request.at("files"));
   if (wanted == "check") return check_spec(request.at("path"));
   if (wanted == "explain") return explain_spec(request.at("path"));
+  if (wanted == "judge") return judge_hand(request.at("path"));
+  if (wanted == "hand") return first_entry(request.at("path"));
   if (wanted == "load") {
     live_ = nullptr;
     live_ = LiveScene::load(request.at("path"), request);
@@ -47,6 +50,7 @@ json Engine::answer(const json& request) {
   if (wanted == "change") live_->change(request);
   else if (wanted == "drag") live_->drag(request);
   else if (wanted == "drop") live_->drop();
+  else if (wanted == "set") live_->set_parameter(request);
   else if (wanted == "motor") live_->set_motor(request);
   else throw std::runtime_error(fmt::format("there is no request \"{}\"", wanted));
   return live_->state();

@@ -14,12 +14,15 @@ class LiveScene;
 //   write    files {path: text}                       writes them below the current directory
 //   check    path                                     messages of the reader of specs
 //   explain  path                                     the derivation as HTML; every name carries data-name
-//   load     path, method, substeps, rate             reads a scene and makes its World; describes it
-//   change   gravity, method, substeps, rate          goes on from the present state with other settings
+//   judge    path                                     verdicts on a .hand file beside its spec
+//   hand     path                                     of a spec: the text of an entry to begin with
+//   load     path, method, rate, measure              reads a scene and makes its World; describes it
+//   change   gravity, method, rate, measure           goes on from the present state with other settings
 //   step     time                                     moves on by about `time` [s]; the state
 //   drag     body, local, target                      a damped spring from the pointer to a point of the body
 //   drop                                              removes it
 //   motor    joint, effect, speed, max                changes a motor
+//   set      joint, name, numbers                     changes a parameter of a joint
 //   marks    joint                                    the names of a joint's spec as points and arrows, at present
 // An answer has `problems` if the request failed: text for people.
 class Engine {

@@ -24,6 +24,7 @@ constexpr double start_projected = 1e-10;   // [m], [rad]: of the projection of 
 constexpr double start_tolerance = 1e-6;    // above which a start is reported as inconsistent
 constexpr double usual_rate = 240;          // [1/s] steps, where neither the scene nor the person says
 constexpr double most_of_a_request = 0.05;  // [s] of simulated time per request `step`
+constexpr int finer = 8;                    // steps of the run beside it, per step, that shows the error
 constexpr double pull = 6;                  // [rad/s] at which the pointer's spring would swing the whole mechanism
 
 // The scene with the person's wishes.
@@ -51,6 +52,7 @@ template <class S>
 class LiveSceneIn final : public LiveScene {
  public:
   LiveSceneIn(Scene scene, const json& wishes) : scene_(std::move(scene)) {
+    measures_ = wishes.value("measure", false);
     start(with_wishes(scene_, wishes));
     warnings_ += inconsistency_report(scene_, *world_, start_tolerance);
   }
@@ -77,8 +79,10 @@ class LiveSceneIn final : public LiveScene {
             {"worst", worst.joint},
             {"sensors", sensor_values(scene_, *world_, accelerations_)},
             {"broken", broken},
+            {"forces", forces()},
             {"cpu", cpu_},
-            {"failed", failed_}};
+            {"failed", failed_},
+            {"off", finer_ ? json(off()) : json()}};
   }
 
   json step(double time) override {
@@ -93,6 +97,8 @@ class LiveSceneIn final : public LiveScene {
     }
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - before;
     if (world_->time() > from) cpu_ = took.count() / (world_->time() - from);
+    for (const double end = world_->time() - 0.5 * step_ / finer; finer_ && finer_->time() < end;)
+      if (!finer_->step(step_ / finer)) finer_ = nullptr;
     return state();
   }
 
@@ -100,12 +106,15 @@ class LiveSceneIn final : public LiveScene {
     const BasicWorld<S> old = std::move(*world_);
     const double time = time_before_ + old.time();
     const int hand = hand_joint_;
+    measures_ = wishes.value("measure", false);
     start(with_wishes(scene_, wishes));
-    for (int body = 0; body < std::ssize(scene_.bodies); ++body) {
-      world_->set_pose(body, old.place(body));
-      typename S::Exact::Velocity velocity = old.velocity(body);
-      world_->set_velocity(body, velocity);
-    }
+    in_each([&](BasicWorld<S>& world) {
+      for (int body = 0; body < std::ssize(scene_.bodies); ++body) {
+        world.set_pose(body, old.place(body));
+        const typename S::Exact::Velocity velocity = old.velocity(body);
+        world.set_velocity(body, velocity);
+      }
+    });
     time_before_ = time;
     if (hand >= 0) drag(last_drag_);
   }
@@ -117,7 +126,10 @@ class LiveSceneIn final : public LiveScene {
     const bool same = hand_joint_ >= 0 && last_drag_.at("body") == request.at("body") &&
                       last_drag_.at("local") == request.at("local");
     last_drag_ = request;
-    if (same) return world_->set_parameters(hand_joint_, {{"pa", {target.begin(), target.begin() + dimensions}}});
+    if (same)
+      return in_each([&](BasicWorld<S>& world) {
+        world.set_parameters(hand_joint_, {{"pa", {target.begin(), target.begin() + dimensions}}});
+      });
     drop();
     const double stiffness = request.value("stiffness", 1.0) * mass_ * pull * pull;
     JointDefinition spring{.type = dimensions == 2 ? "revolute" : "spherical",
@@ -125,17 +137,25 @@ class LiveSceneIn final : public LiveScene {
                            .parameters = {{"pa", {target.begin(), target.begin() + dimensions}},
                                           {"pb", {local.begin(), local.begin() + dimensions}}},
                            .soft = Softness{.by_frequency = false, .stiffness = stiffness, .damping = mass_ * pull}};
-    hand_joint_ = world_->add_joint(spring);
+    in_each([&](BasicWorld<S>& world) { hand_joint_ = world.add_joint(spring); });
   }
 
   void drop() override {
-    if (hand_joint_ >= 0) world_->remove_joint(hand_joint_);
+    if (hand_joint_ >= 0) in_each([&](BasicWorld<S>& world) { world.remove_joint(hand_joint_); });
     hand_joint_ = -1;
   }
 
+  void set_parameter(const json& request) override {
+    in_each([&](BasicWorld<S>& world) {
+      world.set_parameters(request.at("joint").get<int>(), {{request.at("name"), request.at("numbers")}});
+    });
+  }
+
   void set_motor(const json& request) override {
-    set_effect(*world_, request.at("joint").get<int>(), request.at("effect").get<int>(),
-               Motor{request.at("speed").get<double>(), request.value("max", unlimited)});
+    in_each([&](BasicWorld<S>& world) {
+      set_effect(world, request.at("joint").get<int>(), request.at("effect").get<int>(),
+                 Motor{request.at("speed").get<double>(), request.value("max", unlimited)});
+    });
   }
 
   json marks(const json& request) override {
@@ -150,6 +170,26 @@ class LiveSceneIn final : public LiveScene {
   using Place = typename S::Place;
   static constexpr int dimensions = S::dimension == Dimension::planar ? 2 : 3;
 
+  // In the World that is shown, and in the one beside it.
+  template <class Do>
+  void in_each(Do change) {
+    change(*world_);
+    if (finer_) change(*finer_);
+  }
+
+  // The largest distance of a body from its place in the run with shorter steps [m].
+  double off() const {
+    double most = 0;
+    for (int body = 0; body < std::ssize(scene_.bodies); ++body) {
+      const std::vector<double> here = numbers_of(world_->place(body)), there = numbers_of(finer_->place(body));
+      double square = 0;
+      for (std::size_t k = 0; k < static_cast<std::size_t>(dimensions); ++k)
+        square += (here[k] - there[k]) * (here[k] - there[k]);
+      most = std::max(most, std::sqrt(square));
+    }
+    return most;
+  }
+
   void start(const Scene& scene) {
     step_ = scene.step, due_ = 0, failed_.clear(), hand_joint_ = -1, time_before_ = 0;
     world_ = std::make_unique<BasicWorld<S>>(build_world_in<S>(scene));
@@ -159,12 +199,34 @@ class LiveSceneIn final : public LiveScene {
           recommended(*world_, step_, [&](int b) { return scene.bodies.at(std::size_t(b)).name; });
       world_->use(found.settings), why_ = found.reason;
     }
-    world_->ground();
+    finer_ = measures_ ? std::make_unique<BasicWorld<S>>(build_world_in<S>(scene)) : nullptr;
+    if (finer_) {
+      if (scene.project) finer_->project(start_projected);
+      finer_->use(world_->settings());
+    }
+    in_each([](BasicWorld<S>& world) { world.ground(); });
     accelerations_.assign(scene.bodies.size(), {});
     mass_ = 0;
     for (int body = 0; body < std::ssize(scene.bodies); ++body)
       if (!world_->is_static(body)) mass_ += 1 / double(world_->inverse_mass(body).m);
   }
+
+  // Of each joint on its first movable body [N].
+  json forces() const {
+    json all = json::array();
+    for (int joint = 0; joint < std::ssize(scene_.joints); ++joint) {
+      double force = 0;
+      for (const int body : world_->joint_bodies(joint)) {
+        if (world_->is_static(body)) continue;
+        force = size_of(world_->reaction(joint, body));
+        break;
+      }
+      all.push_back(force);
+    }
+    return all;
+  }
+  static double size_of(const planar::Wrench& w) { return std::hypot(w.force_x, w.force_y); }
+  static double size_of(const spatial::Wrench& w) { return std::hypot(w.force_x, w.force_y, w.force_z); }
 
   // Of the last step: velocities after it (sign 1), less those before it (-1), by its length.
   void add_velocities(int sign) {
@@ -198,6 +260,8 @@ class LiveSceneIn final : public LiveScene {
 
   Scene scene_;
   std::unique_ptr<BasicWorld<S>> world_;
+  std::unique_ptr<BasicWorld<S>> finer_;  // the same with shorter steps, if the error is measured
+  bool measures_ = false;
   std::string warnings_, why_, failed_;
   double step_ = 1 / usual_rate, due_ = 0, cpu_ = 0, mass_ = 0, time_before_ = 0;
   int hand_joint_ = -1;  // the pointer's spring

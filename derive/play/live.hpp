@@ -19,6 +19,7 @@ class LiveScene {
   virtual void change(const nlohmann::json& wishes) = 0;
   virtual void drag(const nlohmann::json& request) = 0;
   virtual void drop() = 0;
+  virtual void set_parameter(const nlohmann::json& request) = 0;
   virtual void set_motor(const nlohmann::json& request) = 0;
   virtual nlohmann::json marks(const nlohmann::json& request) = 0;
 };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "derive/play/assets.hpp"
+#include "derive/play/first_sight.hpp"
 #include "derive/play/trial.hpp"
 #include "runtime/tool/run/output.hpp"
 
@@ -30,7 +31,7 @@ std::vector<fs::path> files_in(const fs::path& folder, std::initializer_list<con
 json all_specs(const fs::path& specs) {
   json files = json::object();
   for (const char* space : {"planar", "spatial", "coordinate"})
-    for (const fs::path& file : files_in(specs / space, {".joint", ".effect"}))
+    for (const fs::path& file : files_in(specs / space, {".joint", ".effect", ".hand"}))
       files[fmt::format("specs/{}/{}", space, file.filename().string())] = read_file(file.string());
   if (files.empty())
     throw std::runtime_error(
@@ -54,7 +55,8 @@ json example(const fs::path& file) {
   const std::string title = value_of("title", scene);
   const char* const space = value_of("dimension", scene).starts_with('3') ? "spatial" : "planar";
   json specs = json::object();
-  for (const fs::path& spec : files_in(file.parent_path().empty() ? "." : file.parent_path(), {".joint", ".effect"}))
+  for (const fs::path& spec :
+       files_in(file.parent_path().empty() ? "." : file.parent_path(), {".joint", ".effect", ".hand"}))
     if (scene.find(spec.stem().string()) != scene.npos)
       specs[fmt::format("specs/{}/{}", space, spec.filename().string())] = read_file(spec.string());
   return {{"title", title.empty() ? file.stem().string() : title}, {"scene", scene}, {"specs", specs}};
@@ -117,7 +119,8 @@ std::string playground_page(const std::string& start, const fs::path& specs, con
                       (engine / part).string()));
   std::string script;
   for (int k = 0; k < script_count; ++k) script += scripts[k];
-  const json data = {{"files", all_specs(specs)}, {"gallery", gallery(start, specs)}};
+  const json files = all_specs(specs), scenes = gallery(start, specs);
+  const json data = {{"files", files}, {"gallery", scenes}, {"first", first_sight(files, scenes[0])}};
   return filled(page_html, {{"style", std::string(page_css)},
                             {"glue", in_a_script(read_file((engine / "engine.js").string()))},
                             {"worker", std::string(worker_js)},

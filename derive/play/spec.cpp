@@ -14,24 +14,6 @@ namespace {
 using namespace derive;
 using nlohmann::json;
 
-json message_json(const SourceFile& file, const Diagnostic& d) {
-  const int line = file.line(d.where.begin);
-  const int last = d.where.end > d.where.begin ? d.where.end - 1 : d.where.begin;
-  const int end = file.line(last) == line ? file.column(last) + 1 : file.column(d.where.begin) + 1;
-  return {{"severity", d.severity == Severity::error ? "error" : "warning"},
-          {"line", line},
-          {"column", file.column(d.where.begin)},
-          {"end", end},
-          {"message", d.message},
-          {"fix", d.fix}};
-}
-
-json messages_json(const ReadResult& read) {
-  json messages = json::array();
-  for (const Diagnostic& d : read.diagnostics.list) messages.push_back(message_json(*read.file, d));
-  return messages;
-}
-
 json refused(const ReadResult& read, const std::string& reason) {
   Diagnostics diagnostics;
   diagnostics.error(read.joint->rows.empty() ? derive::Span{} : read.joint->rows.front().where, reason);
@@ -76,9 +58,26 @@ std::vector<std::string> names_in(const std::string& list) {
 
 }  // namespace
 
+json message_json(const SourceFile& file, derive::Span where, const std::string& severity, const std::string& message,
+                  const std::string& fix) {
+  const int line = file.line(where.begin);
+  const int last = where.end > where.begin ? where.end - 1 : where.begin;
+  const int end = file.line(last) == line ? file.column(last) + 1 : file.column(where.begin) + 1;
+  return {{"severity", severity}, {"line", line},       {"column", file.column(where.begin)},
+          {"end", end},           {"message", message}, {"fix", fix}};
+}
+
+json messages_json(const SourceFile& file, const Diagnostics& diagnostics) {
+  json messages = json::array();
+  for (const Diagnostic& d : diagnostics.list)
+    messages.push_back(
+        message_json(file, d.where, d.severity == Severity::error ? "error" : "warning", d.message, d.fix));
+  return messages;
+}
+
 json check_spec(const std::string& path) {
   const ReadResult read = SpecsFolder().read(path);
-  json answer{{"messages", messages_json(read)}, {"dimension", dimension_of(*read.file)}};
+  json answer{{"messages", messages_json(*read.file, read.diagnostics)}, {"dimension", dimension_of(*read.file)}};
   if (read.joint) answer["name"] = read.joint->name;
   return answer;
 }

@@ -6,10 +6,16 @@
 #include <vector>
 
 #include "derive/numbers/numeric.hpp"
+#include "derive/syntax/source.hpp"
 
 namespace cdot::play {
 
-// {messages: [{severity, line, column, end, message, fix}], name, dimension}; the columns count characters from 1.
+// A message about a place of a text; the columns count characters from 1.
+nlohmann::json message_json(const derive::SourceFile& file, derive::Span where, const std::string& severity,
+                            const std::string& message, const std::string& fix);
+nlohmann::json messages_json(const derive::SourceFile& file, const derive::Diagnostics& diagnostics);
+
+// {messages: [{severity, line, column, end, message, fix}], name, dimension}
 nlohmann::json check_spec(const std::string& path);
 // {title, html}, or {problems}.
 nlohmann::json explain_spec(const std::string& path);

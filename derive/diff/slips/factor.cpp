@@ -102,6 +102,7 @@ std::optional<Slip> slip_of_scale(const Whole& whole) {
   std::string all = factor_with(ratios(whole, {0, whole.mine.rows, 0, whole.mine.columns}), whole);
   if (whole.what == "J" && all.starts_with('-')) all.erase(0, 1);  // of either sign
   if (all.empty()) return {};
+  if (all == "0") return Slip{"missing term", "only zeros stand here"};
   return Slip{"factor", fmt::format("all of it is {} times what it should be{}", all, scales ? right_if_C_is : "")};
 }
 
@@ -109,6 +110,7 @@ std::optional<Slip> slip_of_factor(const Whole& whole) {
   const int rows = whole.mine.rows, columns = whole.mine.columns;
   for (int r = 0; r < rows && whole.what != "K"; ++r) {
     const std::string k = factor_with(ratios(whole, {r, r + 1, 0, columns}), whole);
+    if (k == "0") return Slip{"missing term", fmt::format("only zeros stand in row {}", whole.row_name(r))};
     if (k == "-1")
       return Slip{"sign", fmt::format("row {} has the wrong sign: the rows of one vector equation change it together",
                                       whole.row_name(r))};
@@ -118,6 +120,7 @@ std::optional<Slip> slip_of_factor(const Whole& whole) {
   for (int b = 0; whole.by_velocities && b * width < columns; ++b) {
     const std::string k = factor_with(ratios(whole, {0, rows, b * width, (b + 1) * width}), whole);
     const std::string& body = whole.entry.joint.bodies[static_cast<std::size_t>(b)];
+    if (k == "0") return Slip{"missing term", fmt::format("only zeros stand in the columns of {}", body)};
     if (k.starts_with("1/"))
       return Slip{"factor", fmt::format("the factor {} is missing in the columns of {}", k.substr(2), body)};
     if (!k.empty()) return Slip{"factor", fmt::format("the columns of {} are {} times what they should be", body, k)};

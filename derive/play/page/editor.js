@@ -34,7 +34,8 @@ function showMessages(messages) {
   by('messages').replaceChildren(...messages.map(m => {
     const button = document.createElement('button');
     button.className = m.severity;
-    button.innerHTML = `<b>Line ${m.line}</b> ${escapedText(m.message)}` + (m.fix ? `<small>Likely fix: ${escapedText(m.fix)}</small>` : '');
+    button.innerHTML = `<b>Line ${m.line}</b> ${escapedText(m.message)}` + (m.fix ? `<small>Likely fix: ${escapedText(m.fix)}</small>` : '') +
+        (m.generated ? `<small>Generated: ${escapedText(m.generated)}</small>` : '');
     button.addEventListener('click', () => {
       const start = lines.slice(0, m.line - 1).reduce((sum, text) => sum + text.length + 1, 0) + m.column - 1;
       editor.focus();

@@ -130,7 +130,8 @@ class View {
         face => ({points: face.map(k => c[k])}));
   }
 
-  draw(marks, hand) {
+  // `chosen`: the body that the keys pull, or -1.
+  draw(marks, hand, chosen) {
     this.resize();
     pen.clearRect(0, 0, this.wide, this.high);
     if (!this.scene) return;
@@ -142,12 +143,12 @@ class View {
       this.line(trace.points.map(p => this.project(p)));
       pen.stroke();
     }
-    const faces = this.scene.bodies.flatMap((body, k) => this.facesOf(k).map(face => ({...face, fixed: body.static})));
+    const faces = this.scene.bodies.flatMap((body, k) => this.facesOf(k).map(face => ({...face, fixed: body.static, chosen: k === chosen})));
     const depth = face => face.points.reduce((sum, p) => sum + p[2], 0) / face.points.length;
     if (this.scene.dimension === 3) faces.sort((a, b) => depth(b) - depth(a));
     for (const face of faces) {
       this.line(face.points, !face.open);
-      pen.fillStyle = face.fixed ? ink.line : ink.body, pen.strokeStyle = ink.edge;
+      pen.fillStyle = face.fixed ? ink.line : ink.body, pen.strokeStyle = face.chosen ? ink.light : ink.edge;
       pen.lineWidth = face.open ? 3 : 1.3;
       if (!face.open) pen.globalAlpha = 0.85, pen.fill(), pen.globalAlpha = 1;
       pen.stroke();

@@ -86,6 +86,10 @@ TEST(Slips, AreTheOnlySentence) {
        "J: the factor ratio is missing in the columns of b"},
       {"spherical_spherical", "  J = [-2*d', -2*cross(ra, d)', 2*d', 2*cross(rb, d)']\n",
        "J: all of it is 2 times what it should be, which is right only with a C scaled alike"},
+      // Zeros.
+      {"revolute", "  J = [0, 0, 0, 0, 0, 0 ; 0, 0, 0, 0, 0, 0]\n", "J: only zeros stand here"},
+      {"revolute", "  J = [1, 0, -ra.y, -1, 0, rb.y ; 0, 0, 0, 0, 0, 0]\n", "J: only zeros stand in row 2"},
+      {"revolute", "  J = [0, 0, -E, -S(rb)]\n", "J: only zeros stand in the columns of a"},
       // Rows.
       {"revolute", "  J = [-1, 0, ra.y, 1, 0, -rb.y ; 0, 1, ra.x, 0, -1, -rb.x]\n",
        "J: row 1 has the wrong sign: the rows of one vector equation change it together"},

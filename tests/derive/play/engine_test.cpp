@@ -197,6 +197,60 @@ TEST_F(Play, NamesOfTheDerivationAreMarked) {
   EXPECT_EQ(html.find("<html"), html.npos);
 }
 
+// Without the term of the turning normal the entry differs, at its place; with it, it agrees.
+TEST_F(Play, AHandDerivationIsJudged) {
+  const std::string entry = "entry MINE-1 \"mine\"\n  source \"me\"\n  J = ";
+  const auto judged = [&](const std::string& J) {
+    ask({{"do", "write"}, {"files", {{"specs/planar/line.hand", entry + J}}}});
+    return ask({{"do", "judge"}, {"path", "specs/planar/line.hand"}});
+  };
+  const json wrong = judged("[t', cross(ra, t), -t', -cross(rb, t)]\n");
+  EXPECT_EQ(wrong["differ"], 1) << wrong;
+  ASSERT_EQ(wrong["messages"].size(), 1u);
+  const json& message = wrong["messages"][0];
+  EXPECT_EQ(message["severity"], "error");
+  EXPECT_EQ(message["line"], 3);
+  EXPECT_NE(message["message"].get<std::string>().find("lacks -cross(u, t): t turns with b"), std::string::npos)
+      << message;
+  const json right = judged("[t', cross(ra, t), -t', -cross(rb + u, t)]\n");
+  EXPECT_EQ(right["agree"], 1) << right;
+  EXPECT_EQ(right["messages"][0]["severity"], "agrees");
+  const json unreadable = judged("[t', cross(ra, q)]\n");
+  EXPECT_EQ(unreadable["messages"][0]["severity"], "error") << unreadable;
+  EXPECT_EQ(unreadable["messages"][0]["column"], 22) << unreadable;
+}
+
+// An entry to begin with can be read: J of zeros.
+TEST_F(Play, AFirstEntryCanBeJudged) {
+  const json first = ask({{"do", "hand"}, {"path", "specs/planar/revolute.joint"}});
+  ASSERT_TRUE(first.contains("text")) << first;
+  ask({{"do", "write"}, {"files", {{"specs/planar/revolute.hand", first["text"]}}}});
+  const json judged = ask({{"do", "judge"}, {"path", "specs/planar/revolute.hand"}});
+  EXPECT_EQ(judged["messages"][0]["message"], "missing term: J: only zeros stand here");
+}
+
+// The rod of the bead's ring carries m g + m v^2/r at the bottom, where v^2 = 2 g r: 3 m g. A longer ring moves it.
+TEST_F(Play, ForcesAndParameters) {
+  ask({{"do", "write"}, {"files", {{"specs/planar/ring.joint", own_joint}}}});
+  load(bead, {{"rate", 1000}, {"method", "rattle"}});
+  double most = 0;
+  for (int k = 0; k < 120; ++k)
+    most = std::max(most, ask({{"do", "step"}, {"time", 1.0 / 60}})["forces"][0].get<double>());
+  EXPECT_NEAR(most, 30, 0.1);
+  ask({{"do", "set"}, {"joint", 0}, {"name", "r"}, {"numbers", {2.5}}});
+  const json state = run(0.5);
+  EXPECT_NEAR(std::hypot(state["bodies"][0].get<double>(), state["bodies"][1].get<double>()), 2.5, 1e-3);
+}
+
+// Euler's fall lags by g h t / 2, and by an eighth of it with steps eight times shorter.
+TEST_F(Play, TheErrorIsMeasuredByShorterSteps) {
+  load(free_body, {{"method", "euler"}, {"rate", 100}, {"measure", true}});
+  const json state = run(2);
+  EXPECT_NEAR(std::abs(state["off"].get<double>()), 10 * 0.01 * 2 / 2 * 7 / 8, 1e-9);
+  load(free_body, {{"method", "euler"}});
+  EXPECT_TRUE(run(0.1)["off"].is_null());
+}
+
 TEST_F(Play, NothingIsWrittenElsewhere) {
   for (const char* path : {"../elsewhere", "/tmp/cdot_elsewhere", "specs/../../elsewhere"})
     EXPECT_TRUE(ask({{"do", "write"}, {"files", {{path, "x"}}}}).contains("problems")) << path;
