@@ -1,11 +1,21 @@
-// A World and its matrix -> the numbers that tell whether elimination in K can tell its rows apart.
+// A World -> what excuses a method: rows that elimination in K cannot tell apart, a motion whose energy is lost.
 #pragma once
 
 #include <algorithm>
 
+#include <cdot/balance.hpp>
 #include <cdot/jacobian.hpp>
 
+#include "runtime/direct/ldlt.hpp"
+
 namespace cdot::torture {
+
+constexpr double nearly_lost = 0.05;  // of the rows' independence at the start
+
+// The smallest pivot of K, as a share of the diagonal, that differs from round-off and from the pivot of a redundant
+// row at small errors of C.
+template <class T>
+constexpr double told_apart = Ldlt::pivot_share<T>;
 
 // The least share that one body has in the diagonal of its row in K: J_b M_b^-1 J_b' / K_rr. Where other rows hold all
 // other bodies of the row, elimination leaves that share of K_rr as its pivot.
@@ -26,6 +36,14 @@ double least_share_of_a_body(const BasicWorld<S>& world, const SystemMatrix& sys
     if (sum > 0) least = std::min(least, smallest / sum);
   }
   return least;
+}
+
+// Steps that Runge-Kutta leaves to an implicit method may each take thousands of parts. Where the energy's balance has
+// failed by then, as cdot-run tells, the rest of the motion tells nothing more.
+template <class S>
+bool rescued_in_vain(const BasicWorld<S>& world, BalanceWatch& balances, double tolerance) {
+  balances.look(world.balance());
+  return world.step_counts().rescued > 0 && balances.energy.share() > tolerance;
 }
 
 }  // namespace cdot::torture

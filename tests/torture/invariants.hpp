@@ -38,6 +38,7 @@ struct Asked {
   bool varying = false;  // the steps' lengths vary between a fifth of the scene's step and all of it
   bool changes = false;  // impulses, forces and the loss of a joint, while running
   bool forces = false;   // a force on each body that is a function of time
+  bool hurry = false;    // ends a run that rescued_in_vain()
   int refinements = 4;   // how often a step is divided by four after a violation
   Sabotage sabotage;
 };

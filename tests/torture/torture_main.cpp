@@ -28,11 +28,11 @@ struct Options {
   std::string method, keep, scene;
   int dimension = 0;
   bool no_bits = false, no_shrink = false, print = false, varying = false, changes = false, forces = false,
-       misfit = false, advice = false;
+       misfit = false, advice = false, hurry = false;
 
   Asked asked() const {
     Asked asked;
-    asked.bits = !no_bits, asked.varying = varying, asked.changes = changes, asked.forces = forces;
+    asked.bits = !no_bits, asked.varying = varying, asked.changes = changes, asked.forces = forces, asked.hurry = hurry;
     return asked;
   }
 };
@@ -152,6 +152,7 @@ int main(int count, char** arguments) {
   app.add_flag("--advice", options.advice, "runs each by cdot-run, and follows its advice; judges nothing else");
   app.add_flag("--misfit", options.misfit, "mechanisms at rest with a joint that is a little off; judges nothing else");
   app.add_flag("--no-bits", options.no_bits, "without repetitions: three times as fast");
+  app.add_flag("--hurry", options.hurry, "ends runs that Runge-Kutta left to another method and whose energy is lost");
   app.add_flag("--no-shrink", options.no_shrink);
   app.add_flag("--print", options.print, "every scene");
   CLI11_PARSE(app, count, arguments);
