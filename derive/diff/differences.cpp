@@ -217,7 +217,7 @@ std::vector<Difference> differences_of(Entry& entry, const Sides& sides,
         continue;
       }
       if (found.size() == 1) told.emplace_back(&columns, all.size());
-      std::ranges::move(found, std::back_inserter(all));
+      std::move(found.begin(), found.end(), std::back_inserter(all));
     }
   }
   return all;

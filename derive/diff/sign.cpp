@@ -275,7 +275,7 @@ const Scale& best_scale(Entry& entry, const Evidence& evidence) {
       misfits.back().terms += of_one.terms;
     }
   }
-  const auto best = [&] { return std::ranges::min_element(misfits) - misfits.begin(); };
+  const auto best = [&] { return std::min_element(misfits.begin(), misfits.end()) - misfits.begin(); };
   const int least = misfits[static_cast<std::size_t>(best())].blocks;
   const bool tie = least > 0 && std::ranges::count(misfits, least, &Misfit::blocks) > 1;
   for (std::size_t k = 0; tie && k < misfits.size(); ++k)

@@ -75,7 +75,8 @@ Term StoredJacobian::with_better_sign(Expr entry, const Term& term) const {
 bool StoredJacobian::is_lonely_axis(Expr entry) const {
   if (block_.rows.size() > 1 || block_.immovable < 0 || joint_.bodies.size() > 2) return false;
   const std::vector<Expr> parts = topological(std::span(&entry, 1));
-  return std::ranges::find_first_of(parts, block_.rows[0].axes) != parts.end();
+  const std::vector<Expr>& axes = block_.rows[0].axes;
+  return std::find_first_of(parts.begin(), parts.end(), axes.begin(), axes.end()) != parts.end();
 }
 
 // z - x y for the opposite of a name for x y - z.
