@@ -32,9 +32,13 @@ constexpr T settled = T(by_precision<T>(1e-6, 1e-12));
 // A larger change of a pose in one round means that the step is too long, in the same units.
 template <class T>
 constexpr T furthest = T(2);
-// Round-off may stop Newton before its goals; these errors are still small.
+// Round-off may stop Newton before its goals; this multiple of them is still small. In float 1e4 goals would be a
+// hundredth of the size. Only turns at the joints of a chain of n bodies add up to n^2 times as much.
 template <class T>
-constexpr T nearly = T(1e4);
+constexpr T nearly(size_t n) {
+  const double squared = static_cast<double>(n) * static_cast<double>(n);
+  return T(by_precision<T>(std::clamp(squared, 1e2, 1e4), 1e4));
+}
 
 // C, J and dC/dt at the middle of the step. Of springs, into Batch::impulse and Batch::softness: their impulse without
 // dampers, and the softness of their rows of y. With u = h^2 k K, a spring acts at the share theta of the step,
@@ -230,7 +234,7 @@ bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   const T time = T(world.time) + h;
   const T goal = std::max(closed<T> * island.scale, T(0.01) * round_off_of(world, island));
-  const T at_start = island.residual;
+  const T at_start = island.residual, still_small = nearly<T>(island.bodies.size());
   T before = std::numeric_limits<T>::infinity();
   bool renew = true, fitted = at_start <= converged<T> * island.scale;
   for (int round = 0; round < most_newton_rounds; ++round) {
@@ -250,7 +254,8 @@ bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
       fitted = false, renew = true;
       continue;
     }
-    if (miss <= T(1) || (stays && may_contradict(island, at_start)) || (miss <= nearly<T> && miss > T(0.5) * before)) {
+    if (miss <= T(1) || (stays && may_contradict(island, at_start)) ||
+        (miss <= still_small && miss > T(0.5) * before)) {
       drift_with_rates(world, island, h);
       return true;
     }

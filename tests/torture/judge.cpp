@@ -15,7 +15,8 @@ constexpr int most_steps = 30000;  // of a run with shorter steps
 // True for invariants that need a short step. Equal bits hold at every step; so does linear momentum while the summed
 // terms stay bounded.
 bool may_be_the_step(const Verdict& v) {
-  return v.what == "finite" || v.what == "C" || v.what == "momentum" || judged_by_order(v.what);
+  return v.what == "finite" || v.what == "C" || v.what == "an end is passed" || v.what == "momentum" ||
+         judged_by_order(v.what);
 }
 
 }  // namespace

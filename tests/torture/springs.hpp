@@ -19,17 +19,17 @@ struct SpringRow {
   double mass = 0;  // K of the row: |M^-1 J'|^2 in the metric of the masses; 0: broken
 };
 
-// Forces of a slot's rows at rest at C - 1, which tells the stiffness of linear springs exactly; closer to C where that
-// has no force, as a gas spring shorter than 0; on the other side where C itself is next to 0.
+// Forces of a slot's rows at rest next to C, which tells their stiffness; on the other side where there is no force, as
+// of a gas spring shorter than 0.
 template <class S, class Forces>
 std::vector<double> find_ways_to(Batch<S>& rows, int slot, const Forces& no_rate, Forces& forces) {
   using T = typename S::Scalar;
   const auto count = static_cast<std::size_t>(rows.ops->rows), first = static_cast<std::size_t>(slot) * count;
   const std::vector<T> C(&rows.C[first], &rows.C[first] + count);
-  std::vector<double> ways(count, 1.0);
-  for (const double share : {0.0, 1e-3, -1e-3}) {
+  std::vector<double> ways(count);
+  for (const double share : {1e-3, -1e-3}) {
     for (std::size_t r = 0; r < count; ++r) {
-      if (share != 0) ways[r] = share * std::max(std::abs(double(C[r])), 1e-6);
+      ways[r] = share * std::max(std::abs(double(C[r])), 1e-6);
       rows.C[first + r] = T(double(C[r]) - ways[r]);
     }
     rows.law->force(rows, slot, no_rate.data(), forces.data());
@@ -88,14 +88,17 @@ inline double push_of(const std::vector<SpringRow>& springs, double h) {
 // under one force f, which is f0 or, implicitly, f1 + k beta:
 //   h J v f - (f0 + f1) (c1 - c0) / 2, at most |c1 - c0| |f1 - f0| / 2 + |beta| (|f0| + 2 |f1| + k |beta|),
 //   beta = (c1 - c0) - h J v0 - h J dv, |J dv| <= sqrt(K) |dv|.
+// A bent law leaves its tangent by e = |f1 - f0 + k0 (c1 - c0)|, and an implicit step takes the tangent. The law is
+// between tangent and chord: + |c1 - c0| (e + e / 2).
 inline double missed_work(const std::vector<SpringRow>& before, const std::vector<SpringRow>& now, double h,
                           double dv) {
   double sum = 0;
   for (std::size_t k = 0; k < now.size(); ++k) {
     const SpringRow &s = before[k], &e = now[k];
     if (e.mass == 0) continue;
-    const double way = e.c - s.c, beta = std::abs(way - h * s.rate) + h * std::sqrt(s.mass) * dv;
-    sum += std::abs(way * (e.force - s.force)) / 2 +
+    const double way = e.c - s.c, bent = std::abs(e.force - s.force + s.stiffness * way);
+    const double beta = std::abs(way - h * s.rate) + h * std::sqrt(s.mass) * dv;
+    sum += std::abs(way) * (std::abs(e.force - s.force) / 2 + 1.5 * bent) +
            beta * (std::abs(s.force) + 2 * std::abs(e.force) + std::abs(e.stiffness) * beta);
   }
   return sum;
