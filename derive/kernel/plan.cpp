@@ -284,7 +284,8 @@ class BlockPlanner {
       return all;
     };
     const std::vector<NamedExpr> turned = outputs(pose_), open = opened(pose_);
-    if (std::ranges::equal(turned, open, {}, &NamedExpr::e, &NamedExpr::e)) return;
+    const auto same = [](const NamedExpr& a, const NamedExpr& b) { return a.e == b.e; };
+    if (std::equal(turned.begin(), turned.end(), open.begin(), open.end(), same)) return;
     add_other_way(open);
     add_with_cross_products(open, opened);
   }

@@ -13,7 +13,7 @@ constexpr cdot::command_line::Command commands[] = {
     {"diagnose", "Run a scene; report rank, redundant and conflicting rows, condition and stiffness of its equations, "
                  "and warn where the method does not suit them", cdot::diagnose_command},
     {"accuracy", "Solve a scene in many ways; show the CPU time of every accuracy", cdot::accuracy_command},
-    {"import", "Turn a robot description (URDF) into a scene", cdot::import_command},
+    {"import", "Turn a robot description (URDF, MJCF) into a scene", cdot::import_command},
     {"list", "List the joints with their parameters, or the keys of a scene", cdot::list_command},
     {"jacobian", "", cdot::moved_to_diagnose},
 };

@@ -18,7 +18,7 @@ std::optional<Slip> reduced(const Whole& whole, const std::string& kind, const s
                               {[](double m, double n) { return m * n / (m + n); },
                                "the reduced {0}, {0}({1})*{0}({2})/({0}({1}) + {0}({2})),"}};
   for (const auto& [value, words] : totals) {
-    const bool found = whole.at_changed([&](Sample& sample) {
+    const bool found = whole.at_changed([&, value = value](Sample& sample) {
       const auto m = sample.scalars.find(first), n = sample.scalars.find(second);
       if (m == sample.scalars.end() || n == sample.scalars.end()) return;
       m->second = value(1 / m->second, 1 / n->second), n->second = 0;

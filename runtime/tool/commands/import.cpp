@@ -15,7 +15,7 @@ struct Options {
 };
 
 void add_options(Line& line, Options& options) {
-  line.add("FILE", &options.file, "a URDF file; - is standard input").required();
+  line.add("FILE", &options.file, "a URDF or an MJCF file; - is standard input").required();
   line.add("-o,--output", &options.output, "write the scene here; - is standard output")
       .shown_as("SCENE")
       .shows_default();
@@ -23,16 +23,18 @@ void add_options(Line& line, Options& options) {
   line.add("--balance-inertias", &options.how.balance,
            "an inertia that no rigid body has becomes the mean of its principal moments");
   line.footer(R"(
-Links become bodies and joints become joints, with the limits, damping and friction that the file has. Links that fixed
-joints hold together become one body. The scene begins with a list of the things left out or changed.
+Links become bodies and joints become joints, with the limits, damping and friction that the file has, and of MJCF with
+springs, loops, and actuators that hold a position or a velocity. Links that fixed joints hold together become one body.
+The scene begins with a list of the things left out or changed.
 
 Examples
+  cdot-run import humanoid.xml -o humanoid.toml
   cdot-run import arm.urdf -o arm.toml && cdot-run simulate arm.toml --html arm.html
   xacro arm.urdf.xacro | cdot-run import - -o arm.toml)");
 }
 
 int run(const Options& options) {
-  Model model = read_urdf(read_file(options.file), options.file == "-" ? "standard input" : options.file);
+  Model model = read_model(read_file(options.file), options.file == "-" ? "standard input" : options.file);
   const std::string text = scene_text(model, options.how);
   const Scene scene = read_scene(text, options.file + ", as a scene");  // one with mistakes is not written
   std::FILE* summary = summary_beside({options.output});

@@ -1,6 +1,8 @@
 // A Model -> the text of a scene, at the pose where every joint is at 0, or at its limit nearest to it.
 #include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
+#include <set>
 
 #include <cdot/settings.hpp>
 
@@ -51,22 +53,23 @@ std::string tensor(const Matrix3d& I) {
   return fmt::format("[{}, {}, {}]", row(0), row(1), row(2));
 }
 
-Matrix3d inertia_of_point(double mass, const Vector3d& r) {
-  return mass * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
-}
-
 const char* mistake_of(const Matrix3d& I) { return mistake_in({I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)}); }
 
 class Writer {
  public:
   Writer(Model& model, const ImportOptions& options) : model_(model) {
+    give_valid_names(model_.links);
+    give_valid_names(model_.joints);
+    give_valid_names(model_.loops);
     place_links();
     // An object of its own is not the world; a floor is.
-    const bool alone =
+    const bool still =
         std::ranges::all_of(model_.joints, [](const ModelJoint& joint) { return joint.type == ModelJointType::fixed; });
+    const bool alone = still && !model_.grounded;
     const bool heavy = std::ranges::any_of(model_.links, [](const ModelLink& link) { return link.mass > 0; });
+    if (still && model_.grounded) fail(link(root_).line, "no body moves: the scene would be empty");
     if (alone && !heavy) fail(link(root_).line, "no link moves, and none has a mass: the scene would be empty");
-    gather_parts(options.floating || alone);
+    gather_parts(!model_.grounded && (options.floating || alone));
     for (Part& part : parts_) check(part, options.balance);
   }
 
@@ -76,15 +79,32 @@ class Writer {
     for (const std::string& thing : model_.left_out) text += comment("Left out: " + thing + ".");
     for (const std::string& thing : model_.changed) text += comment("Changed: " + thing + ".");
     text += fmt::format("title     = {}\ndimension = 3\n", quoted(model_.name));
+    if (model_.gravity) text += fmt::format("gravity   = {}\n", list(*model_.gravity));
     for (const Part& part : parts_) text += text_of(part);
     for (const ModelJoint& joint : model_.joints)
       if (joint.type != ModelJointType::fixed && joint.type != ModelJointType::free) text += text_of(joint);
+    for (const ModelLoop& loop : model_.loops) text += text_of(loop);
     return text;
   }
 
  private:
   [[noreturn]] void fail(int line, const std::string& what) const {
     throw Error(fmt::format("{}:{}: {}", model_.file, line, what));
+  }
+  // A scene's names have letters, digits, _ and -; each once.
+  template <class Named>
+  void give_valid_names(std::vector<Named>& all) {
+    std::set<std::string> taken;
+    for (Named& one : all) {
+      std::string name = one.name;
+      std::ranges::replace_if(
+          name, [](char c) { return !std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-'; }, '_');
+      const std::string base = name.empty() ? "unnamed" : name;
+      name = base;
+      for (int k = 2; !taken.insert(name).second; ++k) name = fmt::format("{}_{}", base, k);
+      if (name != one.name) model_.changed.push_back(fmt::format("the name {} is {}", quoted(one.name), name));
+      one.name = name;
+    }
   }
   const ModelLink& link(int k) const { return model_.links[static_cast<std::size_t>(k)]; }
 
@@ -126,13 +146,24 @@ class Writer {
   // A coordinate is measured from the pose in which the scene starts, and its limits with it.
   Isometry3d start_of(const ModelJoint& joint) {
     Isometry3d moved = Isometry3d::Identity();
-    const double start = joint.start();
-    if (start == 0) return moved;
-    if (joint.type == ModelJointType::slider) moved.translation() = start * joint.axis;
-    else moved.linear() = Eigen::AngleAxisd(start, joint.axis).toRotationMatrix();
-    model_.changed.push_back(fmt::format("joint {} starts at {}, its limit, and its coordinate counts from there",
-                                         quoted(joint.name), number(start)));
+    const auto turn = [&](const ModelCoordinate& c, const Vector3d& axis) {
+      moved = moved * Eigen::Translation3d(joint.point) * Eigen::AngleAxisd(c.start(), axis) *
+              Eigen::Translation3d(-joint.point);
+      tell_start(joint, c);
+    };
+    if (joint.type == ModelJointType::slider) {
+      moved.translation() = joint.coordinate.start() * joint.axis;
+      tell_start(joint, joint.coordinate);
+    } else if (joint.type == ModelJointType::hinge || joint.type == ModelJointType::universal) {
+      turn(joint.coordinate, joint.axis);
+      if (joint.type == ModelJointType::universal) turn(joint.about_second, joint.second);
+    }
     return moved;
+  }
+  void tell_start(const ModelJoint& joint, const ModelCoordinate& c) {
+    if (c.start() == 0) return;
+    model_.changed.push_back(fmt::format("joint {} starts at {}, its limit, and its coordinate counts from there",
+                                         quoted(joint.name), number(c.start())));
   }
 
   void gather_parts(bool floating) {
@@ -156,21 +187,22 @@ class Writer {
   void check(Part& part, bool balance) {
     Matrix3d& I = part.inertia;
     if (!(part.mass > 0))
-      fail(part.line, fmt::format("link {} moves and has no mass. Likely fix: an <inertial>, or a fixed joint above it",
-                                  quoted(part.name)));
+      fail(part.line,
+           fmt::format("{} {} moves and has no mass. Likely fix: an <inertial>{}", model_.word, quoted(part.name),
+                       model_.grounded ? ", or a simple geom" : ", or a fixed joint above it"));
     if (I.isZero(0))
-      fail(part.line, fmt::format("link {} turns and has no inertia. Likely fix: an <inertia> in its <inertial>",
-                                  quoted(part.name)));
+      fail(part.line, fmt::format("{} {} turns and has no inertia. Likely fix: an <inertia> in its <inertial>",
+                                  model_.word, quoted(part.name)));
     const char* mistake = mistake_of(I);
     if (mistake && !balance)
-      fail(part.line,
-           fmt::format("link {}: {}. Likely fix: its <inertia>, or --balance-inertias", quoted(part.name), mistake));
+      fail(part.line, fmt::format("{} {}: {}. Likely fix: its <inertia>, or --balance-inertias", model_.word,
+                                  quoted(part.name), mistake));
     if (!mistake) return;
     const double mean = I.trace() / 3;
-    if (!(mean > 0)) fail(part.line, fmt::format("link {}: {}", quoted(part.name), mistake));
+    if (!(mean > 0)) fail(part.line, fmt::format("{} {}: {}", model_.word, quoted(part.name), mistake));
     I = mean * Matrix3d::Identity();
-    model_.changed.push_back(fmt::format("the inertia of link {}, which no rigid body has: it is {} about all axes",
-                                         quoted(part.name), number(mean)));
+    model_.changed.push_back(fmt::format("the inertia of {} {}, which no rigid body has: it is {} about all axes",
+                                         model_.word, quoted(part.name), number(mean)));
   }
 
   // In a scene "world" never moves.
@@ -209,13 +241,44 @@ class Writer {
 
   std::string text_of(const ModelJoint& joint) const {
     const Isometry3d& pose = poses_[static_cast<std::size_t>(joint.child)];
-    std::string text = fmt::format("\n[[joint]]\nname   = {}\ntype   = \"{}\"\n", quoted(joint.name), type_of(joint));
-    text += fmt::format("bodies = [{}, {}]\n", quoted(body_of(joint.parent)), quoted(body_of(joint.child)));
-    text += fmt::format("at     = {}\n", list(pose.translation()));
-    if (joint.type != ModelJointType::ball)
-      text += fmt::format("fa     = {{ world = {} }}\n", list(pose.linear() * joint.axis));
-    if (joint.type == ModelJointType::hinge) text += effects_of(joint, "angle");
-    if (joint.type == ModelJointType::slider) text += effects_of(joint, "slide");
+    std::string text = head_of(joint.name, type_of(joint), joint.parent, joint.child, pose * joint.point);
+    const Vector3d axis = pose.linear() * joint.axis;
+    switch (joint.type) {
+      case ModelJointType::ball: return text;
+      case ModelJointType::universal: return text + about_two_axes(joint, pose);
+      case ModelJointType::slider:
+        return text + fmt::format("fa     = {{ world = {} }}\n", list(axis)) + effects_of(joint.coordinate, "slide");
+      default:
+        return text + fmt::format("fa     = {{ world = {} }}\n", list(axis)) + effects_of(joint.coordinate, "angle");
+    }
+  }
+  std::string head_of(const std::string& name, const char* type, int a, int b, const Vector3d& at) const {
+    return fmt::format("\n[[joint]]\nname   = {}\ntype   = \"{}\"\nbodies = [{}, {}]\nat     = {}\n", quoted(name),
+                       type, quoted(body_of(a)), quoted(body_of(b)), list(at));
+  }
+
+  // fa.y is the first axis, fixed in the parent, and fb.z the second one, fixed in the child; both frames coincide
+  // where the joint is at 0, from which its coordinates count.
+  std::string about_two_axes(const ModelJoint& joint, const Isometry3d& child) const {
+    const Matrix3d parent = child.linear() * Eigen::AngleAxisd(-joint.about_second.start(), joint.second) *
+                            Eigen::AngleAxisd(-joint.coordinate.start(), joint.axis).toRotationMatrix();
+    const auto frame = [&](const char* name, int link, const Matrix3d& of) {
+      const Matrix3d body = axes_of_body(link).transpose() * of;
+      return fmt::format("{}     = [{}, {}]\n", name, list(body * joint.axis.cross(joint.second)),
+                         list(body * joint.axis));
+    };
+    return frame("fa", joint.parent, parent) + frame("fb", joint.child, child.linear()) +
+           effects_of(joint.coordinate, "bend_a", 0) + effects_of(joint.about_second, "bend_b", 0);
+  }
+  Matrix3d axes_of_body(int link) const {
+    const int part = part_of_[static_cast<std::size_t>(link)];
+    return part == world ? Matrix3d(Matrix3d::Identity()) : parts_[static_cast<std::size_t>(part)].axes;
+  }
+
+  std::string text_of(const ModelLoop& loop) const {
+    const Isometry3d& pose = poses_[static_cast<std::size_t>(loop.a)];
+    std::string text = head_of(loop.name, loop.fixed ? "fixed" : "spherical", loop.a, loop.b, pose * loop.point);
+    if (loop.fixed) text += fmt::format("fa     = {{ world = {} }}\n", list(Vector3d::UnitX()));
     return text;
   }
 
@@ -224,18 +287,27 @@ class Writer {
       case ModelJointType::hinge: return "hinge";
       case ModelJointType::slider: return "slider";
       case ModelJointType::plane: return "planar_joint";
+      case ModelJointType::universal: return "universal";
       default: return "spherical";
     }
   }
 
-  static std::string effects_of(const ModelJoint& joint, const char* coordinate) {
+  // `from`: where the scene's coordinate is 0.
+  static std::string effects_of(const ModelCoordinate& c, const char* coordinate) {
+    return effects_of(c, coordinate, c.start());
+  }
+  static std::string effects_of(const ModelCoordinate& c, const char* coordinate, double from) {
     std::string text;
-    if (joint.range)
-      text += fmt::format("{}.limit = {{ lower = {}, upper = {} }}\n", coordinate,
-                          number(joint.range->lower - joint.start()), number(joint.range->upper - joint.start()));
-    if (joint.friction > 0) text += fmt::format("{}.friction = {}\n", coordinate, joint.friction);
-    if (joint.damping > 0)
-      text += fmt::format("{}.spring = {{ stiffness = 0, damping = {} }}\n", coordinate, joint.damping);
+    if (c.range)
+      text += fmt::format("{}.limit = {{ lower = {}, upper = {} }}\n", coordinate, number(c.range->lower - from),
+                          number(c.range->upper - from));
+    if (c.friction > 0) text += fmt::format("{}.friction = {}\n", coordinate, c.friction);
+    if (c.damping > 0 || c.stiffness > 0)
+      text += fmt::format("{}.spring = {{ stiffness = {}, damping = {}{} }}\n", coordinate, c.stiffness, c.damping,
+                          c.stiffness > 0 ? ", rest = " + number(c.rest - from) : "");
+    if (c.servo > 0)
+      text += fmt::format("{}.servo = {{ target = {}, k = {}, most = {} }}\n", coordinate, number(c.target - from),
+                          c.servo, c.most);
     return text;
   }
 

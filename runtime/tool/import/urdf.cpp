@@ -1,18 +1,15 @@
 // A URDF file -> a Model (wiki.ros.org/urdf/XML): links, joints, inertias, limits, damping, friction, simple shapes.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <fmt/format.h>
-#include <locale>
 #include <map>
-#include <sstream>
 #include <string_view>
-#include <tinyxml2.h>
 
 #include <cdot/settings.hpp>
 
 #include "runtime/text/spelling.hpp"
 #include "runtime/tool/import/model.hpp"
+#include "runtime/tool/import/xml.hpp"
 
 namespace cdot {
 namespace {
@@ -20,15 +17,12 @@ namespace {
 using Eigen::Vector3d;
 using tinyxml2::XMLElement;
 
-class Reader {
+class UrdfReader : XmlReader {
  public:
-  explicit Reader(const std::string& file) { model_.file = file; }
+  explicit UrdfReader(const std::string& file) { model_.file = file_ = file; }
 
   Model read(const std::string& text) {
-    tinyxml2::XMLDocument document;
-    if (document.Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS)
-      fail(document.ErrorLineNum(), fmt::format("this is no XML ({})", document.ErrorName()));
-    const XMLElement* robot = document.RootElement();
+    const XMLElement* robot = &parse(text);
     check_root(*robot);
     model_.name = attribute(*robot, "name");
     for (const XMLElement* e = robot->FirstChildElement(); e; e = e->NextSiblingElement()) {
@@ -43,59 +37,17 @@ class Reader {
       else if (name != "link" && name != "material") ++left_out_[fmt::format("<{}>", name)];
     }
     if (model_.links.empty()) fail(robot->GetLineNum(), "the robot has no <link>");
-    for (const auto& [thing, count] : left_out_)
-      model_.left_out.push_back(count == 1 ? thing : fmt::format("{} ({} times)", thing, count));
+    add_counted(left_out_, model_.left_out);
     return std::move(model_);
   }
 
  private:
-  [[noreturn]] void fail(int line, const std::string& what) const {
-    throw Error(fmt::format("{}:{}: {}", model_.file, line, what));
-  }
-
   void check_root(const XMLElement& root) const {
     const std::string_view name = root.Name();
-    if (name == "mujoco")
-      fail(root.GetLineNum(), "this is MJCF, which is not read yet. Likely fix: a URDF of the same model");
     if (name == "sdf") fail(root.GetLineNum(), "this is SDF, which is not read. Likely fix: a URDF of the same model");
-    if (name != "robot") fail(root.GetLineNum(), fmt::format("a URDF begins with <robot>, not with <{}>", name));
-  }
-
-  std::string attribute(const XMLElement& e, const char* key) const {
-    const char* value = e.Attribute(key);
-    if (!value || !*value) fail(e.GetLineNum(), fmt::format("<{}> needs the attribute `{}`", e.Name(), key));
-    return value;
-  }
-
-  // N finite numbers, parted by blanks.
-  template <std::size_t N>
-  std::array<double, N> numbers(const XMLElement& e, const char* key, const char* text) const {
-    std::array<double, N> values{};
-    std::istringstream in(text);
-    in.imbue(std::locale::classic());
-    std::string rest;
-    for (double& value : values) in >> value;
-    const bool all = !in.fail();
-    if (!all || in >> rest || !std::ranges::all_of(values, [](double v) { return std::isfinite(v); }))
-      fail(e.GetLineNum(), fmt::format("`{}` of <{}> is \"{}\": it takes {} finite number{}", key, e.Name(), text, N,
-                                       N == 1 ? "" : "s"));
-    return values;
-  }
-  Vector3d vector(const XMLElement& e, const char* key, const Vector3d& otherwise) const {
-    const char* text = e.Attribute(key);
-    if (!text) return otherwise;
-    const auto v = numbers<3>(e, key, text);
-    return {v[0], v[1], v[2]};
-  }
-  double number(const XMLElement& e, const char* key, double otherwise) const {
-    const char* text = e.Attribute(key);
-    return text ? numbers<1>(e, key, text)[0] : otherwise;
-  }
-  double not_negative(const XMLElement& e, const char* key, double otherwise) const {
-    const double value = number(e, key, otherwise);
-    if (value < 0)
-      fail(e.GetLineNum(), fmt::format("`{}` of <{}> is {}: it must not be negative", key, e.Name(), value));
-    return value;
+    if (name != "robot")
+      fail(root.GetLineNum(),
+           fmt::format("a URDF begins with <robot>, an MJCF file with <mujoco>, not with <{}>", name));
   }
 
   // <origin>: fixed axes x, y, z by roll, pitch, yaw.
@@ -154,21 +106,13 @@ class Reader {
       const double radius = number(*shape, "radius", 0);
       if (radius > 0) link.shape = fmt::format("{{ ball = {} }}", radius);
     } else if (name == "cylinder") {
-      read_cylinder(number(*shape, "radius", 0), number(*shape, "length", 0), link);
+      draw_cylinder(link, number(*shape, "radius", 0), number(*shape, "length", 0));
     }
     if (link.shape.empty()) {
       link.shape_axes.setIdentity();
       ++left_out_[fmt::format("the {} of a <visual>", name)];
     }
     return !link.shape.empty();
-  }
-
-  void read_cylinder(double radius, double length, ModelLink& link) const {
-    if (!(radius > 0 && length > 0)) return;
-    const bool is_rod = length > 2 * radius;
-    if (is_rod) link.shape_axes = link.shape_axes * Eigen::AngleAxisd(-std::acos(0.0), Vector3d::UnitY());
-    link.shape = is_rod ? fmt::format("{{ rod = {}, width = {} }}", length, 2 * radius)
-                        : fmt::format("{{ disc = {}, width = {} }}", radius, length);
   }
 
   int find_link(const std::string& name) const {
@@ -215,14 +159,11 @@ class Reader {
     const bool has_axis = joint.type == ModelJointType::hinge || joint.type == ModelJointType::slider ||
                           joint.type == ModelJointType::plane;
     if (const XMLElement* axis = e.FirstChildElement("axis"); axis && has_axis) {
-      const Vector3d direction = vector(*axis, "xyz", Vector3d::UnitX());
-      if (!(direction.norm() > 1e-9))
-        fail(axis->GetLineNum(), fmt::format("joint \"{}\" has an axis of length 0", joint.name));
-      joint.axis = direction.normalized();
+      joint.axis = direction(*axis, "xyz", Vector3d::UnitX());
     }
     if (const XMLElement* dynamics = e.FirstChildElement("dynamics")) {
-      joint.damping = not_negative(*dynamics, "damping", 0);
-      joint.friction = not_negative(*dynamics, "friction", 0);
+      joint.coordinate.damping = not_negative(*dynamics, "damping", 0);
+      joint.coordinate.friction = not_negative(*dynamics, "friction", 0);
     }
     read_limit(e, joint);
     for (const XMLElement* part = e.FirstChildElement(); part; part = part->NextSiblingElement()) {
@@ -248,8 +189,8 @@ class Reader {
     for (const char* key : {"effort", "velocity"})
       if (limit->Attribute(key)) ++left_out_[fmt::format("the largest {} of joints", key)];
     if (!ends) return;
-    const ModelJoint::Range range = {number(*limit, "lower", 0), number(*limit, "upper", 0)};
-    if (range.lower <= range.upper) joint.range = range;
+    const ModelCoordinate::Range range = {number(*limit, "lower", 0), number(*limit, "upper", 0)};
+    if (range.lower <= range.upper) joint.coordinate.range = range;
     else
       model_.left_out.push_back(
           fmt::format("the limits of joint \"{}\", which run from {} to {}", joint.name, range.lower, range.upper));
@@ -262,6 +203,6 @@ class Reader {
 
 }  // namespace
 
-Model read_urdf(const std::string& text, const std::string& file) { return Reader(file).read(text); }
+Model read_urdf(const std::string& text, const std::string& file) { return UrdfReader(file).read(text); }
 
 }  // namespace cdot

@@ -137,11 +137,10 @@ TEST(Import, MistakesAreToldByFileAndLine) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"<robot", "model.urdf:1: this is no XML"},
       {"", "model.urdf:0: this is no XML"},
-      {"<mujoco/>", "model.urdf:1: this is MJCF"},
       {"<robot name=\"r\"/>", "model.urdf:1: the robot has no <link>"},
       {changed("\"cage\"/>", "\"cagf\"/>"), "model.urdf:4: there is no link \"cagf\"; did you mean \"cage\"?"},
       {changed("prismatic", "slider"), "model.urdf:4: a joint has no type \"slider\""},
-      {changed("0 0 2", "0 0 0"), "model.urdf:4: joint \"shaft\" has an axis of length 0"},
+      {changed("0 0 2", "0 0 0"), "model.urdf:4: `xyz` of <axis> is a direction of length 0"},
       {changed("0 0 2", "0 0"), "model.urdf:4: `xyz` of <axis> is \"0 0\": it takes 3 finite numbers"},
       {changed("1 2 3", "1 2 nan"), "model.urdf:4: `xyz` of <origin> is \"1 2 nan\": it takes 3 finite numbers"},
       {changed("izz=\"1\"", "izz=\"9\""), "model.urdf:3: link \"cage\": no rigid body has this inertia tensor"},
