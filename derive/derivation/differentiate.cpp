@@ -215,7 +215,8 @@ Block derive_coordinate(const Joint& joint, const Coordinate& coordinate, int im
   Block block;
   block.name = coordinate.name;
   block.immovable = immovable;
-  ScalarRow row{coordinate.name, nullptr, RowKind::equality, -1, coordinate.of_world, {}, {}, {}, {}, {}, {}};
+  const RowKind kind = coordinate.by_rate ? RowKind::velocity : RowKind::equality;
+  ScalarRow row{coordinate.name, nullptr, kind, -1, coordinate.of_world, {}, {}, {}, {}, {}, {}};
   block.rows.push_back(derive_row(joint, std::move(row), coordinate.value, immovable));
   return finished(joint, std::move(block));
 }

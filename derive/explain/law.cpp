@@ -29,11 +29,11 @@ void explain_law(Lecture& lecture) {
   if (lecture.joint.law->energy)
     step.say("The energy E adds its slope, -dE/dC, to the force along each row, and conserves what it stores.");
   for (const BoundedRow& row : lecture.joint.law->bounded)
-    step.say(row.name + ", `" + row.text + "`: " +
-             (row.of_rate
-                  ? "a force along the coordinate " + row.coordinate +
-                        " keeps its rate, as far as its bounds allow. At a bound the coordinate slips."
-                  : "a force along the coordinate " + row.coordinate + " acts at an end only, and only away from it."));
+    step.say(row.name + ", `" + row.text + "`: a force along the coordinate " + row.coordinate +
+             (row.cone_rows > 0 ? ", a part of one force that keeps all these rates, as far as its size may grow. "
+                                  "At the bound it acts against the slip."
+              : row.of_rate     ? " keeps its rate, as far as its bounds allow. At a bound the coordinate slips."
+                                : " acts at an end only, and only away from it."));
 }
 
 }  // namespace cdot::derive

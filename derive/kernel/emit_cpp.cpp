@@ -259,6 +259,8 @@ class KernelWriter {
                        bound.of_value),
            2);
       if (row.load) line(fmt::format("static constexpr int load_of = {};", row.load_of), 2);
+      if (row.cone_rows > 0)
+        line(fmt::format("static constexpr int cone_row = {}, cone_rows = {};", row.cone_row, row.cone_rows), 2);
       out_ += function_text(bound.function, 1, 2);
       for (const KernelFunction& other : bound.others) out_ += function_text(other, 1, 2);
       line("};", 1);

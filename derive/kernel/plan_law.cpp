@@ -94,8 +94,8 @@ bool depends_on_time(const DerivedLaw& law) {
 KernelBound plan_bound(const Joint& joint, const BoundedRow& row, const DerivedBound& derived) {
   PoseInputs parameters(joint);
   Components components;
-  std::map<const Node*, Expr> own = {{&*row.value, joint.pool->symbol(bounded_value, Role::given)},
-                                     {&*row.own_rate, joint.pool->symbol(bounded_rate, Role::given)}};
+  std::map<const Node*, Expr> own = {{&*row.own_rate, joint.pool->symbol(bounded_rate, Role::given)}};
+  if (row.value) own.emplace(&*row.value, joint.pool->symbol(bounded_value, Role::given));
   if (row.own_load) own.emplace(&*row.own_load, joint.pool->symbol(bounded_load, Role::given));
   std::vector<NamedExpr> outputs;
   const auto add = [&](const char* name, Expr e) {

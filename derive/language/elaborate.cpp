@@ -146,7 +146,7 @@ void Elaborator::finish(ReadResult& result, Source& spec) {
 const Value* SourceNames::find(const std::string& name) {
   if (name == "unlimited" && e_.in_default_) return &e_.unlimited_;
   const auto found = e_.names_.find(source_.prefix + name);
-  if (found == e_.names_.end()) return nullptr;
+  if (found == e_.names_.end() || found->second.kind == "rate") return nullptr;
   if (!e_.in_law_ && found->second.kind == "coordinate" && !e_.of_coordinate_) return nullptr;
   found->second.used = true;
   const Value& value = found->second.value;
@@ -167,7 +167,10 @@ const Value* SourceNames::mass_of(const std::string& name) {
 }
 
 const Value* SourceNames::rate_of(const std::string& name) {
-  if (!e_.in_law_ || !find(name)) return nullptr;
+  if (!e_.in_law_) return nullptr;
+  const auto entry = e_.names_.find(name);
+  if (entry != e_.names_.end() && entry->second.kind == "rate") entry->second.used = true;
+  else if (!find(name)) return nullptr;
   const auto rate = e_.law_rates_.find(name);
   return rate == e_.law_rates_.end() ? nullptr : &rate->second;
 }
@@ -191,6 +194,8 @@ std::vector<std::string> SourceNames::known() const {
 std::string SourceNames::hint(const std::string& name) const {
   if (const auto known = e_.names_.find(name); known != e_.names_.end() && known->second.kind == "coordinate")
     return "only the law of an effect reads coordinates: write the expression of " + quote(name) + " here";
+  if (const auto known = e_.names_.find(name); known != e_.names_.end() && known->second.kind == "rate")
+    return "it has a rate, but no value: write rate(" + name + ") in the law";
   if (name == "unlimited") return "the default of a scalar may be unlimited: scalar most [N] = unlimited";
   if (const std::string vector = e_.vector_of_component(name); !vector.empty())
     return "did you mean " + quote(vector + "." + name.back()) + "?";

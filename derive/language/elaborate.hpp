@@ -90,7 +90,7 @@ class Elaborator {
   void add_row(Source& source, const StatementAst& s, Row row);
   void keep(Source& source, const StatementAst& s, const Row& whole);
   bool row_makes_sense(Source& source, const StatementAst& s, const Value& C);
-  Value coordinate_value(Source& source, const DeclaredAst& d);
+  Value coordinate_value(Source& source, const StatementAst& s);
   void coordinate(Source& source, const StatementAst& s);
   bool free_of_velocity(Source& source, const Ast& ast, const Value& value, std::string_view place);
   std::string written(const Source& source, const StatementAst& s) const;
@@ -116,6 +116,8 @@ class Elaborator {
   void check_free(Source& spec);
   // elaborate_bound.cpp
   void bound(Source& source, const StatementAst& s);
+  std::optional<BoundedRow> bounded_row(Source& source, const StatementAst& s, const Word& coordinate);
+  bool numbers_of_bound(Source& source, const StatementAst& s, const Ast& rate, BoundedRow& row);
   bool events(Source& source, const StatementAst& s, BoundedRow& row);
   bool event(Source& source, const ConditionAst& condition, BoundedRow& row, Expr& distance);
   bool are_limits(Source& source, const Ast& where, Expr lower, Expr upper);

@@ -43,8 +43,8 @@ Expr Elaborator::bound_value(Source& source, const Ast& ast, const Unit& unit, c
             "move the rest into the coordinate, and bound that by 0");
   else
     d.error(ast.where,
-            also.size() > 1 ? "a bound of a force depends on parameters, time, its own coordinate and one load alone"
-                            : "a prescribed rate depends on parameters and time alone",
+            in_bound_ ? "a bound of a force depends on parameters, time, its own coordinate and one load alone"
+                      : "a prescribed rate depends on parameters and time alone",
             "write a law of rates or of other coordinates as a force: force on NAME = ...");
   return {};
 }
@@ -107,6 +107,8 @@ bool Elaborator::events(Source& source, const StatementAst& s, BoundedRow& row) 
 const Coordinate* Elaborator::bounded_coordinate(Source& source, const Word& name) {
   const auto declared = bounded_candidates_.find(name.text);
   if (declared == bounded_candidates_.end()) {
+    const auto entered = names_.find(name.text);
+    if (entered != names_.end() && entered->second.value.type == Type::poison) return nullptr;  // reported there
     source.diagnostics.error(name.where, quote(name.text) + " is no coordinate of this effect",
                              "declare it before: coordinate " + name.text + (of_coordinate_ ? " [any]" : " [m] = ..."));
     return nullptr;
@@ -120,47 +122,80 @@ const Coordinate* Elaborator::bounded_coordinate(Source& source, const Word& nam
   return &all.back();
 }
 
-// [ NAME ":" ] ( NAME ( ( ">=" | "<=" ) expression | "in" range ) | "rate" "(" NAME ")" "=" expression ... )
-void Elaborator::bound(Source& source, const StatementAst& s) {
-  const Coordinate* const coordinate = bounded_coordinate(source, s.bounded);
-  if (!coordinate) return;
-  const Unit unit = coordinate->unit, joule{.m = 2, .s = -2, .kg = 1};
-  BoundedRow row{s.label.text.empty() ? s.bounded.text + (s.of_rate ? "_rate" : "_ends") : s.label.text,
-                 s.bounded.text,
+// The row without its numbers: its name, or after a label with several rates the label and the coordinate. Nothing
+// after an error.
+std::optional<BoundedRow> Elaborator::bounded_row(Source& source, const StatementAst& s, const Word& coordinate) {
+  if (!bounded_coordinate(source, coordinate)) return {};
+  const auto value = law_values_.find(coordinate.text);
+  if (!s.of_rate && value == law_values_.end()) {
+    source.diagnostics.error(coordinate.where, quote(coordinate.text) + " has a rate, but no value and no ends",
+                             "write rate(" + coordinate.text + ") = ..., force in [-most, most]");
+    return {};
+  }
+  const bool is_named = !s.label.text.empty();
+  BoundedRow row{!is_named          ? coordinate.text + (s.of_rate ? "_rate" : "_ends")
+                 : s.across.empty() ? s.label.text
+                                    : s.label.text + "_" + coordinate.text,
+                 coordinate.text,
                  s.of_rate,
                  {},
                  {},
                  {},
-                 law_values_.at(s.bounded.text).e,
+                 value == law_values_.end() ? Expr() : value->second.e,
                  in_spec(source, s.where),
                  written(source, s)};
-  const bool is_named = !s.label.text.empty();
   const auto taken = [&](const std::string& name) {
     return std::ranges::find(joint_.law->bounded, name, &BoundedRow::name) != joint_.law->bounded.end() ||
            bounded_candidates_.contains(name) || is_word_of_cpp(name) || is_member_of_kernels(name) ||
            name == joint_.name;
   };
-  if (is_named && taken(row.name))
-    return source.diagnostics.error(s.label.where, quote(row.name) + " is already a name of the generated kernel",
-                                    "choose another name");
+  if (is_named && taken(row.name)) {
+    source.diagnostics.error(s.label.where, quote(row.name) + " is already a name of the generated kernel",
+                             "choose another name");
+    return {};
+  }
   while (taken(row.name)) row.name += '_';
+  return row;
+}
+
+// The bounds, the rate and the events of one row. True if there was no error.
+bool Elaborator::numbers_of_bound(Source& source, const StatementAst& s, const Ast& rate, BoundedRow& row) {
   const auto number = [&](const std::optional<Ast>& ast, Expr& to, const Unit& of, const std::vector<Expr>& also) {
     if (ast) to = bound_value(source, *ast, of, also);
     return !ast || to;
   };
   const Expr time = time_symbol(*pool_);
+  const Unit unit = bounded_candidates_.at(row.coordinate).unit, joule{.m = 2, .s = -2, .kg = 1};
   const Unit of_bounds = s.of_rate ? joule / unit : unit;
-  const std::vector<Expr> also = s.of_rate ? std::vector{row.value, time} : std::vector<Expr>{};
+  std::vector<Expr> also;
+  if (s.of_rate) also.push_back(time);
+  if (s.of_rate && row.value && s.across.empty()) also.push_back(row.value);
   in_bound_ = s.of_rate ? &row : nullptr;
   bool right = number(s.lower, row.lower, of_bounds, also);
   right &= number(s.upper, row.upper, of_bounds, also);
   in_bound_ = nullptr;
-  right = right && (!s.lower || are_limits(source, *s.lower, row.lower, row.upper));
-  if (s.of_rate) right &= number(s.left, row.rate, unit / Unit{.s = 1}, {time});
-  right &= events(source, s, row);
-  for (const Expr e : {row.lower, row.upper, row.rate, row.after, row.until})
-    joint_.uses_time |= e && depends_on_role(e, Role::time);
-  if (right) joint_.law->bounded.push_back(std::move(row));
+  if (!s.across.empty() && row.upper) row.lower = -row.upper;
+  const std::optional<Ast>& where = s.lower ? s.lower : s.upper;
+  right = right && (!where || are_limits(source, *where, row.lower, row.upper));
+  if (s.of_rate) right &= number(rate, row.rate, unit / Unit{.s = 1}, {time});
+  return right & events(source, s, row);
+}
+
+// [ NAME ":" ] ( NAME ( ( ">=" | "<=" ) expression | "in" range ) | "rate" "(" NAME ")" "=" expression ... )
+void Elaborator::bound(Source& source, const StatementAst& s) {
+  const int rows = s.across.empty() ? 0 : static_cast<int>(s.across.size()) + 1;
+  int place = 0;
+  const auto add = [&](const Word& coordinate, const Ast& rate) {
+    std::optional<BoundedRow> row = bounded_row(source, s, coordinate);
+    if (!row) return;
+    row->cone_row = place++, row->cone_rows = rows;
+    if (!numbers_of_bound(source, s, rate, *row)) return;
+    for (const Expr e : {row->lower, row->upper, row->rate, row->after, row->until})
+      joint_.uses_time |= e && depends_on_role(e, Role::time);
+    joint_.law->bounded.push_back(std::move(*row));
+  };
+  add(s.bounded, s.left);
+  for (const RateAst& other : s.across) add(other.coordinate, other.value);
 }
 
 // Coordinates that only bounded rows read are no inputs of the forces.

@@ -50,11 +50,11 @@ const Value& Elaborator::own_load() {
 // The force of another row of the effect, or of the joint whose coordinate it acts on. Null: there is none.
 const Value* Elaborator::load(const std::string& name) {
   if (!in_bound_) return nullptr;
-  if (in_event_) return name == in_bound_->name ? &own_load() : nullptr;
+  if (in_event_) return name == in_bound_->name && in_bound_->cone_rows == 0 ? &own_load() : nullptr;
   const std::vector<BoundedRow>& all = joint_.law->bounded;
   const auto carrier = std::ranges::find(all, name, &BoundedRow::name);
   const bool of_joint = of_coordinate_ && name == "joint";
-  if (!of_joint && carrier == all.end()) return nullptr;
+  if (!of_joint && (carrier == all.end() || carrier->cone_rows > 0)) return nullptr;
   const int index = of_joint ? -1 : static_cast<int>(carrier - all.begin());
   const Unit joule{.m = 2, .s = -2, .kg = 1};
   if (in_bound_->load) return in_bound_->load_of == index ? &load_ : nullptr;

@@ -60,23 +60,31 @@ LawInput& Elaborator::add_input(std::string name, Row row, bool has_value) {
   return joint_.law->inputs.back();
 }
 
-// coordinate NAME [unit] = expression
+// coordinate NAME [unit] = [ velocity ] expression. With a rate alone, expressions may not read its value.
 void Elaborator::coordinate_of_effect(Source& source, const StatementAst& s, const Value& value, Unit unit) {
   const DeclaredAst& d = s.declared;
   if (!name_is_free(source, d.name, d.name.text)) return;
   if (value.type == Type::poison) return enter(source, d.name.text, "coordinate", value, d.name.where);
   Row row;
+  row.kind = s.velocity ? RowKind::velocity : RowKind::equality;
   row.C = value.e;
   row.unit = unit;
   row.where = in_spec(source, d.name.where);
   row.text = d.name.text + " = " + written(source, s);
   row.of_world = of_world_;
   joint_.uses_time |= depends_on_role(value.e, Role::time);
-  bounded_candidates_.emplace(
-      d.name.text,
-      Coordinate{d.name.text, value.e, unit, in_spec(source, d.name.where), written(source, s), "", {}, of_world_});
-  add_input(d.name.text, std::move(row), true);
-  enter(source, d.name.text, "coordinate", law_values_.at(d.name.text), d.name.where);
+  bounded_candidates_.emplace(d.name.text, Coordinate{d.name.text,
+                                                      value.e,
+                                                      unit,
+                                                      in_spec(source, d.name.where),
+                                                      written(source, s),
+                                                      "",
+                                                      {},
+                                                      of_world_,
+                                                      s.velocity});
+  add_input(d.name.text, std::move(row), !s.velocity);
+  if (s.velocity) enter(source, d.name.text, "rate", law_rates_.at(d.name.text), d.name.where);
+  else enter(source, d.name.text, "coordinate", law_values_.at(d.name.text), d.name.where);
 }
 
 // A point that a law names: its place, with a row for each of its components.

@@ -164,7 +164,8 @@ bool Elaborator::row_makes_sense(Source& source, const StatementAst& s, const Va
 }
 
 // The right side of a coordinate; poison if it is none.
-Value Elaborator::coordinate_value(Source& source, const DeclaredAst& d) {
+Value Elaborator::coordinate_value(Source& source, const StatementAst& s) {
+  const DeclaredAst& d = s.declared;
   const Value v = evaluate(source, *d.value);
   if (v.type == Type::poison) return v;
   const auto refuse = [&](const std::string& message, const std::string& fix, std::vector<Span> also = {}) {
@@ -174,16 +175,23 @@ Value Elaborator::coordinate_value(Source& source, const DeclaredAst& d) {
   if (v.type != Type::scalar)
     return refuse("a coordinate is a number, not " + std::string(in_words(v.type)),
                   "take a component, such as dot(u, t), or a length, norm(u)");
-  if (!free_of_velocity(source, *d.value, v, "a coordinate")) return {};
+  if (s.velocity && !joint_.law)
+    return refuse("a coordinate of a joint has a value, not only a rate", "only an effect prescribes rates");
+  if (s.velocity && !depends_on_velocity(v.e))
+    return refuse("this `velocity` contains no velocity", "remove the word `velocity`: the coordinate has a value");
+  if (!s.velocity && !free_of_velocity(source, *d.value, v, "a coordinate")) return {};
   if (!depends_on_bodies(v.e))
     return refuse("the coordinate contains no body",
                   "write a scalar that contains the position or orientation of a body");
-  if (d.unit && !same_unit(scalar(Expr(), d.unit->unit), v))
-    return refuse("the coordinate is in " + spoken(*v.unit) + ", not in " + spoken(d.unit->unit), "", {d.unit->where});
+  const Unit second = s.velocity ? Unit{.s = 1} : Unit{};
+  if (d.unit && !same_unit(scalar(Expr(), d.unit->unit / second), v))
+    return refuse((s.velocity ? "the rate of the coordinate is in " : "the coordinate is in ") + spoken(*v.unit) +
+                      ", not in " + spoken(d.unit->unit / second),
+                  "", {d.unit->where});
   return v;
 }
 
-// coordinate NAME [unit] = expression
+// coordinate NAME [unit] = [ velocity ] expression
 void Elaborator::coordinate(Source& source, const StatementAst& s) {
   const DeclaredAst& d = s.declared;
   const std::string full = source.prefix + d.name.text;
@@ -192,8 +200,9 @@ void Elaborator::coordinate(Source& source, const StatementAst& s) {
     return error(source, d.name.where, quote(full) + " is already a name of the generated kernel",
                  "choose another name");
   if (of_coordinate_ && !d.value) return free_coordinate(source, s);
-  const Value v = coordinate_value(source, d);
-  if (joint_.law) return coordinate_of_effect(source, s, v, d.unit ? d.unit->unit : v.unit.value_or(Unit{}));
+  const Value v = coordinate_value(source, s);
+  const Unit of_value = v.unit.value_or(Unit{}), second{.s = s.velocity ? 1 : 0};
+  if (joint_.law) return coordinate_of_effect(source, s, v, d.unit ? d.unit->unit : of_value * second);
   if (v.type == Type::poison) return;
   const auto same = std::find_if(joint_.coordinates.begin(), joint_.coordinates.end(),
                                  [&](const Coordinate& c) { return c.name == full; });

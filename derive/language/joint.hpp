@@ -75,6 +75,7 @@ struct Coordinate {
   std::string from;                         // the included joint that it came from; empty if written here
   std::vector<std::string> constrained_by;  // rows that constrain it (derivation/free_coordinates.hpp)
   bool of_world = false;                    // as of a row
+  bool by_rate = false;                     // of an effect: `value` is its rate, and it has no value
 };
 
 // A scalar or vector that the law of an effect reads, and its rate. Its row has the same place in Joint::rows.
@@ -104,7 +105,8 @@ struct BoundedRow {
   // Distances from the events between which the row acts, as shares of what is compared: at most 0 where it happens.
   // They may read the coordinate, its rate and the row's own force too. Empty: it acts from the start, or for ever.
   Expr after{}, until{};
-  Expr own_rate{}, own_load{};  // their leaves
+  Expr own_rate{}, own_load{};      // their leaves
+  int cone_row = 0, cone_rows = 0;  // its place among rows that share one force, and their number; 0: it is alone
 };
 
 // The law of an effect: generalised forces along the rows of its joint, F = force - dE/d(value), and rows with bounds.

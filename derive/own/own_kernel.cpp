@@ -183,16 +183,10 @@ OwnLaw law_of(const Kernel& kernel, const DerivedLaw& law, const Places& places)
 
 OwnBound bound_of(const KernelBound& bound, const Places& places) {
   const auto other = [&](const char* name) { return function_named(name, bound.others, places, 0); };
-  return {bound.row->name,
-          bound.coordinate,
-          bound.row->of_rate,
-          bound.in_time,
-          bound.of_value,
-          bound.row->load_of,
-          places.of(bound.function.program, {}, 0),
-          other("by_load"),
-          other("after"),
-          other("until")};
+  return {bound.row->name,     bound.coordinate,     bound.row->of_rate,
+          bound.in_time,       bound.of_value,       bound.row->load_of,
+          bound.row->cone_row, bound.row->cone_rows, places.of(bound.function.program, {}, 0),
+          other("by_load"),    other("after"),       other("until")};
 }
 
 void add_effect(const Kernel& kernel, const Places& places, OwnKernel& own) {

@@ -97,7 +97,8 @@ struct OwnBound {
   std::string name;
   int coordinate;  // its place; 0 for an effect on the coordinate of any joint
   bool of_rate, in_time, of_value;
-  int load_of;  // another bounded row; -1: the joint's own rows
+  int load_of;              // another bounded row; -1: the joint's own rows
+  int cone_row, cone_rows;  // its place among rows that share one force, and their number; 0: the row is alone
   OwnFunction bounds, by_load, after, until;
   bool has_events() const { return after.exists() || until.exists(); }
 };

@@ -82,6 +82,12 @@ struct ConditionAst {
   Span where;
 };
 
+// rate(coordinate) = value
+struct RateAst {
+  Word coordinate;
+  Ast value;
+};
+
 // One statement of a spec. `include` and declarations have one item each: the parser splits lists.
 struct StatementAst {
   enum class Kind { include, declare, let, coordinate, row, energy, force, bound };
@@ -90,7 +96,7 @@ struct StatementAst {
   IncludeAst include;
   DeclaredAst declared;   // declare, coordinate, let (name, unit and value)
   Word label;             // of a row; of a force or torque: the coordinate, point or body that it acts on
-  bool velocity = false;  // row
+  bool velocity = false;  // row; coordinate: declared by its rate
   std::string relation;   // "=", "<=", ">="
   Span relation_where;
   Ast left, right;      // row; energy, force: the expression is `left`
@@ -98,6 +104,7 @@ struct StatementAst {
   Word bounded;         // bound: the coordinate. `left` is its prescribed rate, if `of_rate`
   bool of_rate = false;
   std::optional<Ast> lower, upper;           // bound: of the coordinate, or of the force that prescribes its rate
+  std::vector<RateAst> across;               // bound: further rates, which one force of at most `upper` prescribes
   std::optional<ConditionAst> after, until;  // bound: its events
   Word keep;                                 // row: how many of its components, as written
   int first_token = 0, end_token = 0;

@@ -193,7 +193,7 @@ class JointParser {
     named_expression(s, "let");
   }
 
-  // coordinate NAME [ unit ] "=" expression; without the expression it is that of any joint
+  // coordinate NAME [ unit ] "=" [ "velocity" ] expression; without the expression it is that of any joint
   void coordinate() {
     p_.take();
     StatementAst s = begin(StatementAst::Kind::coordinate);
@@ -209,7 +209,11 @@ class JointParser {
     if (!p_.failed() && !p_.at_symbol("=") && !of_any_joint)
       p_.fail(p_.peek().where, "`=` is missing after `" + keyword + " " + s.declared.name.text + "`: " + p_.found(),
               "write " + keyword + " " + s.declared.name.text + " = ...");
-    if (p_.accept("=")) s.declared.value = p_.expression();
+    if (p_.accept("=")) {
+      s.velocity = keyword == "coordinate" && p_.at_word("velocity");
+      if (s.velocity) p_.take();
+      s.declared.value = p_.expression();
+    }
     s.declared.broken = p_.failed();
     finish(s);
   }

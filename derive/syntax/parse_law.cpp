@@ -14,14 +14,43 @@ void range(Parser& p, StatementAst& s) {
   p.expect("]", "after the upper bound");
 }
 
-void prescribed_rate(Parser& p, StatementAst& s) {
+bool at_rate(const Parser& p, int ahead) { return p.at_word("rate", ahead) && p.at_symbol("(", ahead + 1); }
+
+// "rate" "(" NAME ")" "=" expression
+RateAst rate(Parser& p) {
+  p.take(), p.take();
+  RateAst rate{p.name("the coordinate"), {}};
+  const std::string name = rate.coordinate.text;
   p.expect(")", "after the coordinate");
   if (!p.failed() && !p.accept("="))
-    return p.fail(p.peek().where, "`=` is missing after `rate(" + s.bounded.text + ")`: " + p.found(),
-                  "write rate(" + s.bounded.text + ") = ..., force in [-most, most]");
-  s.left = p.expression();
-  if (p.failed() || !p.at_symbol(",") || p.at_word("after", 1) || p.at_word("until", 1)) return;
-  p.take();
+    p.fail(p.peek().where, "`=` is missing after `rate(" + name + ")`: " + p.found(),
+           "write rate(" + name + ") = ..., force in [-most, most]");
+  rate.value = p.expression();
+  return rate;
+}
+
+// "norm" "(" "force" ")" "<=" expression
+void norm_of_force(Parser& p, StatementAst& s) {
+  if (!p.at_word("norm") || !p.at_symbol("(", 1) || !p.at_word("force", 2) || !p.at_symbol(")", 3) ||
+      !p.at_symbol("<=", 4))
+    return p.fail(p.peek().where, "one bound of the force along all these coordinates must follow: " + p.found(),
+                  "write norm(force) <= most");
+  for (int k = 0; k < 5; ++k) p.take();
+  s.upper = p.expression();
+}
+
+void prescribed_rates(Parser& p, StatementAst& s) {
+  RateAst first = rate(p);
+  s.bounded = std::move(first.coordinate), s.left = std::move(first.value);
+  while (!p.failed() && p.at_symbol(",") && at_rate(p, 1)) {
+    p.take();
+    s.across.push_back(rate(p));
+  }
+  if (p.failed()) return;
+  const bool bounded = p.at_symbol(",") && !p.at_word("after", 1) && !p.at_word("until", 1);
+  if (bounded) p.take();
+  if (!s.across.empty()) return norm_of_force(p, s);
+  if (!bounded) return;
   if (!p.at_word("force") || !p.at_word("in", 1))
     return p.fail(p.peek().where, "the bounds of the force must follow: " + p.found(), "write force in [-most, most]");
   p.take();
@@ -72,7 +101,7 @@ void parse_law(Parser& p, StatementAst& s) {
 // A name and its colon may come first.
 bool at_bounded_row(const Parser& p) {
   const int first = p.at_name() && p.at_symbol(":", 1) ? 2 : 0;
-  if (p.at_word("rate", first) && p.at_symbol("(", first + 1)) return true;
+  if (at_rate(p, first)) return true;
   const auto then = [&](std::string_view symbol) { return p.at_symbol(symbol, first + 1); };
   return p.at_name(first) && (then(">=") || then("<=") || p.at_word("in", first + 1));
 }
@@ -83,10 +112,9 @@ void parse_bounded_row(Parser& p, StatementAst& s) {
     p.take();
   }
   s.relation_where = p.peek().where;
-  s.of_rate = p.at_word("rate") && p.at_symbol("(", 1);
-  if (s.of_rate) p.take(), p.take();
-  s.bounded = p.name("the coordinate");
-  if (s.of_rate) prescribed_rate(p, s);
+  s.of_rate = at_rate(p, 0);
+  if (!s.of_rate) s.bounded = p.name("the coordinate");
+  if (s.of_rate) prescribed_rates(p, s);
   else if (p.accept(">=")) s.lower = p.expression();
   else if (p.accept("<=")) s.upper = p.expression();
   else range(p, s);

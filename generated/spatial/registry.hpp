@@ -3,19 +3,29 @@
 
 #include <cdot/spatial/ball_on_plane.hpp>
 #include <cdot/spatial/brake.hpp>
+#include <cdot/spatial/bungee.hpp>
+#include <cdot/spatial/buoyancy.hpp>
+#include <cdot/spatial/bushing.hpp>
 #include <cdot/spatial/cone.hpp>
 #include <cdot/spatial/constant_velocity.hpp>
 #include <cdot/spatial/conveyor.hpp>
 #include <cdot/spatial/couple.hpp>
 #include <cdot/spatial/cylindrical.hpp>
+#include <cdot/spatial/damper.hpp>
+#include <cdot/spatial/dc_motor.hpp>
 #include <cdot/spatial/distance.hpp>
 #include <cdot/spatial/drag.hpp>
 #include <cdot/spatial/driven.hpp>
 #include <cdot/spatial/end_stops.hpp>
 #include <cdot/spatial/fixed.hpp>
+#include <cdot/spatial/gas_spring.hpp>
 #include <cdot/spatial/gear.hpp>
+#include <cdot/spatial/gravity_between.hpp>
+#include <cdot/spatial/gravity_well.hpp>
 #include <cdot/spatial/hinge.hpp>
 #include <cdot/spatial/lesson_example.hpp>
+#include <cdot/spatial/magnetic_field.hpp>
+#include <cdot/spatial/magnus.hpp>
 #include <cdot/spatial/max_distance.hpp>
 #include <cdot/spatial/n1.hpp>
 #include <cdot/spatial/n2.hpp>
@@ -34,7 +44,11 @@
 #include <cdot/spatial/revolute_n1.hpp>
 #include <cdot/spatial/rolling_disc.hpp>
 #include <cdot/spatial/rolling_sphere.hpp>
+#include <cdot/spatial/rotational_drag.hpp>
+#include <cdot/spatial/rough_plane.hpp>
 #include <cdot/spatial/screw.hpp>
+#include <cdot/spatial/servo.hpp>
+#include <cdot/spatial/shaker.hpp>
 #include <cdot/spatial/six_dof.hpp>
 #include <cdot/spatial/slider.hpp>
 #include <cdot/spatial/spherical.hpp>
@@ -45,7 +59,10 @@
 #include <cdot/spatial/swing_twist.hpp>
 #include <cdot/spatial/tearing_rope.hpp>
 #include <cdot/spatial/thruster.hpp>
+#include <cdot/spatial/torsion_spring.hpp>
 #include <cdot/spatial/universal.hpp>
+#include <cdot/spatial/viscous_drag.hpp>
+#include <cdot/spatial/wind.hpp>
 
 namespace cdot::spatial {
 
@@ -87,15 +104,32 @@ using Joints = std::tuple<
 using Effects = std::tuple<
     ball_on_plane,
     brake,
+    bungee,
+    buoyancy,
+    bushing,
     conveyor,
     couple,
+    damper,
+    dc_motor,
     drag,
     end_stops,
+    gas_spring,
+    gravity_between,
+    gravity_well,
+    magnetic_field,
+    magnus,
     press_fit,
     push,
+    rotational_drag,
+    rough_plane,
+    servo,
+    shaker,
     spindle,
     spring,
     tearing_rope,
-    thruster>;
+    thruster,
+    torsion_spring,
+    viscous_drag,
+    wind>;
 
 }  // namespace cdot::spatial

@@ -78,13 +78,13 @@ char System<S>::bound_for(int r, Real excess, Real tolerance) const {
 // Fixes rows outside their bounds at the bound, and frees rows whose bound has the wrong sign. True if nothing changed.
 template <class S>
 bool System<S>::revise_active_set(bool one_by_one) {
-  ldlt_.multiply(lambda.data(), product_.data());
+  find_excess();
   const Real scale = largest_b();
   const Real tolerance = by_precision<Real>(1e-12) * scale;
   bool settled = true;
   for (int r = rows_ - 1; r >= 0; --r) {
     if (broken[r]) continue;
-    const Real excess = product_[r] + softness[r] * lambda[r] - b[r];
+    const Real excess = this->excess(r);
     if (!fixed[r]) {
       fixed[r] = bound_for(r, excess, tolerance);
       if (fixed[r] == free) continue;
@@ -152,8 +152,7 @@ bool System<S>::part_contradicting_rows() {
   const Real scale = largest_b();
   bool any = false;
   for (int r = 0; r < rows_; ++r)
-    any |= bounded(r) && !fixed[r] && !broken[r] &&
-           std::abs(product_[r] + softness[r] * lambda[r] - b[r]) > missed<Real> * scale;
+    any |= bounded(r) && !fixed[r] && !broken[r] && std::abs(excess(r)) > missed<Real> * scale;
   share_contradictions();
   if (hold_motors(*this, slight(scale))) return yields_ = true;
   for (int r = 0; any && r < rows_; ++r)

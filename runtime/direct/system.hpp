@@ -115,6 +115,9 @@ class System {
   Real pivot(int row) const { return ldlt_.pivot(row); }
   bool dependent(int row) const { return ldlt_.dependent(row); }
   void solve_factored(Real* x) { ldlt_.solve(x, x); }
+  // J v + bias after the forces of the last solve_bounded(): find_excess() first.
+  void find_excess() { ldlt_.multiply(lambda.data(), product_.data()); }
+  Real excess(int row) const { return product_[row] + softness[row] * lambda[row] - b[row]; }
   // y = K x over all rows.
   void multiply(const Real* x, Real* y) const { ldlt_.multiply(x, y); }
   // lambda within [lower, upper], by an active set: at a bound J v + bias need not vanish. Returns the number of

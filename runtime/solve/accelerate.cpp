@@ -3,6 +3,7 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/motion/motion.hpp"
+#include "runtime/solve/cones.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
 
@@ -37,6 +38,7 @@ template <class S>
 void ask_for_gamma(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   ++world.counts->evaluations;
   free_accelerations(world, island);
+  aim_cones(world, island);
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     const int begin = segment.begin * batch.ops->rows, end = segment.end * batch.ops->rows;
@@ -49,6 +51,7 @@ void ask_for_gamma(WorldData<S>& world, Island<S>& island, typename S::Scalar ti
     if (batch.law && batch.law->guard && (batch.law->moving || batch.driven()))
       follow_bounds(batch, segment.begin, segment.end);
   }
+  bound_aimed_cones(island);
 }
 
 template <class S>

@@ -56,13 +56,19 @@ void factor(WorldData<S>& world, Island<S>& island) {
 // The same with bounds that grow with loads.
 template <class S>
 void solve_loaded(WorldData<S>& world, Island<S>& island, System<S>& system) {
+  using T = typename S::Scalar;
   begin_loads(world, island);
   const auto solve = [&] {
     system.load_laws();
     island.redundant_rows = system.solve_bounded();
-    system.store([](Batch<S>& batch, int i, auto lambda) { batch.lambda[i] = typename S::Scalar(lambda); });
+    system.find_excess();
+    system.store([](Batch<S>& batch, int i, auto lambda) { batch.lambda[i] = T(lambda); });
   };
-  if (settle_loads(island, solve, impulse_of_rows(island))) {
+  const auto solution = [&](const LoadedRow<S>& row) {
+    const int r = system.blocks[static_cast<size_t>(row.block)].first;
+    return RowSolution<T>{T(system.lambda[r]), T(system.excess(r)), T(system.diagonal(r))};
+  };
+  if (settle_loads(island, solve, impulse_of_rows(island), solution)) {
     if (!island.acceleration_level) unload(island);
   } else if (island.acceleration_level) island.jams = true;
   else island.trouble = StepProblem::jams;
@@ -140,7 +146,8 @@ void solve_known_loads(WorldData<S>& world, Island<S>& island, System<S>& system
     system.solve();
     system.store([](Batch<S>& batch, int i, auto lambda) { batch.lambda[i] = typename S::Scalar(lambda); });
   };
-  island.jams |= !settle_loads(island, solve, impulse_of_rows(island));
+  const auto known = [](const LoadedRow<S>&) { return RowSolution<typename S::Scalar>{}; };  // directions are known
+  island.jams |= !settle_loads(island, solve, impulse_of_rows(island), known);
 }
 
 // K lambda = gamma - J dv/dt, with dv/dt without joints and known forces given.

@@ -76,11 +76,19 @@ void warm_start(WorldData<S>& world, Island<S>& island, typename S::Velocity* v,
   }
 }
 
-// Bounds follow the loads of the sweep before.
+// Bounds follow the loads and the slip of the sweep before.
 template <class S>
-void follow_loads(Island<S>& island) {
+void follow_loads(Island<S>& island, const typename S::Velocity* v) {
   if (island.loads.empty()) return;
-  for (LoadedRow<S>& row : island.loads) row.load = carried(island, row, impulse_of_rows(island));
+  for (LoadedRow<S>& row : island.loads) row.load = row.found = carried(island, row, impulse_of_rows(island));
+  find_corners(island, [v](const LoadedRow<S>& row) {
+    Batch<S>& batch = *row.batch;
+    const int i = row.place();
+    batch.ops->velocity(batch, i, i + 1, v, batch.rate.data());
+    const auto slip = batch.rate[i] + batch.bias[i] + batch.softness[i] * batch.lambda[i];
+    return RowSolution<typename S::Scalar>{batch.lambda[i], slip, batch.factor[i]};
+  });
+  take_corners(island);
   bound_by_loads(island);
 }
 
@@ -89,8 +97,9 @@ template <class S>
 void sweep_velocities(WorldData<S>& world, Island<S>& island, typename S::Velocity* v, typename S::Scalar share) {
   warm_start(world, island, v, std::min(typename S::Scalar(1), share));
   begin_loads(world, island);
+  start_loads(island, impulse_of_rows(island));
   for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
-    follow_loads(island);
+    follow_loads(island, v);
     for (const auto& [batch, begin, end, whole] : island.segments) {
       if (batch->law) iterate_bounded(*batch, begin, end, world.bodies, v);
       else batch->ops->iterate(*batch, begin, end, world.bodies, v, batch->lambda.data());
@@ -102,8 +111,9 @@ template <class S>
 void sweep_softly(WorldData<S>& world, Island<S>& island, SoftSweep<typename S::Scalar> soft, bool springs) {
   auto* const v = world.bodies.velocity.data();
   begin_loads(world, island);
+  start_loads(island, impulse_of_rows(island));
   for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
-    follow_loads(island);
+    follow_loads(island, v);
     for (const auto& [batch, begin, end, whole] : island.segments) {
       if (!batch->law) batch->ops->soften(*batch, begin, end, world.bodies, v, batch->lambda.data(), soft);
       else if (springs || !batch->law->force) iterate_bounded(*batch, begin, end, world.bodies, v);

@@ -1,8 +1,18 @@
 // Rows whose bounds grow with a load: friction in proportion to what a contact or a joint carries. The load is the
 // force of other rows of the same solution, so a solver finds both together.
+//
+// Rows of a cone share one force of at most b, as friction in a plane does. A solver knows bounds of single rows, so
+// they get those of a box whose corner c lies on |c| = b. Where the force is at its bound, the right corner is opposite
+// to the slip w. From a solution lambda, w within a box the next corner is that of projected descent,
+//
+//   c = b p / |p|,   p = lambda - w / K,   K = the largest of the rows' K,
+//
+// until it stays where it is. Each box contains the projection of p onto the disc of b, so for a given b the energy
+// that the solution minimises falls from box to box: it ends at the minimum over the disc.
 #pragma once
 
 #include <cmath>
+#include <span>
 
 #include "runtime/state/world_data.hpp"
 
@@ -22,17 +32,20 @@ void bound_by_loads(Island<S>& island);
 template <class S>
 void unload(Island<S>& island);
 
-// The load that the carrier's rows have: lambda(batch, index, row of the system).
+// The load that the carrier's rows have: lambda(batch, index, row of the system). 0 without a carrier.
 template <class S, class Lambda>
 typename S::Scalar carried(const Island<S>& island, const LoadedRow<S>& row, Lambda lambda) {
   using T = typename S::Scalar;
+  if (!row.carrier) return T(0);
   const Batch<S>& of = *row.carrier;
   const int rows = of.ops->rows, slot = of.slot_of[row.carrier_home];
   const int first = row.carrier_block < 0 ? 0 : island.at_work().blocks[row.carrier_block].first;
-  if (row.batch->law->load_of) return std::abs(lambda(of, slot, first));
+  const T share = row.turns ? island.corrections_in_cones : T(0);
+  const auto whole = [&](int i, int r) { return lambda(of, i, first + r) + share * of.correction[i]; };
+  if (row.batch->law->load_of) return std::abs(whole(slot, 0));
   T force[3] = {};
   for (int r = 0; r < rows; ++r)
-    for (int k = 0; k < 3; ++k) force[k] += row.arms[3 * r + k] * lambda(of, slot * rows + r, first + r);
+    for (int k = 0; k < 3; ++k) force[k] += row.arms[3 * r + k] * whole(slot * rows + r, r);
   return std::hypot(force[0], force[1], force[2]);
 }
 
@@ -44,37 +57,96 @@ auto impulse_of_rows(const Island<S>& island) {
   };
 }
 
-// Repeats solve(), which reads the bounds, until the loads are those that it yields: Broyden's method on the loads.
-// Where they would become negative, friction grows faster than the load that it needs: then the load grows until the
-// row no longer slips. False if that does not end.
-template <class S, class Solve, class Lambda>
-bool settle_loads(Island<S>& island, Solve solve, Lambda lambda) {
+// The solution for one row: its force, its slip J v + bias, and K.
+template <class T>
+struct RowSolution {
+  T force, slip, K;
+};
+
+// A row of a cone and the rows of the cone after it.
+template <class S>
+std::span<LoadedRow<S>> cone_from(Island<S>& island, size_t first) {
+  return {island.loads.data() + first, static_cast<size_t>(island.loads[first].batch->law->cone_rows)};
+}
+// f(rows) for every cone.
+template <class S, class F>
+void each_cone(Island<S>& island, F f) {
+  for (size_t k = 0; k < island.loads.size(); ++k) {
+    const auto& law = *island.loads[k].batch->law;
+    if (law.cone_rows > 0 && law.cone_row == 0) f(cone_from(island, k));
+  }
+}
+
+// The next corner, given p in corner_found and |p|: along p, or as the present one if that box has p.
+template <class S>
+void turn_corner(std::span<LoadedRow<S>> cone, typename S::Scalar size);
+
+// The corners of cones that turn from the loads found and solution(row).
+template <class S, class Solution>
+void find_corners(Island<S>& island, Solution solution) {
   using T = typename S::Scalar;
-  constexpr int rounds = 80;
+  each_cone(island, [&](std::span<LoadedRow<S>> cone) {
+    if (!cone[0].turns) return;
+    T K = 0, size = 0;
+    for (const LoadedRow<S>& row : cone) K = std::max(K, T(solution(row).K));
+    for (LoadedRow<S>& row : cone) {
+      const RowSolution<T> now = solution(row);
+      row.corner_found = now.force + row.before - now.slip * inverse(K);
+      size = std::hypot(size, row.corner_found);
+    }
+    turn_corner(cone, size);
+  });
+}
+
+// Takes the corners found, or the directions of the last step for a first one.
+template <class S>
+void take_corners(Island<S>& island);
+template <class S>
+void begin_corners(Island<S>& island);
+// Loads and corners before the first solution.
+template <class S, class Lambda>
+void start_loads(Island<S>& island, Lambda lambda) {
+  for (LoadedRow<S>& row : island.loads) row.load = carried(island, row, lambda);
+  begin_corners(island);
+}
+template <class S>
+bool turns_cones(const Island<S>& island);
+// Adds Island::load_changes to loads and corners. False if one had to grow in their place.
+template <class S>
+bool move_on(Island<S>& island);
+
+// Writes what solve() changed in loads and corners to Island::load_changes. Returns the largest change, as a share of
+// the largest of them.
+template <class S>
+typename S::Scalar find_load_changes(Island<S>& island);
+
+// Repeats solve(), which reads the bounds, until the loads and the corners are those that it yields: Broyden's method
+// on both. Where a load would become negative, friction grows faster than the load that it needs: then the load grows
+// until the row no longer slips. So does a corner that would turn round. Cones of bodies with several contacts stick
+// and slip by turns, which misleads Broyden's method: after some rounds they take each solution as it is. False if that
+// does not end.
+template <class S, class Solve, class Lambda, class Solution>
+bool settle_loads(Island<S>& island, Solve solve, Lambda lambda, Solution solution) {
+  using T = typename S::Scalar;
+  constexpr int rounds = 80, careful_rounds = 20;
   constexpr T enough = T(by_precision<T>(1e-6, 1e-13)), by_round_off = T(by_precision<T>(1e-3, 1e-9));
+  constexpr T fine = T(by_precision<T>(1e-2, 1e-6));  // of a corner that turns to and fro
   const auto restart = [&] { island.load_search.begin([](size_t) { return T(1); }); };
   restart();
-  for (LoadedRow<S>& row : island.loads) row.load = carried(island, row, lambda);
-  for (int round = 0; round < rounds; ++round) {
+  start_loads(island, lambda);
+  const bool turns = turns_cones(island);
+  for (int round = 0; round < (turns ? 2 : 1) * rounds; ++round) {
     bound_by_loads(island);
     solve();
-    T worst = 0, largest = 0;
-    for (size_t k = 0; k < island.loads.size(); ++k) {
-      LoadedRow<S>& row = island.loads[k];
-      row.found = carried(island, row, lambda);
-      island.load_changes[k] = row.found - row.load;
-      worst = std::max(worst, std::abs(row.found - row.load)), largest = std::max(largest, row.found);
+    for (LoadedRow<S>& row : island.loads) row.found = carried(island, row, lambda);
+    find_corners(island, solution);
+    if (!(find_load_changes(island) > (round < careful_rounds ? enough : round < rounds ? by_round_off : fine))) {
+      take_corners(island);
+      return true;
     }
-    if (!(worst > (round < rounds / 4 ? enough : by_round_off) * largest)) return true;
-    bool goes_on = island.load_search.next(island.load_changes.data());
-    for (size_t k = 0; k < island.loads.size(); ++k) {
-      LoadedRow<S>& row = island.loads[k];
-      const T next = row.load + island.load_changes[k];
-      const bool grows = !(next >= T(0)) || !std::isfinite(next);
-      goes_on &= !grows;
-      row.load = grows ? T(2) * std::max(row.load, row.found) : next;
-    }
-    if (!goes_on) restart();
+    const bool plain = turns && round >= 2 * careful_rounds;
+    const bool found = plain || island.load_search.next(island.load_changes.data());
+    if (!move_on(island) || !found) restart();
   }
   return false;
 }

@@ -119,9 +119,10 @@ template <class S>
 void add_bounded_rows(WorldData<S>& world, int joint) {
   const JointRecord& record = world.joints[joint];
   const JointEntry<S>& entry = joint_entries<S>()[record.type];
+  constexpr double no_direction[1] = {};
   for (const BoundedEntry<S>& row : entry.bounded)
     add_rows(world, joint, entry.coordinates[row.coordinate].choose(world.bodies, record.bodies), row.law,
-             {RowKind::equality}, {});
+             {RowKind::equality}, {no_direction, static_cast<size_t>(row.law->constants)});
 }
 
 #define CDOT_INSTANTIATE(S)                                                                                     \

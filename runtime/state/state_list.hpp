@@ -53,7 +53,8 @@ struct StateList {
     visit.item("rows.mode", index, true), visit(mode);
     visit.item("rows.softness", index, true), visit(softness);
     visit.item("rows.bounds", index, true), visit(lower), visit(upper);
-    visit.item("rows.constants", index, breaks || driven), visit(constants);
+    const bool turns = batch.law && batch.law->cone_rows > 0;  // the direction of a force
+    visit.item("rows.constants", index, breaks || driven || turns), visit(constants);
     if (batch.law && batch.law->distance) visit.item("rows.happened", index, true), visit(happened);
     if (!spans.empty()) visit.item("rows.spans", index, true), visit(spans);
   }

@@ -46,6 +46,7 @@ struct FlowWorkspace {
   std::vector<T> now;            // numbers of a stage, laid out like FlowState::start
   std::vector<T> low, high;      // margins at the start of a step, then on both sides of an event
   int guarded = 0;               // number of guarded rows
+  T fixed_step = 0;              // its length; 0: the error chooses the steps
   bool projects_stages = false;  // in steps near a loss of rank
   bool astray = false;           // the last attempt at a step reversed a joint's direction
   // Pivots of K at the stages of a step, as shares of their diagonals, [stage][row]; of one row (step/rank_loss.hpp).
@@ -55,17 +56,26 @@ struct FlowWorkspace {
   CollocationWorkspace<T> collocation;
 };
 
-// A row whose bounds grow with the load that other rows of its joint carry (solve/loads.hpp).
+// A row whose bounds grow with the load that other rows of its joint carry, or a row of a cone (solve/loads.hpp).
 template <class S>
 struct LoadedRow {
   using T = typename S::Scalar;
-  Batch<S>*batch, *carrier;
-  int home, carrier_home;  // Batch::slot_of[home]
-  int carrier_block = -1;  // in System::blocks; -1: without a system
-  T lower, upper;          // its bounds without the load
-  T by_lower, by_upper;    // what each unit of the load adds to them
-  T arms[3 * most_rows];   // of the force on the last body, by row of the carrier; unused for a single row
-  T load = 0, found = 0;   // as assumed, and as the solution has it
+  Batch<S>*batch, *carrier;  // carrier: null without a load
+  int home, carrier_home;    // Batch::slot_of[home]
+  int block = -1;            // of the row, in System::blocks; -1: without a system
+  int carrier_block = -1;
+  T lower, upper;         // its bounds without the load; of a cone, of the whole force
+  T by_lower, by_upper;   // what each unit of the load adds to them
+  T arms[3 * most_rows];  // of the force on the last body, by row of the carrier; unused for a single row
+  T load = 0, found = 0;  // as assumed, and as the solution has it
+  // Of a cone whose direction is to be found: the bound of the force along this row, with the sign of that force, as
+  // assumed and as the solution has it.
+  bool turns = false;
+  T corner = 0, corner_found = 0;
+  T before = 0;  // impulse of the row before the present solution that is a part of the same force
+  T share = 0;  // of a cone whose direction is known, at acceleration level: the part of this row in it
+
+  int place() const { return batch->slot_of[static_cast<size_t>(home)]; }
 };
 
 template <class S>
@@ -80,6 +90,8 @@ struct IslandWorkspace {
   Broyden<typename S::Scalar> load_search;
   // Shares: of the impulses in Batch::correction that loads count, and of a load in the bounds of a kick.
   typename S::Scalar corrections_in_loads = 0, loads_in_kick = 1;
+  // Share of the impulses in Batch::correction that belong to the present force of a cone and to its load.
+  typename S::Scalar corrections_in_cones = 0;
   bool jams = false;                        // no load was found that bounds the forces which it comes from
   const RowSolver<S>* solver = nullptr;     // that of the settings, except in a retry
   bool stiffened = false;                   // linearly implicit step: effective masses include stiffness

@@ -8,6 +8,7 @@
 
 #include "runtime/balance/balance.hpp"
 #include "runtime/motion/motion.hpp"
+#include "runtime/solve/cones.hpp"
 #include "runtime/solve/latch.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
@@ -193,6 +194,7 @@ bool offer_bounds(WorldData<S>& world, Island<S>& island) {
   clear_laws(island);
   each_guarded_row(
       island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
+        if (batch.law->cone_rows > 0) return;
         const T missing = guard.rate - (batch.rate[i] + batch.bias[i]);
         const bool slow = std::abs(missing) <= T(4) * resolution.rate || batch.mode[i] == Mode::held;
         batch.mode[i] = Mode::held;
@@ -208,7 +210,7 @@ bool offer_bounds(WorldData<S>& world, Island<S>& island) {
           batch.lower[i] = batch.upper[i] = missing > T(0) ? guard.upper : guard.lower;
         }
       });
-  return open;
+  return offer_bounds_to_cones(island) || open;
 }
 
 // Forces and accelerations are complementary: a row stays held if its force lies within the bounds. With a force at a
@@ -219,7 +221,7 @@ void decide_by_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar
   ask_for_gamma(world, island, time);
   solve(world, island, world.bodies.velocity_rate.data());
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>&) {
-    if (batch.mode[i] != Mode::held) return;
+    if (batch.mode[i] != Mode::held || batch.law->cone_rows > 0) return;
     const T force = batch.lambda[i];
     if (!guard.bilateral() && (force <= batch.lower[i] || force >= batch.upper[i])) {
       batch.mode[i] = guard.one_sided() ? Mode::off : force >= batch.upper[i] ? Mode::pushed : Mode::pulled;
@@ -229,6 +231,7 @@ void decide_by_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar
       batch.upper[i] = infinite<T>;
     }
   });
+  decide_about_cones(island);
 }
 
 // The margin of one row from its own bounds; infinite if no event is possible.
@@ -326,6 +329,7 @@ void measure_margins(Island<S>& island) {
         island.flow.margins[k] = margin_of(batch, i, guard, resolution, island.flow.row_rates[k]);
         ++k;
       });
+  measure_margins_of_cones(island);
 }
 
 template <class S>

@@ -180,11 +180,16 @@ typename S::Scalar improve(WorldData<S>& world, Island<S>& island, typename S::S
     const auto solve = [&] {
       bound_changes(island);
       island.redundant_rows = system.solve_bounded();
+      system.find_excess();
     };
     const auto impulse = [&](const Batch<S>& batch, int i, int row) {
       return batch.correction[i] + T(2) * T(system.lambda[row]);
     };
-    if (!settle_loads(island, solve, impulse)) island.trouble = StepProblem::jams;
+    const auto solution = [&](const LoadedRow<S>& row) {
+      const int r = system.blocks[static_cast<size_t>(row.block)].first;
+      return RowSolution<T>{impulse(*row.batch, row.place(), r), T(system.excess(r)), T(system.diagonal(r))};
+    };
+    if (!settle_loads(island, solve, impulse, solution)) island.trouble = StepProblem::jams;
   } else if (system.lawful()) {
     bound_changes(island);
     island.redundant_rows = system.solve_bounded();

@@ -144,6 +144,10 @@ struct Law {
   void (*by_load)(const Batch<S>&, int slot, T* lower, T* upper) = nullptr;
   // The rows of the same joint that carry that load; null: the joint's own, whose resultant force it is.
   const Law<S>* load_of = nullptr;
+  // Of a row of a cone: rows of the same joint, in order, that one force of bounded size prescribes together. Its place
+  // among them, and their number; 0: the row is alone. The last constant of each row is its part of a direction, that
+  // of the force where the rows slip (runtime/solve/loads.hpp).
+  int cone_row = 0, cone_rows = 0;
   // Of a row with events, given the rate of C and the force: how far the row is from its begin and its end, negative
   // beyond. A condition that the law lacks is infinitely far. Null: no events.
   void (*distance)(const Batch<S>&, int slot, T rate, T force, T (&from)[2]) = nullptr;
@@ -222,6 +226,8 @@ struct Batch : BatchModel<S>, BatchState<S>, BatchWorkspace<S> {
   int triangle() const { return this->ops->rows * (this->ops->rows + 1) / 2; }
   bool driven() const { return !this->drives.empty(); }
   bool explicit_time() const { return this->ops->explicit_time || driven(); }
+  // Of a row of a cone: its part of a direction (Law::cone_rows).
+  T& share_of_cone(int slot) { return this->constants[(slot + 1) * this->law->constants - 1]; }
   std::span<Drive> drives_of(int slot) { return range(this->drives, this->first_drive, slot); }
   std::span<const Drive> drives_of(int slot) const { return range(this->drives, this->first_drive, slot); }
 

@@ -7,6 +7,8 @@
 //   Row::load_of               the bounds grow with the force of that one of Effect::Bounded, or, if it is -1, with the
 //                              resultant force of the joint's own rows; missing: they do not
 //   Row::by_load (C, p, t, B)  what each newton of the load adds to the bounds
+//   Row::cone_row, cone_rows   its place among consecutive rows that one force of bounded size prescribes together, and
+//                              their number; missing: the row is alone
 //   Row::after, Row::until (C, rate, p, t, load, D)   how far the row is from its begin and its end, as a share of what
 //                              is compared; `load` is its own |force|; missing: it acts from the start, or for ever
 #pragma once
@@ -79,11 +81,20 @@ struct BoundedLaw {
   }
 
   static constexpr bool has_load = requires { Row::load_of; };
+  static constexpr int cone_row = [] {
+    if constexpr (requires { Row::cone_row; }) return Row::cone_row;
+    else return 0;
+  }();
+  static constexpr int cone_rows = [] {
+    if constexpr (requires { Row::cone_rows; }) return Row::cone_rows;
+    else return 0;
+  }();
   static void by_load(const Batch<S>& batch, int slot, T* lower, T* upper) {
-    RowBounds<T> B;
+    RowBounds<T> B{T(0), T(0)};
     if constexpr (has_load)
-      effect_of<Row>(batch).by_load(reinterpret_cast<const T(&)[1]>(batch.C[slot]),
-                                    parameters_of<S, Effect, where>(batch, slot), batch.time, B);
+      if (acts(batch, slot))
+        effect_of<Row>(batch).by_load(reinterpret_cast<const T(&)[1]>(batch.C[slot]),
+                                      parameters_of<S, Effect, where>(batch, slot), batch.time, B);
     *lower = B.lower, *upper = B.upper;
   }
 
@@ -158,7 +169,7 @@ constexpr const Law<S>* law_of_load();
 
 template <class S, class Effect, class Row, ParametersAt where = ParametersAt::joint>
 inline constexpr Law<S> bounded_law{
-    .constants = constants_of_row<S, Effect, where>,
+    .constants = constants_of_row<S, Effect, where> + (BoundedLaw<S, Effect, Row, where>::cone_rows > 0),
     .reported = false,
     .fill = Row::of_rate ? BoundedLaw<S, Effect, Row, where>::fill_rate : BoundedLaw<S, Effect, Row, where>::fill_ends,
     .error = Row::of_rate ? nullptr : BoundedLaw<S, Effect, Row, where>::error_ends,
@@ -167,9 +178,12 @@ inline constexpr Law<S> bounded_law{
     .guard =
         Row::of_rate ? BoundedLaw<S, Effect, Row, where>::guard_rate : BoundedLaw<S, Effect, Row, where>::guard_ends,
     .in_time = Row::in_time,
-    .moving = Row::in_time || Row::of_value || BoundedLaw<S, Effect, Row, where>::has_load,
+    .moving = Row::in_time || Row::of_value || BoundedLaw<S, Effect, Row, where>::has_load ||
+              BoundedLaw<S, Effect, Row, where>::cone_rows > 0,
     .by_load = BoundedLaw<S, Effect, Row, where>::has_load ? BoundedLaw<S, Effect, Row, where>::by_load : nullptr,
     .load_of = law_of_load<S, Effect, Row, where>(),
+    .cone_row = BoundedLaw<S, Effect, Row, where>::cone_row,
+    .cone_rows = BoundedLaw<S, Effect, Row, where>::cone_rows,
     .distance = BoundedLaw<S, Effect, Row, where>::has_events ? BoundedLaw<S, Effect, Row, where>::distance : nullptr};
 
 template <class S, class Effect, class Row, ParametersAt where>
