@@ -44,7 +44,9 @@ class Parts {
       add("gravity", [](const Mechanism& from, Mechanism& to) { to.gravity = from.gravity; });
     for (std::size_t b = 0; b < all_.bodies.size(); ++b) list_body(b);
     for (std::size_t j = 0; j < all_.joints.size(); ++j)
-      add_of(fmt::format("joint {} ({})", all_.joints[j].name, all_.joints[j].type), &Mechanism::joints, j);
+      add_of(all_.joints[j].coordinate.empty() ? fmt::format("joint {} ({})", all_.joints[j].name, all_.joints[j].type)
+                                               : "effect " + all_.joints[j].name,
+             &Mechanism::joints, j);
     for (std::size_t e = 0; e < all_.effects.size(); ++e)
       add_of("effect " + all_.effects[e].name, &Mechanism::effects, e);
     for (std::size_t b = 0; b < all_.bounded.size(); ++b)

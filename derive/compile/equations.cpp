@@ -54,9 +54,10 @@ class EquationWriter {
     Algebra algebra(out_.constants);
     for (std::size_t k = 0; k < system().blocks().size(); ++k) {
       const RowBlock& joint = system().blocks()[k];
-      const Values C = blocks_.call(algebra, joint, "position", blocks_.inputs(algebra, joint));
+      Values C;
+      if (!joint.speed) C = blocks_.call(algebra, joint, "position", blocks_.inputs(algebra, joint));
       for (std::size_t r = 0; r < joint.rows->count(); ++r)
-        algebra.output(element("C", system().first_row(k) + r), C.at(element("C", r)));
+        algebra.output(element("C", system().first_row(k) + r), joint.speed ? algebra.value(0) : C.at(element("C", r)));
     }
     out_.errors = algebra.finish();
   }

@@ -21,7 +21,7 @@ namespace {
 
 // A kernel and the texts that its JointType refers to, for ever.
 struct Registered {
-  std::string name;
+  std::string name, file;
   std::shared_ptr<const OwnKernel> kernel;
 };
 
@@ -128,6 +128,11 @@ void add_joint(const Registered& own) {
 #undef CDOT_ADD_ENTRY
 }
 
+std::vector<std::unique_ptr<Registered>>& registered() {
+  static std::vector<std::unique_ptr<Registered>> all;
+  return all;
+}
+
 // Why these tapes cannot stand for a compiled kernel; empty if they can.
 std::string obstacle(const OwnKernel& kernel) {
   const std::string compile = "Likely fix: cdot_add_joints compiles it into a program";
@@ -177,12 +182,18 @@ OwnType add_own_type(const std::string& file) {
   if (!kernel) return {"", true, problems};
   if (const std::string why = obstacle(*kernel); !why.empty())
     return {"", kernel->bodies() > 0, fmt::format("{}{}: error: it cannot run: {}\n", problems, file, why)};
-  static std::vector<std::unique_ptr<Registered>> all;
-  all.push_back(std::make_unique<Registered>(Registered{free_name(*kernel), kernel}));
-  if (kernel->bodies() > 0) add_joint(*all.back());
-  if (kernel->on_coordinate) add_on_coordinates(*all.back());
-  last = {content, {all.back()->name, kernel->bodies() > 0, problems}};
+  registered().push_back(std::make_unique<Registered>(Registered{free_name(*kernel), file, kernel}));
+  const Registered& own = *registered().back();
+  if (kernel->bodies() > 0) add_joint(own);
+  if (kernel->on_coordinate) add_on_coordinates(own);
+  last = {content, {own.name, kernel->bodies() > 0, problems}};
   return last.type;
+}
+
+std::string file_of_own_type(const std::string& name) {
+  const auto own =
+      std::ranges::find(registered(), name, [](const auto& one) -> const std::string& { return one->name; });
+  return own == registered().end() ? "" : (*own)->file;
 }
 
 }  // namespace cdot

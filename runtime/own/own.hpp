@@ -17,5 +17,7 @@ struct OwnType {
 // file that has not changed since the last call gives the same type. If a type has the joint's name already, the new
 // one is called "name#2".
 OwnType add_own_type(const std::string& file);
+// That file, of a type with bodies or on a coordinate; empty for a type that is compiled.
+std::string file_of_own_type(const std::string& name);
 
 }  // namespace cdot

@@ -67,7 +67,9 @@ std::vector<int> JointRows::rates(Algebra& algebra, const Values& velocities) co
     blocks_.replace_velocities(in, joint, velocities);
     const Values Jv = blocks_.call(algebra, joint, "velocity", in);
     for (std::size_t r = 0; r < joint.rows->count(); ++r) {
-      rates.push_back(algebra.sum({{Jv.at(derive::element("Jv", r)), drift(algebra, rates.size())}, {1, 1}}));
+      Summands rate{{Jv.at(derive::element("Jv", r)), drift(algebra, rates.size())}, {1, 1}};
+      if (joint.speed) rate.add(-1, algebra.value(*joint.speed, joint.name + "_speed"));
+      rates.push_back(algebra.sum(rate));
     }
   }
   return rates;

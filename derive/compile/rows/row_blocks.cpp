@@ -20,7 +20,10 @@ std::string number_name(const RowBlock& block, const std::string& parameter) {
 RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const derive::SpecsFolder& specs)
     : mechanism_(mechanism), names_(names) {
   std::map<std::string, std::set<std::string>> coordinates;
-  for (const Joint& joint : mechanism.joints) coordinates[joint.type];
+  for (const Joint& joint : mechanism.joints) {
+    std::set<std::string>& of_type = coordinates[joint.type];
+    if (!joint.coordinate.empty()) of_type.insert(joint.coordinate);
+  }
   for (const std::vector<Effect>* list : {&mechanism.effects, &mechanism.bounded})
     for (const Effect& effect : *list) {
       std::set<std::string>& of_type = coordinates[effect.type];
@@ -28,12 +31,23 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
       if (!effect.law_type.empty()) coordinates[law_of(effect)];
     }
   const std::string folder = mechanism.spatial() ? "spatial/" : "planar/";
-  for (const auto& [type, of_type] : coordinates)
-    types_[type] = programs_of(specs, type.find('/') == std::string::npos ? folder + type : type, of_type);
+  for (const auto& [type, of_type] : coordinates) {
+    const auto own = mechanism.own_specs.find(type.substr(type.find('/') + 1));
+    const bool in_folder = type.find('/') == std::string::npos;
+    types_[type] = programs_of(specs,
+                               own != mechanism.own_specs.end() ? own->second
+                               : in_folder                      ? folder + type
+                                                                : type,
+                               of_type);
+  }
   for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
     const Joint& joint = mechanism.joints[j];
     const SpecPrograms& spec = types_.at(joint.type);
     joints_.push_back({names.joints[j], names.joints[j], &spec, &spec.rows, &joint.bodies, &joint.parameters});
+    if (joint.coordinate.empty()) continue;
+    joints_.back().owner = owner_of(names.joints[j], joint.name);
+    joints_.back().rows = &spec.coordinates.at(joint.coordinate);
+    joints_.back().speed = &joint.speed;
   }
   for (std::size_t e = 0; e < mechanism.effects.size(); ++e)
     effects_.push_back(block_of(names.effects[e], mechanism.effects[e]));
@@ -48,11 +62,10 @@ std::string RowBlocks::law_of(const Effect& effect) const {
   return (mechanism_.spatial() && !effect.coordinate.empty() ? "planar/" : "") + effect.law_type;
 }
 
-// The joint on whose coordinate the effect acts: they share its parameters.
-std::string RowBlocks::owner_of(const std::string& name, const Effect& effect) const {
-  const auto owns = [&](const Joint& joint) { return effect.name.starts_with(joint.name + "."); };
+std::string RowBlocks::owner_of(const std::string& name, const std::string& effect) const {
+  const auto owns = [&](const Joint& joint) { return effect.starts_with(joint.name + "."); };
   const auto joint = std::ranges::find_if(mechanism_.joints, owns);
-  if (effect.coordinate.empty() || joint == mechanism_.joints.end()) return name;
+  if (joint == mechanism_.joints.end()) return name;
   return names_.joints[static_cast<std::size_t>(joint - mechanism_.joints.begin())];
 }
 
@@ -61,7 +74,7 @@ RowBlock RowBlocks::block_of(const std::string& name, const Effect& effect) cons
   const SpecPrograms& spec = types_.at(effect.type);
   const bool own = effect.coordinate.empty() && effect.law == Effect::bound;
   const std::string& coordinate = own ? spec.bounded[effect.row].coordinate : effect.coordinate;
-  return {name,           owner_of(name, effect),
+  return {name,           effect.coordinate.empty() ? name : owner_of(name, effect.name),
           &spec,          coordinate.empty() ? &spec.rows : &spec.coordinates.at(coordinate),
           &effect.bodies, &effect.parameters};
 }

@@ -28,6 +28,7 @@ struct RowBlock {
   const RowPrograms* rows = nullptr;
   const std::vector<int>* bodies = nullptr;
   const std::vector<double>* parameters = nullptr;
+  const double* speed = nullptr;  // of a motor, the rate of its row
 };
 
 // Forces by body and column.
@@ -73,7 +74,8 @@ class RowBlocks {
 
  private:
   std::string law_of(const Effect& effect) const;
-  std::string owner_of(const std::string& name, const Effect& effect) const;
+  // The joint on whose coordinate an effect of that name acts: they share its parameters. Else `name`.
+  std::string owner_of(const std::string& name, const std::string& effect) const;
   RowBlock block_of(const std::string& name, const Effect& effect) const;
   void add_body(Algebra& algebra, Values& in, const std::string& L, int index) const;
   void add_place(Algebra& algebra, Values& in, const std::string& L, int index) const;

@@ -1,5 +1,6 @@
 #include "derive/compile/scene/effects.hpp"
 
+#include <cmath>
 #include <fmt/format.h>
 
 #include <cdot/effects.hpp>
@@ -76,7 +77,8 @@ class EffectReader {
 
   void add_bounded(const SceneJoint& source, const Effect& effect, const Place& place) {
     const auto& law = *batch_of(place).law;
-    if (law.by_load) refuse_(source, fmt::format("{}: bounds that grow with a load", effect.name));
+    if (law.cone_rows > 0) refuse_(source, fmt::format("{}: one force along several coordinates", effect.name));
+    else if (law.by_load) refuse_(source, fmt::format("{}: bounds that grow with a load", effect.name));
     else if (law.distance) refuse_(source, fmt::format("{}: events", effect.name));
     else if (mechanism_.method == Method::euler) mechanism_.bounded.push_back(effect);
     else
@@ -106,6 +108,8 @@ class EffectReader {
                          const Place& place) {
     Effect effect = along(source.name + "." + coordinate, joint);
     effect.coordinate = coordinate;
+    if constexpr (std::is_same_v<Kind, Motor>)
+      if (mechanism_.on_accelerations() && std::isinf(kind.max_force)) return add_strong_motor(effect, kind.speed);
     effect.numbers = constants_of(place);
     const std::string what = name_law(kind, effect);
     effect.name += "." + what;
@@ -117,6 +121,12 @@ class EffectReader {
     } else {
       mechanism_.effects.push_back(std::move(effect));
     }
+  }
+
+  // It never slips, so it needs no events.
+  void add_strong_motor(const Effect& effect, double speed) {
+    mechanism_.joints.push_back(
+        {effect.name + ".motor", effect.type, effect.bodies, effect.parameters, effect.coordinate, speed});
   }
 
   std::string name_law(const SpecEffect& kind, Effect& effect) {

@@ -7,6 +7,7 @@
 #include <cdot/world.hpp>
 
 #include "derive/compile/scene/effects.hpp"
+#include "runtime/own/own.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/state/world_data.hpp"
 #include "runtime/tool/scene/extent.hpp"
@@ -209,6 +210,15 @@ void refuse_counters(const Scene& scene, BasicWorld<S>& world) {
   refusals.throw_any();
 }
 
+void note_own_specs(Mechanism& mechanism) {
+  const auto note = [&](const std::string& type) {
+    if (const std::string file = file_of_own_type(type); !file.empty()) mechanism.own_specs[type] = file;
+  };
+  for (const Joint& joint : mechanism.joints) note(joint.type);
+  for (const auto* list : {&mechanism.effects, &mechanism.bounded})
+    for (const Effect& effect : *list) note(effect.type), note(effect.law_type);
+}
+
 template <class S>
 void add_parts(const Scene& scene, Mechanism& mechanism) {
   BasicWorld<S> world = build_world_in<S>(scene);
@@ -224,6 +234,7 @@ void add_parts(const Scene& scene, Mechanism& mechanism) {
     if (!world.joint_type(i).is_effect && !scene.joints[static_cast<std::size_t>(i)].definition.soft)
       mechanism.joints.push_back(joint_of(scene, world, i));
   add_effects(scene, world, mechanism);
+  note_own_specs(mechanism);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,9 @@ struct Joint {
   std::string name, type;
   std::vector<int> bodies;         // indices into Mechanism::bodies
   std::vector<double> parameters;  // laid out as Parameters<T> of the kernel
+  // Of a motor without a largest force, whose rate is an equation: the coordinate of that spec, and its speed.
+  std::string coordinate{};
+  double speed = 0;
 };
 
 // A force along each row of a spec, or along one of its coordinates; a row with bounds on a coordinate.
@@ -66,9 +70,10 @@ struct Mechanism {
   std::vector<std::string> inputs;  // numbers that a run may change, as a header names them
   std::vector<Body> bodies;         // the last one is the world
   std::vector<Joint> joints;
-  std::vector<Effect> effects;  // by forces
-  std::vector<Effect> bounded;  // rows with bounds
-  int angles = 0;               // that count whole turns
+  std::vector<Effect> effects;                   // by forces
+  std::vector<Effect> bounded;                   // rows with bounds
+  std::map<std::string, std::string> own_specs;  // files beside the scene, by type
+  int angles = 0;                                // that count whole turns
 
   bool spatial() const { return dimension == 3; }
   // True for a Runge-Kutta method; the others step velocities by impulses.
