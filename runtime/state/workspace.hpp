@@ -73,7 +73,7 @@ struct LoadedRow {
   bool turns = false;
   T corner = 0, corner_found = 0;
   T before = 0;  // impulse of the row before the present solution that is a part of the same force
-  T share = 0;  // of a cone whose direction is known, at acceleration level: the part of this row in it
+  T share = 0;   // of a cone whose direction is known, at acceleration level: the part of this row in it
 
   int place() const { return batch->slot_of[static_cast<size_t>(home)]; }
 };

@@ -166,7 +166,7 @@ void bound_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
       const bool of_force = !batch->law->error;
       each_row(*batch, begin, end, [of = batch](int i) { of->impulse[i] = of->lower[i], of->error[i] = of->upper[i]; });
       batch->law->fill(*batch, begin, end, h, world.settings);
-      if (batch->law->cone_rows > 0) continue;  // the solver finds the whole force
+      if (batch->law->cone_rows > 0) continue;  // the solver knows the whole force
       each_row(*batch, begin, end, [=, of = batch](int i) {
         of->lower[i] = (of_force ? of->impulse[i] : of->lower[i]) - of->correction[i];
         of->upper[i] = (of_force ? of->error[i] : of->upper[i]) - of->correction[i];
@@ -224,9 +224,7 @@ WorkAtEnd solve_end_of_part(WorldData<S>& world, Island<S>& island) {
     batch->ops->velocity(*batch, begin, end, v, batch->rate.data());
     each_row(*batch, begin, end, [of = batch](int i) { of->error[i] = of->rate[i] + of->bias[i]; });
   }
-  island.corrections_in_cones = 1;
-  island.solver->velocities(world, island, v, T(1));
-  island.corrections_in_cones = 0;
+  island.corrections_in_cones = 1, island.solver->velocities(world, island, v, T(1)), island.corrections_in_cones = 0;
   double loss = 0, given = 0;
   bool hit = false;
   each_row(island, [&](const Batch<S>& batch, int i) {
