@@ -1,28 +1,10 @@
 // Friction across a plane in space: one force of bounded size along two rows, by closed forms with every integrator.
-#include "tests/runtime/effects/generated_effects.hpp"
-#include "tests/runtime/spatial_support.hpp"
+#include "tests/runtime/effects/spatial_effects.hpp"
 
-namespace cdot::test::cones {
+namespace cdot::test::in_space {
 namespace {
 
-using effects::with;
-using spatial::Vector;
-
-constexpr double weight = 9.81;  // of 1 kg
-
-Settings down(Integrator integrator) {
-  Settings s = with(integrator);
-  s.gravity_y = 0, s.gravity_z = -weight;
-  return s;
-}
-
-int body_at(SpatialWorld<double>& world, Vector<double> x, Vector<double> v, double mass, double inertia = 1,
-            Vector<double> w = {}) {
-  SpatialBodyDefinition d;
-  d.x = x.x, d.y = x.y, d.z = x.z, d.vx = v.x, d.vy = v.y, d.vz = v.z, d.wx = w.x, d.wy = w.y, d.wz = w.z;
-  d.mass = mass, d.inertia = {inertia, inertia, inertia};
-  return world.add_body(d);
-}
+Settings down(Integrator integrator) { return free_fall(integrator, g); }
 
 void put_on_plane(SpatialWorld<double>& world, int body, Vector<double> n, double mu, double radius = 0) {
   world.add_joint({"rough_plane",
@@ -39,11 +21,6 @@ Vector<double> velocity_of(const SpatialWorld<double>& world, int body) {
   const auto v = world.velocity(body);
   return {v.x, v.y, v.z};
 }
-Vector<double> place_of(const SpatialWorld<double>& world, int body) {
-  const auto q = world.pose(body);
-  return {q.x, q.y, q.z};
-}
-
 // The normal of a plane that falls by `slope` towards the heading `way`.
 Vector<double> normal(double slope, double way) {
   return {std::sin(slope) * std::cos(way), std::sin(slope) * std::sin(way), std::cos(slope)};
@@ -60,10 +37,10 @@ TEST(Cones, ABlockSlipsAtItsAngleOfFrictionToAnySide) {
       for (const double way : {0.0, 0.4, 2.1, 4.0}) {
         const double slope = std::atan(mu) + off;
         SpatialWorld<double> world(down(row.integrator));
-        const int block = body_at(world, {}, {}, 3);
+        const int block = ball(world, {.mass = 3});
         put_on_plane(world, block, normal(slope, way), mu);
         advance(world, 1, 0.01);
-        const double right = off < 0 ? 0 : weight * (std::sin(slope) - mu * std::cos(slope));
+        const double right = off < 0 ? 0 : g * (std::sin(slope) - mu * std::cos(slope));
         EXPECT_LT(norm(velocity_of(world, block) - right * steepest(slope, way)), 1e-8)
             << row.name << ", " << off << " to " << way;
         EXPECT_NEAR(norm(place_of(world, block)), right / 2, row.order == 1 ? 2e-2 : 1e-3) << row.name;
@@ -79,13 +56,13 @@ TEST(Cones, APuckKeepsItsDirection) {
     for (const double way : {0.0, 0.3, 0.7853981633974483, 2.0, 5.5}) {
       SpatialWorld<double> world(down(row.integrator));
       const Vector<double> along = {std::cos(way), std::sin(way), 0};
-      const int puck = body_at(world, {}, v * along, 2);
+      const int puck = ball(world, {.v = v * along, .mass = 2});
       put_on_plane(world, puck, {0, 0, 1}, mu);
       advance(world, 0.5, 0.01);
-      EXPECT_LT(norm(velocity_of(world, puck) - (v - mu * weight * 0.5) * along), 1e-9) << row.name << ", " << way;
+      EXPECT_LT(norm(velocity_of(world, puck) - (v - mu * g * 0.5) * along), 1e-9) << row.name << ", " << way;
       advance(world, 0.5, 0.01);
       EXPECT_LT(norm(velocity_of(world, puck)), 1e-9) << row.name << ", " << way;
-      const double far = v * v / (2 * mu * weight);
+      const double far = v * v / (2 * mu * g);
       EXPECT_LT(norm(place_of(world, puck) - far * along), row.order > 2 ? 1e-8 : 0.02) << row.name << ", " << way;
     }
   }
@@ -97,24 +74,24 @@ TEST(Cones, APuckKeepsItsDirection) {
 TEST(Cones, ABilliardBallRunsOnAParabolaAndThenRolls) {
   constexpr double mu = 0.2, m = 0.17, r = 0.03, I = 0.4 * m * r * r;
   const Vector<double> v0 = {1.5, 0.2, 0}, w0 = {60, -25, 10}, down_to_contact = {0, 0, -r};
-  const Vector<double> u = v0 + cross(w0, down_to_contact), push = (-mu * weight / norm(u)) * u;
-  const double rolls = 2 * norm(u) / (7 * mu * weight);
+  const Vector<double> u = v0 + cross(w0, down_to_contact), push = (-mu * g / norm(u)) * u;
+  const double rolls = 2 * norm(u) / (7 * mu * g);
   ASSERT_GT(rolls, 0.3);
   ASSERT_GT(norm(cross(u, v0)) / (norm(u) * norm(v0)), 0.3);  // it bends
   for (const IntegratorRow& row : integrator_rows) {
     SpatialWorld<double> world(down(row.integrator));
-    const int ball = body_at(world, {0, 0, r}, v0, m, I, w0);
-    put_on_plane(world, ball, {0, 0, 1}, mu, r);
+    const int body = ball(world, {.x = {0, 0, r}, .v = v0, .w = w0, .mass = m, .inertia = I});
+    put_on_plane(world, body, {0, 0, 1}, mu, r);
     advance(world, 0.3, 0.005);
-    EXPECT_LT(norm(velocity_of(world, ball) - v0 - 0.3 * push), 1e-8) << row.name;
+    EXPECT_LT(norm(velocity_of(world, body) - v0 - 0.3 * push), 1e-8) << row.name;
     const Vector<double> there = 0.3 * v0 + 0.045 * push;
-    EXPECT_LT(norm(place_of(world, ball) - there - Vector<double>{0, 0, r}), row.order == 1 ? 0.01 : 1e-3) << row.name;
+    EXPECT_LT(norm(place_of(world, body) - there - Vector<double>{0, 0, r}), row.order == 1 ? 0.01 : 1e-3) << row.name;
     advance(world, 0.7, 0.005);
-    EXPECT_LT(norm(velocity_of(world, ball) - (v0 - (2.0 / 7) * u)), 1e-7) << row.name;
+    EXPECT_LT(norm(velocity_of(world, body) - (v0 - (2.0 / 7) * u)), 1e-7) << row.name;
     const Vector<double> rolled =
         rolls * v0 + (0.5 * rolls * rolls) * push + (1 - rolls) * (v0 - (2.0 / 7) * u) + Vector<double>{0, 0, r};
-    EXPECT_LT(norm(place_of(world, ball) - rolled), row.order > 2 ? 1e-8 : 0.02) << row.name;
-    EXPECT_NEAR(world.velocity(ball).wz, 10, 1e-9) << row.name;  // a point contact does not brake the spin
+    EXPECT_LT(norm(place_of(world, body) - rolled), row.order > 2 ? 1e-8 : 0.02) << row.name;
+    EXPECT_NEAR(world.velocity(body).wz, 10, 1e-9) << row.name;  // a point contact does not brake the spin
   }
 }
 
@@ -125,8 +102,8 @@ struct Slide {
 // A block on a slope, hit across it, by Runge-Kutta of order 4: dv/dt = g sin(slope) x - mu g cos(slope) v/|v|.
 Slide slide_by_hand(double slope, double mu, Slide s, double duration, int steps) {
   const auto rate = [&](const Slide& q) {
-    const double speed = std::hypot(q.vx, q.vy), brake = mu * weight * std::cos(slope) / speed;
-    return Slide{q.vx, q.vy, weight * std::sin(slope) - brake * q.vx, -brake * q.vy};
+    const double speed = std::hypot(q.vx, q.vy), brake = mu * g * std::cos(slope) / speed;
+    return Slide{q.vx, q.vy, g * std::sin(slope) - brake * q.vx, -brake * q.vy};
   };
   const auto moved = [](const Slide& q, const Slide& k, double h) {
     return Slide{q.x + h * k.x, q.y + h * k.y, q.vx + h * k.vx, q.vy + h * k.vy};
@@ -147,7 +124,7 @@ TEST(Cones, ABlockThatIsHitAcrossTheSlopeTurnsDownIt) {
   for (const IntegratorRow& row : integrator_rows) {
     const auto error_at = [&](double h) {
       SpatialWorld<double> world(down(row.integrator));
-      const int block = body_at(world, {}, {0, v, 0}, 3);
+      const int block = ball(world, {.v = {0, v, 0}, .mass = 3});
       put_on_plane(world, block, normal(slope, 0), mu);
       advance(world, duration, h);
       const Vector<double> there = right.x * steepest(slope, 0) + Vector<double>{0, right.y, 0};
@@ -172,7 +149,7 @@ TEST(Cones, AdaptiveStepsLocateTheEndOfASlideThatTurns) {
     Settings settings = down(integrator);
     settings.local_error = 1e-10;
     SpatialWorld<double> world(settings);
-    const int block = body_at(world, {}, {0, v, 0}, 3);
+    const int block = ball(world, {.v = {0, v, 0}, .mass = 3});
     put_on_plane(world, block, normal(slope, 0), mu);
     advance(world, 2, 0.1);
     const Vector<double> there = reference.x * steepest(slope, 0) + Vector<double>{0, reference.y, 0};
@@ -191,10 +168,12 @@ TEST(Cones, SweepsFindWhatTheDirectSolverFinds) {
       Settings s = down(integrator);
       s.solver = solver;
       SpatialWorld<double> world(s);
-      const int ball = body_at(world, {0, 0, 0.03}, {1.5, 0.2, 0}, 0.17, 0.4 * 0.17 * 9e-4, {60, -25, 10});
-      put_on_plane(world, ball, {0, 0, 1}, 0.2, 0.03);
+      const int body =
+          ball(world,
+               {.x = {0, 0, 0.03}, .v = {1.5, 0.2, 0}, .w = {60, -25, 10}, .mass = 0.17, .inertia = 0.4 * 0.17 * 9e-4});
+      put_on_plane(world, body, {0, 0, 1}, 0.2, 0.03);
       advance(world, 0.3, 0.005);
-      return place_of(world, ball);
+      return place_of(world, body);
     };
     EXPECT_LT(norm(place(Solver::iterative) - place(Solver::direct)), 1e-6);
   }
@@ -204,7 +183,7 @@ TEST(Cones, SweepsFindWhatTheDirectSolverFinds) {
 TEST(Cones, TheBalanceOfATableOnThreeFeetCloses) {
   for (const IntegratorRow& row : integrator_rows) {
     SpatialWorld<double> world(down(row.integrator));
-    const int table = body_at(world, {0, 0, 0.1}, {1, 0.5, 0}, 4, 0.3, {0, 0, 2});
+    const int table = ball(world, {.x = {0, 0, 0.1}, .v = {1, 0.5, 0}, .w = {0, 0, 2}, .mass = 4, .inertia = 0.3});
     for (const double angle : {0.2, 2.3, 4.4})
       world.add_joint({"rough_plane",
                        {table, world.ground()},
@@ -239,7 +218,7 @@ TEST(Cones, PainlevesRodJams) {
   const Vector<double> ahead = {std::cos(way), std::sin(way), 0}, up = {0, 0, 1};
   for (const IntegratorRow& row : integrator_rows) {
     SpatialWorld<double> world(down(row.integrator));
-    const int rod = body_at(world, (-l * c) * ahead + (l * s) * up, v0 * ahead, m, I);
+    const int rod = ball(world, {.x = (-l * c) * ahead + (l * s) * up, .v = v0 * ahead, .mass = m, .inertia = I});
     world.add_joint(
         {"rough_plane",
          {rod, world.ground()},
@@ -262,7 +241,7 @@ TEST(Cones, PainlevesRodJams) {
 TEST(Cones, ARunFromASnapshotHasTheSameBits) {
   for (const IntegratorRow& row : integrator_rows) {
     SpatialWorld<double> world(down(row.integrator));
-    const int block = body_at(world, {}, {}, 3);
+    const int block = ball(world, {.mass = 3});
     put_on_plane(world, block, normal(0.5, 0.7), 0.5);
     advance(world, 0.002, 0.001);
     const Snapshot then = world.snapshot();
@@ -278,20 +257,20 @@ TEST(Cones, ARunFromASnapshotHasTheSameBits) {
 
 // From rest, adaptive steps find the direction in which a push lets a block slip, and how far it comes.
 TEST(Cones, AdaptiveStepsBeginASlip) {
-  constexpr double mu = 0.3, m = 2, push = 1.5 * mu * m * weight, way = 1.1;
+  constexpr double mu = 0.3, m = 2, push = 1.5 * mu * m * g, way = 1.1;
   for (const Integrator integrator : {Integrator::rk4, Integrator::dop853, Integrator::radau5}) {
     Settings settings = down(integrator);
     settings.local_error = 1e-10;
     SpatialWorld<double> world(settings);
-    const int block = body_at(world, {}, {}, m);
+    const int block = ball(world, {.mass = m});
     put_on_plane(world, block, {0, 0, 1}, mu);
     world.set_force(block, {push * std::cos(way), push * std::sin(way), 0, 0, 0, 0});
     advance(world, 1, 0.1);
-    const double far = (push / m - mu * weight) / 2;
+    const double far = (push / m - mu * g) / 2;
     EXPECT_LT(norm(place_of(world, block) - far * Vector<double>{std::cos(way), std::sin(way), 0}), 1e-9);
     EXPECT_EQ(world.step_counts().rescued, 0);
   }
 }
 
 }  // namespace
-}  // namespace cdot::test::cones
+}  // namespace cdot::test::in_space
