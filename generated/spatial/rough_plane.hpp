@@ -2,7 +2,7 @@
 //
 // rough_plane: A ball of a about pa stays above the plane through pb with the normal f.x, both
 //     fixed in b, and rubs on it.
-// Source: Coulomb, Théorie des machines simples, 1785
+// Source: Coulomb, Theorie des machines simples, 1785
 //
 // u = pa - pb
 //

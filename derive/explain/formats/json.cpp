@@ -185,6 +185,7 @@ std::string explanation_json(const Derivation& derivation) {
   for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
     const Coordinate& c = joint.coordinates[i];
     Json out{{"name", c.name}, {"text", c.text}, {"unit", text(c.unit)}};
+    if (c.by_rate) out["kind"] = kind_name(RowKind::velocity);
     add_block(out, infix, derivation.coordinates[i]);
     coordinates.push_back(std::move(out));
   }

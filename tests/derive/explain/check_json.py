@@ -200,7 +200,7 @@ def check(path):
         assert symbol["meaning"] and symbol["unit"], f"{name} is not documented"
     blocks = [Checks(program, data, [r["kind"] for r in data["rows"]], data["joint"])]
     for c in data["coordinates"]:
-        blocks.append(Checks(program, c, ["equality"], data["joint"] + "." + c["name"]))
+        blocks.append(Checks(program, c, [c.get("kind", "equality")], data["joint"] + "." + c["name"]))
     rng = random.Random(7)
     states = [State(program, program.random_state(rng)) for _ in range(3)]
     for block in blocks:
