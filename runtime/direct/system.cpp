@@ -160,13 +160,34 @@ bool System<S>::part_contradicting_rows() {
   return any;
 }
 
+// A bounded row that contradicts a joint's row takes turns with it: free, it makes the joint's row redundant. Of the
+// last two choices, the one that drops fewer rows stays. Uses active_set_, which solve_bounded() writes anew.
+template <class S>
+int System<S>::end_turns() {
+  const int dependent = factor();
+  solve_rows();
+  std::copy(fixed.begin(), fixed.end(), active_set_.begin());
+  if (revise_active_set(true)) return dependent;
+  if (const int other = factor(); other < dependent) {
+    solve_rows();
+    return other;
+  }
+  std::copy(active_set_.begin(), active_set_.end(), fixed.begin());
+  for (int r = 0; r < rows_; ++r)
+    if (fixed[r]) lambda[r] = fixed[r] == at_lower ? lower[r] : upper[r];
+  factor();
+  solve_rows();
+  return dependent;
+}
+
 template <class S>
 int System<S>::find_active_set() {
   // Changing all violating rows at once is fast but may cycle. Changing one at a time, always the last, does not cycle
   // (Murty's rule), unless a motor contradicts a limit.
   const int fast = 10, slow = std::min(2 * rows_, 200);
   int dependent = 0;
-  for (int round = 0; round < fast + slow; ++round) {
+  bool settled = false;
+  for (int round = 0; round < fast + slow && !settled; ++round) {
     dependent = factor();
     solve_rows();
     if (round >= fast && dependent > 0) {
@@ -176,10 +197,10 @@ int System<S>::find_active_set() {
         continue;
       }
     }
-    if (revise_active_set(round >= fast)) break;
-    eased_ |= yields_;
+    settled = revise_active_set(round >= fast);
+    eased_ |= yields_ && !settled;
   }
-  return dependent;
+  return settled || rows_ == 0 ? dependent : end_turns();
 }
 
 // Parts contradicting rows until none is left. eased_: motors yielded, and then a row reached or left a bound.

@@ -175,6 +175,7 @@ class System {
   char bound_for(int row, Real excess, Real tolerance) const;
   bool revise_active_set(bool one_by_one);
   int find_active_set();
+  int end_turns();
   int part_and_settle();
   bool part_contradicting_rows();
   void solve_rows();
