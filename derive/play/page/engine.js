@@ -11,6 +11,8 @@ const engineModule = (async () => {
 const engineSource = URL.createObjectURL(
     new Blob([by('glue').textContent, '\n', by('worker').textContent], {type: 'text/javascript'}));
 
+const replaced = {problems: 'replaced by a newer request', replaced: true};
+
 class Engine {
   #worker = null;
   #waiting = new Map();
@@ -19,15 +21,16 @@ class Engine {
 
   // Resolves to the answer; its `problems` is text for people.
   async ask(request, seconds = 10) {
-    this.#ready ??= this.#begin();
-    await this.#ready;
+    const ready = this.#ready ??= this.#begin();
+    await ready;
+    if (ready !== this.#ready) return replaced;  // this Worker ended meanwhile
     return this.#send({text: JSON.stringify(request)}, seconds);
   }
 
   // Forgets all that the Worker knew.
   restart() {
     this.#worker?.terminate();
-    for (const {done} of this.#waiting.values()) done({problems: 'replaced by a newer request', replaced: true});
+    for (const {done} of this.#waiting.values()) done(replaced);
     this.#waiting.clear();
     this.#worker = this.#ready = null;
   }
