@@ -338,7 +338,7 @@ Verdict Trial<S>::run() {
   independence_ = independence(system_matrix(world), 8 * std::numeric_limits<T>::epsilon());
   middle_ = end_ = world.snapshot();
   Verdict seen = watch(world);
-  seen.roughest = accounts_->roughest(), seen.length = sizes_.length;
+  seen.roughest = accounts_->roughest(), seen.length = sizes_.length, seen.fastest = accounts_->fastest();
   seen.judged_energy = laws_.energy_falls && seen.roughest <= resolved;
   seen.judged_momentum = laws_.momentum();
   if (seen.outcome != Outcome::held || !asked_->bits) return seen;

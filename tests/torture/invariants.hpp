@@ -24,7 +24,8 @@ struct Verdict {
   int step = 0;  // number of the step that showed it
   double roughest =
       0;  // largest relative change of the acceleration in a step; above 0.5 the step does not resolve the motion
-  double length = 1;  // of the mechanism [m]
+  double length = 1;   // of the mechanism [m]
+  double fastest = 0;  // Accounts::fastest() [1/s]
   bool judged_energy = false, judged_momentum = false;
   bool broken() const { return outcome == Outcome::broken; }
 };

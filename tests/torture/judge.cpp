@@ -42,6 +42,9 @@ Verdict judge(const Scene& scene, const Asked& asked) {
   if (as_forces && stiff(scene, finer.step, seen.length))
     return verdict(Outcome::limited, fmt::format("a spring too stiff for a force at any step tried: {}", seen.what), "",
                    seen.value, seen.bound, seen.step);
+  if (finer.step * again.fastest > 2)
+    return verdict(Outcome::limited, fmt::format("no step tried resolves the force of an effect: {}", seen.what), "",
+                   seen.value, seen.bound, seen.step);
   if (judged_by_order(seen.what) && most_turned(finer, without_bits) > turns_round)
     return verdict(Outcome::limited, fmt::format("no step tried resolves how a joint's directions turn: {}", seen.what),
                    "", seen.value, seen.bound, seen.step);

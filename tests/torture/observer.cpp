@@ -108,6 +108,10 @@ void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double en
                     long long taken, double h) {
   const VelocityChange d = change(last_, now);
   pushed_ = std::max(pushed_, constant_ + push_of(springs, substep_));
+  for (const SpringRow& spring : springs_)
+    fastest_ =
+        std::max(fastest_,
+                 std::sqrt(spring.mass * (order_ > 1 ? std::abs(spring.stiffness) : std::max(0.0, -spring.stiffness))));
   const double size = std::sqrt(square(now, d));
   const double done = std::max(size, std::sqrt(square(now, d, turning(last_, step_))));
   const double first_order = done * (done + pushed_) + missed_work(springs_, springs, step_, size);

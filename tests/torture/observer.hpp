@@ -108,8 +108,10 @@ class Accounts {
     const double away = largest_change_ + pushed_;
     return order_error_ + (order_ == 2 ? away * away * (rolls_ ? 7.0 / 24 : 1.0 / 8) : 0);
   }
-  double round_off_energy() const { return round_off_; }   // [J]
-  double roughest() const { return roughest_; }            // the largest change of acceleration in a step, relative
+  double round_off_energy() const { return round_off_; }  // [J]
+  double roughest() const { return roughest_; }           // the largest change of acceleration in a step, relative
+  // [1/s]: the largest rate at which a force turns round or, where springs are implicit, grows as bodies approach.
+  double fastest() const { return fastest_; }
   double momentum_round_off() const { return momentum_; }  // [kg m/s]
   double angular_round_off() const { return angular_; }    // [kg m^2/s]
   double angular_order_error() const { return angular_order_; }
@@ -126,7 +128,7 @@ class Accounts {
   Motion last_;
   std::optional<VelocityChange> change_;
   double rough_before_ = 0, pending_ = 0, largest_change_ = 0, largest_speed_ = 0, largest_energy_ = 0;
-  double order_error_ = 0, round_off_ = 0, roughest_ = 0, momentum_ = 0, angular_ = 0, angular_order_ = 0;
+  double fastest_ = 0, order_error_ = 0, round_off_ = 0, roughest_ = 0, momentum_ = 0, angular_ = 0, angular_order_ = 0;
 };
 
 }  // namespace cdot::torture
