@@ -1,4 +1,4 @@
-// The state of the page. What a person types and drags becomes requests to two engines: one reads and derives, one
+// The state of the page. Texts and drags become requests to two engines: one reads and derives, one
 // moves.
 const reader = new Engine(), mover = new Engine();
 const view = new View();

@@ -50,7 +50,7 @@ struct OneBody {
   Vector<double> spin() const { return {world.velocity(body).wx, world.velocity(body).wy, world.velocity(body).wz}; }
 };
 
-// A block comes onto a belt across it. What it slips against the belt loses mu g t, in one direction, and then it
+// A block comes onto a belt across it. Its velocity against the belt loses mu g t, in one direction, and then it
 // rides.
 TEST(OwnCones, ABeltTakesABlockAlong) {
   constexpr double mu = 0.25, g = 9.81, speed = 1.5;
