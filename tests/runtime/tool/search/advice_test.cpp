@@ -135,6 +135,17 @@ TEST(Balance, LongChainsUnderRattleBySweepsFailAndTheAdviceHolds) {
   }
 }
 
+// Sweeps let a rod slide that jams (Painlevé's paradox): the run says that it made up energy, and the direct solver
+// holds.
+TEST(Balance, AJammingRodThatSlidesBySweepsIsTold) {
+  const std::string file = (source_dir() / "tests/hard_cases/jamming_rod/planar.toml").string();
+  const std::string options = "--integrator rattle --solver iterative --until 0.1";
+  const Ran broken = simulated(file, options);
+  EXPECT_EQ(broken.status, 1);
+  EXPECT_NE(broken.summary["failure"].dump().find("made up"), std::string::npos) << broken.summary["failure"];
+  EXPECT_TRUE(follow(file, options));
+}
+
 // Two pendulums: one hardly moves, the other turns by half a radian in a step of Euler's method.
 TEST(Balance, NamesTheJointOfTheWorstStep) {
   const TemporaryFolder folder;
