@@ -81,6 +81,16 @@ TEST(ErrorEstimate, SeesStepsThatTheMethodDivides) {
   EXPECT_GE(said, 0.15 * is);
 }
 
+// Sweeps without end leave the error of the steps alone: more sweeps would not show it.
+TEST(ErrorEstimate, SeesLongStepsBySweeps) {
+  Scene scene = mechanism("double_pendulum", Integrator::euler, 0.01);
+  scene.settings.solver = Solver::iterative;
+  scene.settings.iterations = 200;
+  const double is = true_error(scene).larger(), said = estimate(scene).share;
+  fmt::print("off by {:.1e}, estimated {:.1e}\n", is, said);
+  EXPECT_GE(said, 0.15 * is);
+}
+
 TEST(ErrorEstimate, OfOwnStepsIsNone) {
   Scene scene = scene_named("compound_pendulum");
   scene.settings.integrator = Integrator::dop853;
