@@ -183,8 +183,7 @@ class MjcfReader : MjcfElements {
       fail(e.GetLineNum(), fmt::format("a joint has no type \"{}\"; one of hinge, slide, ball, free", a.type));
     if (a.type == "ball" || a.type == "free") {
       for (const char* key : {"range", "stiffness", "damping"})
-        if (e.Attribute(key) && number_of_first(e, key) != 0)
-          ++left_out_[fmt::format("the {} of {} joints", key, a.type)];
+        if (e.Attribute(key) && last_number(e, key) != 0) ++left_out_[fmt::format("the {} of {} joints", key, a.type)];
       return a;
     }
     const double unit = turns ? angle_ : 1, zero = unit * number(e, "ref", 0);
@@ -202,7 +201,7 @@ class MjcfReader : MjcfElements {
     zeros_[a.name] = zero;
     return a;
   }
-  double number_of_first(const Element& e, const char* key) const { return list(e, key).back(); }
+  double last_number(const Element& e, const char* key) const { return list(e, key).back(); }
 
   void read_joints(Element& e, const std::string& child_class, int parent, int child) {
     std::vector<Axis> axes;
