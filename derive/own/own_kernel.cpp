@@ -231,6 +231,24 @@ std::vector<OwnParameter> parameters_of(const Kernel& kernel, const Places& plac
   return parameters;
 }
 
+// The runtime counts turns in space; in the plane angles have no end.
+std::vector<OwnTurns> turns_of(const OwnKernel& kernel) {
+  std::vector<OwnTurns> turns;
+  if (kernel.dimension != 3) return turns;
+  for (const OwnBlock& coordinate : kernel.coordinates)
+    for (const OwnParameter& p : kernel.parameters)
+      if (p.unit == "rad" && p.name == coordinate.name + "_turns")
+        turns.push_back({p.offset, coordinate[OwnFunctionName::position]});
+  return turns;
+}
+
+void add_turns(OwnKernel& kernel) {
+  const std::vector<OwnTurns> turns = turns_of(kernel);
+  kernel.rows.turns = turns;
+  for (OwnBlock& variant : kernel.variants) variant.turns = turns;
+  for (OwnBlock& coordinate : kernel.coordinates) coordinate.turns = turns;
+}
+
 OwnKernel tapes_of(const Kernel& kernel) {
   const Joint& joint = kernel.derivation->joint;
   const Places places(joint);
@@ -248,6 +266,7 @@ OwnKernel tapes_of(const Kernel& kernel) {
     OwnBlock& block = own.coordinates.emplace_back(block_of(coordinate, joint, places));
     block.unit = text(std::ranges::find(joint.coordinates, coordinate.name, &Coordinate::name)->unit);
   }
+  add_turns(own);
   return own;
 }
 

@@ -63,6 +63,12 @@ enum class OwnFunctionName {
 };
 inline constexpr int own_functions = 12;
 
+// A parameter <coordinate>_turns of a joint in space: it counts the whole turns of that coordinate.
+struct OwnTurns {
+  int parameter;  // its place among the numbers of the parameters
+  OwnFunction angle;
+};
+
 struct OwnBlock {
   std::string name, unit;  // the unit of a coordinate: "rad"
   std::vector<std::string> row_names;
@@ -71,6 +77,7 @@ struct OwnBlock {
   int jacobian_size = 0;
   int immovable = -1;  // of a variant: the body that stands still
   std::array<OwnFunction, own_functions> functions;
+  std::vector<OwnTurns> turns;  // those of the joint, in the order of its coordinates
 
   int rows() const { return static_cast<int>(row_names.size()); }
   const OwnFunction& operator[](OwnFunctionName name) const { return functions[static_cast<std::size_t>(name)]; }

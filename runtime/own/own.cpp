@@ -143,9 +143,6 @@ std::string obstacle(const OwnKernel& kernel) {
     return fmt::format(
         "its parameters have {} numbers and its Jacobian {}, the most without a compiler are {} and {}. {}",
         kernel.parameter_size(), kernel.rows.jacobian_size, most_own_parameters, most_own_entries, compile);
-  for (const OwnParameter& parameter : kernel.parameters)
-    if (parameter.unit == "rad" && parameter.name.ends_with("_turns"))
-      return fmt::format("its parameter {} counts turns. {}", parameter.name, compile);
   std::string wrong = wrong_rate(kernel);
   if (wrong.empty()) wrong = wrong_law(kernel);
   return wrong.empty() ? wrong : wrong + ". Please report this spec";

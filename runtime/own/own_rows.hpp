@@ -2,10 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <tuple>
 #include <vector>
 
+#include <cdot/detail/turns.hpp>
 #include <cdot/kernel.hpp>
 
 #include "derive/own/own_kernel.hpp"
@@ -66,6 +68,7 @@ class OwnRows {
   };
 
   explicit OwnRows(const void* block) : block_(static_cast<const OwnBlock*>(block)) {}
+  const std::vector<OwnTurns>& turns() const { return block_->turns; }
 
   template <class Pose, class P, class T>
   void position(const Pose (&q)[bodies], const P& p, T time, T (&C)[rows]) const {
@@ -135,6 +138,40 @@ class OwnRows {
   }
 
   const OwnBlock* block_;
+};
+
+// BlockOps::counters has their number.
+template <class S, int bodies, int rows, bool is_angle_>
+struct TurnCounters<S, OwnJoint<bodies>, OwnRows<bodies, rows, is_angle_>> {
+  using T = typename S::Scalar;
+  using Block = OwnRows<bodies, rows, is_angle_>;
+  using Poses = const typename S::Pose[bodies];
+
+  static constexpr bool is_angle() { return is_angle_; }
+  static constexpr int count = is_angle_ ? 1 : 0;
+  static constexpr bool counts_parameters = S::dimension == Dimension::spatial;
+
+  static void count_parameters(const Block& block, Poses& q, T* parameters, T time, T* counters) {
+    for (const OwnTurns& of : block.turns()) {
+      T& counter = *counters++;
+      const T angle = angle_of(of, q, parameters, time), turns = whole_turns(angle, counter);
+      if (!std::isfinite(turns)) continue;
+      parameters[of.parameter] = turns;
+      counter = angle + turns;
+    }
+  }
+  static void count_angle(const Block& block, T& C, T* counters) { add_turns(C, counters[block.turns().size()]); }
+  static void start(const Block& block, Poses& q, const T* parameters, T time, T* counters) {
+    for (const OwnTurns& of : block.turns()) *counters++ = angle_of(of, q, parameters, time) + parameters[of.parameter];
+    if constexpr (is_angle_) *counters = T(0);
+  }
+
+ private:
+  static T angle_of(const OwnTurns& of, Poses& q, const T* parameters, T time) {
+    T angle;
+    run_own<T>(of.angle, {.pose = reinterpret_cast<const T*>(q), .parameters = parameters, .time = &time}, &angle);
+    return angle;
+  }
 };
 
 }  // namespace cdot

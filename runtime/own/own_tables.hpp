@@ -8,7 +8,7 @@
 namespace cdot {
 
 // The largest joint whose loops are compiled in.
-inline constexpr int most_own_bodies = 4, most_own_rows = 6;
+inline constexpr int most_own_bodies = 4, most_own_rows = most_rows;
 
 // Valid for ever, as is `kernel`, of which `block` is a part.
 template <class S>

@@ -38,19 +38,21 @@ struct BlockLoops : BlockSlots<S, Joint, Block> {
   // Immovable variants inherit the joint's functions that do not touch J, and so share their loops.
   using Inherited = std::conditional_t<std::is_base_of_v<Joint, Block>, BlockLoops<S, Joint, Joint>, BlockLoops>;
 
+  static T* first_parameter(Batch<S>& batch, int slot) {
+    return batch.parameters.data() + slot * batch.ops->parameter_size;
+  }
+  static T* counters(Batch<S>& batch, int slot) { return batch.counters.data() + slot * batch.ops->counters; }
   static void count_parameters(Batch<S>& batch, int slot, const Pose (&q)[bodies], T time) {
-    if constexpr (Turns::of_parameters() > 0)
-      Turns::count_parameters(q, batch.parameters.data() + slot * Slots::template numbers<Parameters>(), time,
-                              batch.counters.data() + slot * Turns::count);
+    if constexpr (Turns::counts_parameters)
+      Turns::count_parameters(block_of<Block>(batch), q, first_parameter(batch, slot), time, counters(batch, slot));
   }
   static void count_angle(Batch<S>& batch, int slot, T (&C)[rows]) {
-    if constexpr (Turns::is_angle()) Turns::count_angle(C[0], batch.counters.data() + slot * Turns::count);
+    if constexpr (Turns::is_angle()) Turns::count_angle(block_of<Block>(batch), C[0], counters(batch, slot));
   }
   static void start_counting(Batch<S>& batch, int slot, const Bodies<S>& all, T time) {
     Pose q[bodies];
     gather(all.pose, bodies_of(batch, slot), q);
-    Turns::start(q, batch.parameters.data() + slot * Slots::template numbers<Parameters>(), time,
-                 batch.counters.data() + slot * Turns::count);
+    Turns::start(block_of<Block>(batch), q, first_parameter(batch, slot), time, counters(batch, slot));
   }
 
   // C of a slot as its bodies move and its parameters follow functions of time.
@@ -325,7 +327,7 @@ struct BlockLoops : BlockSlots<S, Joint, Block> {
   }
 
   static constexpr auto starter() -> decltype(BlockOps<S>::start_counting) {
-    if constexpr (Turns::count > 0) return start_counting;
+    if constexpr (Turns::count > 0 || Turns::counts_parameters) return start_counting;
     else return nullptr;
   }
 

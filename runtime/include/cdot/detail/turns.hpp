@@ -22,6 +22,13 @@ T whole_turns(T angle, T last) {
   return turn * std::round((last - angle) / turn);
 }
 
+// An angle, and what its counter held of it last.
+template <class T>
+void add_turns(T& angle, T& counter) {
+  angle += whole_turns(angle, counter);
+  if (std::isfinite(angle)) counter = angle;
+}
+
 // The offset of the parameter that counts the turns of a coordinate; -1: none.
 template <class Joint>
 constexpr int turns_parameter(std::string_view coordinate) {
@@ -36,7 +43,7 @@ constexpr int turns_parameter(std::string_view coordinate) {
 // An angle that is not finite, as in a stage that diverges, counts no turns.
 //
 // Counters of one slot of a row block: first those of the joint's parameters in the order of its coordinates, then, if
-// the block is a coordinate in radians, its own.
+// the block is a coordinate in radians, its own. A block made by a program (kernel.hpp) has a specialisation.
 template <class S, class Joint, class Block>
 struct TurnCounters {
   using T = typename S::Scalar;
@@ -56,9 +63,10 @@ struct TurnCounters {
     return count;
   }
   static constexpr int count = of_parameters() + (is_angle() ? 1 : 0);
+  static constexpr bool counts_parameters = of_parameters() > 0;
 
   // Called before the rows are evaluated.
-  static void count_parameters(Poses& q, T* parameters, T time, T* counters) {
+  static void count_parameters(const Block&, Poses& q, T* parameters, T time, T* counters) {
     each_parameter(
         [&]<class C>(std::type_identity<C>, T* counter) {
           T angle[1];
@@ -71,13 +79,9 @@ struct TurnCounters {
         counters);
   }
   // Called after the rows are evaluated.
-  static void count_angle(T& C, T* counters) {
-    T& counter = counters[of_parameters()];
-    C += whole_turns(C, counter);
-    if (std::isfinite(C)) counter = C;
-  }
+  static void count_angle(const Block&, T& C, T* counters) { add_turns(C, counters[of_parameters()]); }
   // Start values: the turns that the scene gives a parameter, and an angle within half a turn.
-  static void start(Poses& q, const T* parameters, T time, T* counters) {
+  static void start(const Block&, Poses& q, const T* parameters, T time, T* counters) {
     each_parameter(
         [&]<class C>(std::type_identity<C>, T* counter) {
           T angle[1];
