@@ -10,7 +10,7 @@
 namespace cdot::derive {
 namespace {
 
-const Adapter plain = {"PLAIN", adapter_plain};
+const Adapter plain = {"PLAIN", adapter_plain}, rows = {"ROWS", adapter_rows};
 const std::vector<std::string_view> in_rows = {"position", "jacobian", "effective_mass", "factor",
                                                "solve",    "velocity", "dense",          "time_derivative"};
 const std::vector<std::string_view> in_impulses = {"position", "jacobian", "effective_mass", "factor",
@@ -21,10 +21,10 @@ const std::vector<std::string_view> in_accelerations = {"position", "jacobian", 
 // clang-format off
 const std::vector<Engine> table = {
     {"plain",  "no engine: impulses for a loop of your own, in any number type", "plain::Joint<T, BLOCKS>", "template <class T>\n", 0, 0, {plain}, {}},
-    {"bullet", "Bullet 3: a btTypedConstraint",                                  "bullet::Constraint<BLOCKS>", "", 3, 2, {plain, {"BULLET", adapter_bullet}}, in_rows},
+    {"bullet", "Bullet 3: a btTypedConstraint",                                  "bullet::Constraint<BLOCKS>", "", 3, 2, {plain, rows, {"BULLET", adapter_bullet}}, in_rows},
     {"box2d",  "Box2D 2.4: a b2Joint",                                           "box2d::Joint<BLOCKS>", "", 2, 2, {plain, {"BOX2D", adapter_box2d}}, in_impulses},
     {"jolt",   "Jolt 5: a TwoBodyConstraint; built and compared with 5.5, not in every test run", "jolt::Constraint<BLOCKS>", "", 3, 2, {plain, {"JOLT", adapter_jolt}}, in_impulses},
-    {"simbody", "Simbody 3: a Constraint::Custom, for joints without C >= 0",    "simbody::Constraint<KERNEL>", "", 3, 0, {{"SIMBODY", adapter_simbody}}, in_accelerations, false},
+    {"simbody", "Simbody 3: a Constraint::Custom, for joints without C >= 0",    "simbody::Constraint<BLOCKS>", "", 3, 0, {{"SIMBODY", adapter_simbody}}, in_accelerations, false, false},
 };
 constexpr NoEngine without_adapter[] = {
     {"ode",  "ODE makes joints of its own kinds only: the class behind them is not in its headers"},
@@ -104,15 +104,15 @@ std::string command(const Engine& engine, const Joint& joint) {
 std::string class_of(const Engine& engine, const Kernel& kernel) {
   const Joint& joint = kernel.derivation->joint;
   const std::string rows = fmt::format("{}::{}", name_of_space(joint), joint.name);
-  const bool has_drives = engine.base.find("KERNEL") == std::string_view::npos;
   std::string blocks = rows, drives;
-  for (std::size_t i = 0; i < joint.coordinates.size() && has_drives; ++i) {
+  for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
     const Coordinate& c = joint.coordinates[i];
     blocks += fmt::format(", {}::{}::{}", name_of_space(joint), joint.name, c.name);
+    if (!engine.drives) continue;
     drives += fmt::format("\n  // A motor and limits on {} [{}] = {}.\n  auto& {}() {{ return this->drives[{}]; }}\n",
                           c.name, derive::text(c.unit), c.text, c.name, i);
   }
-  const std::string base = replaced(replaced(std::string(engine.base), "BLOCKS", blocks), "KERNEL", rows);
+  const std::string base = replaced(std::string(engine.base), "BLOCKS", blocks);
   const std::string name = base.substr(base.find("::") + 2, base.find('<') - base.find("::") - 2);
   return fmt::format(
       "namespace cdot::{} {{\n\n// {}\n{}class {}_joint : public {} {{\n public:\n  using {}::{};\n{}}};\n\n"
@@ -141,8 +141,9 @@ std::string objection(const Engine& engine, const Joint& joint) {
   if (!engine.bounds && std::ranges::any_of(joint.rows, [](const Row& r) { return r.kind == RowKind::inequality; }))
     return "it has a row C >= 0, and the engine's constraints are equations. Likely fix: --for plain";
   for (const Parameter& p : joint.parameters) {
-    if (p.name.ends_with("_turns"))
-      return fmt::format("its parameter {} counts whole turns, which no adapter does yet", p.name);
+    if (!engine.drives && p.name.ends_with("_turns"))
+      return fmt::format("its parameter {} counts whole turns, which the adapter does not. Likely fix: --for plain",
+                         p.name);
   }
   return "";
 }

@@ -25,6 +25,7 @@ struct Engine {
   std::vector<Adapter> adapters{};            // each after those that it uses
   std::vector<std::string_view> functions{};  // of the contract; none: all
   bool bounds = true;                         // it has rows C >= 0
+  bool drives = true;                         // motors and limits are the adapter's
 };
 
 // An engine that people ask for and that has no adapter.

@@ -225,10 +225,24 @@ class KernelWriter {
     line("static constexpr " + text + " name = " + literal(coordinate.name) + ";", 2);
     line("static constexpr " + text + " unit = " + literal(derive::text(found->unit)) + ";", 2);
     const bool wraps = joint_.dimension == 3 && derive::text(found->unit) == "rad";
-    if (alone_) line(fmt::format("static constexpr bool wraps = {};  // within (-pi, pi]", wraps), 2);
+    if (alone_) {
+      line(fmt::format("static constexpr bool wraps = {};  // within (-pi, pi]", wraps), 2);
+      turns_alone(coordinate.name);
+    }
     block(coordinate, nullptr, 2);
     tuple("Immovable", coordinate.variants, 2);
     line("};", 1);
+  }
+
+  // Where the rows count the whole turns of a coordinate.
+  void turns_alone(const std::string& coordinate) {
+    const bool counted = std::any_of(joint_.parameters.begin(), joint_.parameters.end(), [&](const Parameter& p) {
+      return p.name == coordinate + "_turns" && derive::text(p.unit) == "rad";
+    });
+    line("template <class T>", 2);
+    line(counted ? fmt::format("static T* turns(Parameters<T>& p) {{ return &p.{}_turns; }}", coordinate)
+                 : "static T* turns(Parameters<T>&) { return nullptr; }",
+         2);
   }
 
   void write_on_coordinate(const OnCoordinate& on) {

@@ -12,6 +12,7 @@
 #include <cdot/kernel.hpp>
 
 #include "runtime/engines/plain.hpp"
+#include "runtime/engines/rows.hpp"
 
 namespace cdot::bullet {
 
@@ -28,44 +29,45 @@ inline spatial::InverseMass<btScalar> inverse_mass_of(const btRigidBody& body) {
   return {body.getInvMass(), I[0][0], I[1][1], I[2][2], I[0][1], I[0][2], I[1][2]};
 }
 
+// With `parameters`, `stiffness`, `time` and `drives` of rows::Joint.
 template <class Block, class... Coordinates>
-class Constraint : public btTypedConstraint {
+class Constraint : public btTypedConstraint, public rows::Joint<btScalar, Block, Coordinates...> {
   static_assert(Block::bodies <= 2, "a constraint of Bullet joins two bodies");
+  using Joint = rows::Joint<btScalar, Block, Coordinates...>;
+  using Row = rows::Row<btScalar, Block::bodies>;
 
  public:
-  using Parameters = typename Block::template Parameters<btScalar>;
-
-  Parameters parameters;
-  plain::Stiffness<btScalar> stiffness;  // hertz: above 0 instead of ERP and CFM
-  btScalar time = 0;                     // yours to set before a step, where C depends on time
-  plain::Drive<btScalar> drives[sizeof...(Coordinates) + 1];
+  using Parameters = typename Joint::Parameters;
 
   explicit Constraint(btRigidBody& a, const Parameters& p) : Constraint(a, getFixedBody(), p) {
     static_assert(Block::bodies == 1, "this joint joins two bodies; btTypedConstraint::getFixedBody() is the world");
   }
   Constraint(btRigidBody& a, btRigidBody& b, const Parameters& p)
-      : btTypedConstraint(MAX_CONSTRAINT_TYPE, a, b), parameters(p) {}
+      : btTypedConstraint(MAX_CONSTRAINT_TYPE, a, b), Joint(p) {}
 
   // Sets parameter number `first` (Block::index_of_pb) and those after it to their defaults at the present poses.
-  void by_default(int first) {
-    const auto q = bodies(&pose_of);
-    for (int i = first; i < Block::index_end; ++i) Block::default_value(i, q.of, parameters, time);
-  }
+  void by_default(int first) { Joint::by_default(first, bodies_as(&pose_of).of); }
 
   void getInfo1(btConstraintInfo1* info) override {
-    info->m_numConstraintRows = Block::rows;
-    for (int i = 0; i < int(sizeof...(Coordinates)); ++i) {
-      const plain::Drive<btScalar>& d = drives[i];
-      info->m_numConstraintRows += d.has_motor() + is_limit(d.lower) + is_limit(d.upper);
-    }
+    info->m_numConstraintRows = this->count();
     info->nub = 0;
   }
 
   void getInfo2(btConstraintInfo2* info) override {
+    const btScalar h = 1 / info->fps, erp = erp_ >= 0 ? erp_ : info->erp;
+    const auto q = bodies_as(&pose_of);
+    this->count_turns(q.of);
     int next = 0;
-    write_rows(*info, next);
-    int i = 0;
-    (write_drive<Coordinates>(*info, i++, next), ...);
+    this->write_rows(q.of, h, erp, [&](const Row& row) {
+      write(*info, next, row);
+      if (this->is_soft()) info->cfm[next * info->rowskip] = row.softness;
+      else if (cfm_ >= 0) info->cfm[next * info->rowskip] = cfm_;
+      ++next;
+    });
+    const btScalar softness = plain::row_step(this->stiffness, h).softness;
+    if (this->is_soft() && softness > btScalar(0.5)) write_impulses(*info, q.of, softness, h);
+    for (int i = 0; i < Joint::coordinates; ++i)  // `erp` as for its own stops
+      this->write_drive(i, q.of, h, erp, [&](const Row& row) { write(*info, next++, row); });
   }
 
   // BT_CONSTRAINT_ERP and BT_CONSTRAINT_CFM of all rows; the axis is ignored.
@@ -78,119 +80,62 @@ class Constraint : public btTypedConstraint {
   }
 
  private:
-  static bool is_limit(btScalar bound) { return btFabs(bound) < btScalar(HUGE_VAL); }
-
-  // The bodies of the kernel: a, b.
+  // Of the bodies of the kernel: a, b.
   template <class Of>
   struct Bodies {
     Of of[Block::bodies];
   };
-  template <class Of>
-  Bodies<Of> bodies(Of (*get)(const btRigidBody&)) const {
+  template <class Get>
+  auto bodies_as(Get get) const -> Bodies<decltype(get(m_rbA))> {
     if constexpr (Block::bodies == 1) return {{get(m_rbA)}};
     else return {{get(m_rbA), get(m_rbB)}};
   }
-  // With what forces do to them in this step: what the rows have to answer.
-  Bodies<spatial::Velocity<btScalar>> velocities(btScalar h) const {
-    const auto of = [h](const btRigidBody& body) {
-      return velocity_of(body.getLinearVelocity() + body.getTotalForce() * body.getInvMass() * h,
-                         body.getAngularVelocity() + body.getInvInertiaTensorWorld() * body.getTotalTorque() * h);
-    };
-    if constexpr (Block::bodies == 1) return {{of(m_rbA)}};
-    else return {{of(m_rbA), of(m_rbB)}};
-  }
 
-  template <class Entries>
-  static void write_jacobian(btConstraintInfo2& info, int row, const Entries& D, btScalar sign = 1) {
+  static void write(btConstraintInfo2& info, int number, const Row& row) {
+    const int at = number * info.rowskip;
     for (int k = 0; k < 3; ++k) {
-      info.m_J1linearAxis[row * info.rowskip + k] = sign * D[k];
-      info.m_J1angularAxis[row * info.rowskip + k] = sign * D[3 + k];
+      info.m_J1linearAxis[at + k] = row.J[k];
+      info.m_J1angularAxis[at + k] = row.J[3 + k];
       if constexpr (Block::bodies == 2) {
-        info.m_J2linearAxis[row * info.rowskip + k] = sign * D[6 + k];
-        info.m_J2angularAxis[row * info.rowskip + k] = sign * D[9 + k];
+        info.m_J2linearAxis[at + k] = row.J[6 + k];
+        info.m_J2angularAxis[at + k] = row.J[9 + k];
       }
     }
-  }
-  // The velocity J v that a row asks for, and the bounds of its impulse.
-  static void write_aim(btConstraintInfo2& info, int row, btScalar aim, btScalar lower, btScalar upper) {
-    info.m_constraintError[row * info.rowskip] = aim;
-    info.m_lowerLimit[row * info.rowskip] = lower;
-    info.m_upperLimit[row * info.rowskip] = upper;
-  }
-
-  void write_rows(btConstraintInfo2& info, int& next) {
-    constexpr int n = Block::rows;
-    const btScalar h = 1 / info.fps;
-    const auto q = bodies(&pose_of);
-    typename Block::template Jacobian<btScalar> J;
-    btScalar C[n], bias[n], D[n][6 * Block::bodies];
-    Block::jacobian(q.of, parameters, time, C, J);
-    Block::time_derivative(q.of, parameters, time, bias);
-    Block::dense(J, D);
-    const bool soft = stiffness.hertz > 0;
-    plain::RowStep<btScalar> step = plain::row_step(stiffness, h);
-    if (!soft) step = {erp_ >= 0 ? erp_ : info.erp, 0};
-    for (int i = 0; i < n; ++i, ++next) {
-      const bool bound = Block::row_kinds[i] == RowKind::inequality;
-      bias[i] += bound ? plain::bias_of_bound(C[i], step.reduction, h) : C[i] * step.reduction / h;
-      write_jacobian(info, next, D[i]);
-      write_aim(info, next, -bias[i], bound ? 0 : -SIMD_INFINITY, SIMD_INFINITY);
-      if (soft) info.cfm[next * info.rowskip] = step.softness;
-      else if (cfm_ >= 0) info.cfm[next * info.rowskip] = cfm_;
-    }
-    if (soft && step.softness > btScalar(0.5)) write_impulses(info, next - n, J, bias, step.softness, h);
+    info.m_constraintError[at] = row.aim;
+    info.m_lowerLimit[at] = plain::larger(row.least, -SIMD_INFINITY);
+    info.m_upperLimit[at] = -plain::larger(-row.most, -SIMD_INFINITY);
   }
 
   // Bullet's sweeps add rhs - cfm lambda, which diverges for cfm > 1. Rows that are so soft get the impulse of an
   // implicit spring, (K + softness diag K) lambda = -(J v + bias), as both of their bounds.
-  void write_impulses(btConstraintInfo2& info, int first, const typename Block::template Jacobian<btScalar>& J,
-                      const btScalar (&bias)[Block::rows], btScalar softness, btScalar h) {
+  void write_impulses(btConstraintInfo2& info, const spatial::Pose<btScalar> (&q)[Block::bodies], btScalar softness,
+                      btScalar h) const {
     constexpr int n = Block::rows;
-    btScalar K[n * (n + 1) / 2], F[n * (n + 1) / 2], b[n], lambda[n];
-    const auto m = bodies(&inverse_mass_of);
-    const auto v = velocities(h);
-    Block::effective_mass(J, m.of, K);
+    typename Block::template Jacobian<btScalar> J;
+    btScalar C[n], K[n * (n + 1) / 2], F[n * (n + 1) / 2], b[n], lambda[n];
+    Block::jacobian(q, this->parameters, this->time, C, J);
+    Block::effective_mass(J, bodies_as(&inverse_mass_of).of, K);
     for (int i = 0; i < n; ++i) K[plain::diagonal(i)] *= 1 + softness;
     Block::factor(K, F);
-    Block::velocity(J, v.of, b);
-    for (int i = 0; i < n; ++i) b[i] = -(b[i] + bias[i]);
+    // Velocities with what forces do to them in this step: what the rows have to answer.
+    Block::velocity(J, bodies_as([h](const btRigidBody& body) {
+                         return velocity_of(
+                             body.getLinearVelocity() + body.getTotalForce() * body.getInvMass() * h,
+                             body.getAngularVelocity() + body.getInvInertiaTensorWorld() * body.getTotalTorque() * h);
+                       }).of,
+                    b);
+    for (int i = 0; i < n; ++i) b[i] = info.m_constraintError[i * info.rowskip] - b[i];
     Block::solve(F, b, lambda);
     for (int i = 0; i < n; ++i) {
       if (Block::row_kinds[i] == RowKind::inequality) lambda[i] = plain::larger(lambda[i], btScalar(0));
       const btScalar pull = lambda[i] < 0 ? -1 : 1;  // a velocity out of reach, so that the bound decides
-      write_aim(info, first + i, pull * btScalar(1e6), lambda[i], lambda[i]);
-      info.cfm[(first + i) * info.rowskip] = 0;
+      info.m_constraintError[i * info.rowskip] = pull * btScalar(1e6);
+      info.m_lowerLimit[i * info.rowskip] = info.m_upperLimit[i * info.rowskip] = lambda[i];
+      info.cfm[i * info.rowskip] = 0;
     }
   }
 
-  template <class Coordinate>
-  void write_drive(btConstraintInfo2& info, int i, int& next) {
-    const plain::Drive<btScalar>& drive = drives[i];
-    const btScalar h = 1 / info.fps;
-    const auto q = bodies(&pose_of);
-    typename Coordinate::template Jacobian<btScalar> J;
-    btScalar C[1], rate[1], D[1][6 * Block::bodies];
-    Coordinate::jacobian(q.of, parameters, time, C, J);
-    Coordinate::time_derivative(q.of, parameters, time, rate);
-    Coordinate::dense(J, D);
-    values_[i] = plain::with_turns<Coordinate>(C[0], values_[i]);
-    const btScalar erp = erp_ >= 0 ? erp_ : info.erp;  // as for its own stops
-    if (drive.has_motor()) {
-      write_jacobian(info, next, D[0]);
-      write_aim(info, next++, drive.speed - rate[0], -drive.most * h, drive.most * h);
-    }
-    if (is_limit(drive.lower)) {
-      write_jacobian(info, next, D[0]);
-      write_aim(info, next++, -rate[0] - plain::bias_of_bound(values_[i] - drive.lower, erp, h), 0, SIMD_INFINITY);
-    }
-    if (is_limit(drive.upper)) {
-      write_jacobian(info, next, D[0], -1);
-      write_aim(info, next++, rate[0] - plain::bias_of_bound(drive.upper - values_[i], erp, h), 0, SIMD_INFINITY);
-    }
-  }
-
-  btScalar values_[sizeof...(Coordinates) + 1] = {};  // of the coordinates in the last step
-  btScalar erp_ = -1, cfm_ = -1;                      // negative: the solver's
+  btScalar erp_ = -1, cfm_ = -1;  // negative: the solver's
 };
 
 }  // namespace cdot::bullet

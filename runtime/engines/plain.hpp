@@ -41,12 +41,39 @@ T bias_of_bound(T C, T reduction, T h) {
   return C * (C > T(0) ? T(1) : reduction) / h;
 }
 
-// C, or, for an angle within (-pi, pi], the one nearest to `last` among those that differ from it by whole turns.
+// The whole turns that bring an angle C within (-pi, pi] nearest to `last`.
 template <class Coordinate, class T>
-T with_turns(T C, T last) {
+T whole_turns(T C, T last) {
   constexpr T turn = T(6.28318530717958648);
-  return Coordinate::wraps ? C + turn * std::round((last - C) / turn) : C;
+  return Coordinate::wraps ? turn * std::round((last - C) / turn) : T(0);
 }
+
+// Rows that read an angle beyond half a turn have a parameter for its whole turns. The two together never jump: the
+// angle turns by less than half a turn from one count to the next. The first count keeps the turns that it finds.
+template <class T, class... Coordinates>
+class Turns {
+ public:
+  template <class Poses, class Parameters>
+  void count([[maybe_unused]] const Poses& q, [[maybe_unused]] Parameters& p, [[maybe_unused]] T time) {
+    [[maybe_unused]] int i = 0;
+    (count_one<Coordinates>(q, p, time, last_[i++]), ...);
+    started_ = true;
+  }
+
+ private:
+  template <class Coordinate, class Poses, class Parameters>
+  void count_one(const Poses& q, Parameters& p, T time, T& last) {
+    T* turns = Coordinate::turns(p);
+    if (turns == nullptr) return;
+    T C[1];
+    Coordinate::position(q, p, time, C);
+    if (started_) *turns = whole_turns<Coordinate>(C[0], last);
+    last = C[0] + *turns;
+  }
+
+  bool started_ = false;
+  T last_[sizeof...(Coordinates) + 1] = {};
+};
 
 template <class T>
 T larger(T a, T b) {
@@ -164,7 +191,7 @@ class DriveRows {
     Block::jacobian(q, p, time, C, J_);
     Block::time_derivative(q, p, time, rate_);
     Block::effective_mass(J_, m, K);
-    value_ = with_turns<Block>(C[0], value_);
+    value_ = C[0] + whole_turns<Block>(C[0], value_);
     inverse_K_ = pivot(K[0], K[0]);
     motor *= ratio, lower *= ratio, upper *= ratio;
     speed_ = drive.speed;
@@ -293,6 +320,7 @@ class Joint {
   void prepare(const Pose (&q)[bodies], const Mass (&m)[bodies], T time, T h) {
     const T ratio = h * inverse(h_ > T(0) ? h_ : h);
     h_ = h;
+    turns_.count(q, parameters, time);
     rows_.prepare(q, m, parameters, time, h, ratio, stiffness);
     int i = 0;
     drive_rows_.each([&](auto& row) { row.prepare(q, m, parameters, time, h, ratio, drives[i++]); });
@@ -323,6 +351,7 @@ class Joint {
   template <class Pose, class Mass, class Velocity>
   T correct(const Pose (&q)[bodies], const Mass (&m)[bodies], T time, T share, Velocity (&shift)[bodies]) {
     if (stiffness.hertz > T(0)) return T(0);
+    turns_.count(q, parameters, time);
     return rows_.project(q, m, parameters, time, share, shift);
   }
 
@@ -343,6 +372,7 @@ class Joint {
   T h_ = T(0);  // of the last step
   Rows<Block, T> rows_;
   AllDriveRows<T, Coordinates...> drive_rows_;
+  Turns<T, Coordinates...> turns_;
 };
 
 }  // namespace cdot::plain

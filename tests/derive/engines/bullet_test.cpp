@@ -7,6 +7,7 @@
 #include "bullet/constant_velocity.hpp"
 #include "bullet/distance.hpp"
 #include "bullet/driven.hpp"
+#include "bullet/gear.hpp"
 #include "bullet/hinge.hpp"
 #include "bullet/max_distance.hpp"
 
@@ -210,6 +211,28 @@ TEST_F(BulletJoints, ABoundOnlyPulls) {
   run(0.75, 1e-3);
   EXPECT_NEAR(b.getCenterOfMassPosition().z(), -1, 1e-3);
   EXPECT_NEAR(b.getLinearVelocity().z(), 0, 1e-6);
+}
+
+// A bevel gear, driven through many turns: a about x, b about y.
+TEST_F(BulletJoints, AGearCountsWholeTurns) {
+  world_.setGravity({0, 0, 0});
+  btRigidBody &a = body({0, 0, 0}), &b = body({0, 0, 0});
+  bullet::gear_joint::Parameters p{};
+  for (double* frame : {&p.fa_x_x, &p.ga_x_x}) frame[0] = frame[4] = frame[8] = 1;
+  for (double* frame : {&p.fb_x_x, &p.gb_x_x}) frame[1] = frame[5] = frame[6] = 1;
+  p.ratio = 1.3;
+  auto& gear = add<bullet::gear_joint>(a, b, p);
+  gear.by_default(spatial::gear::index_of_angle_a_turns);
+  gear.angle_a().speed = 12;
+  gear.angle_a().most = 1;
+  double worst = 0;
+  for (int n = 0; n < 1200; ++n) {
+    run(0.01, 0.01);
+    worst = std::max(worst, std::fabs(a.getAngularVelocity().x() + 1.3 * b.getAngularVelocity().y()));
+  }
+  EXPECT_NEAR(a.getAngularVelocity().x(), 12, 1e-6);
+  EXPECT_GT(gear.parameters.angle_a_turns, 100);
+  EXPECT_LT(worst, 1e-6);
 }
 
 // A row that depends on time, and Bullet's own words: breaking, feedback, CFM.

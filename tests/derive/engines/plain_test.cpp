@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "plain/gear.hpp"
 #include "plain/gear_on_base.hpp"
 #include "plain/hinge.hpp"
 #include "plain/revolute.hpp"
@@ -134,6 +135,36 @@ TEST(PlainJoints, AGearOfThreeBodiesKeepsItsRatio) {
   planar::gear_on_base::velocity(J, v, C_dot);
   EXPECT_NEAR(C_dot[0], 0, 1e-12);
   EXPECT_NEAR(v[0].w / 2 + v[1].w / 3 + v[2].w / 5, 1. / 2 + 0.5 / 5, 1e-12) << "inner torques leave the spin";
+}
+
+// A bevel gear: a turns about x, b about y, both more than ten times.
+TEST(PlainJoints, AGearInSpaceCountsWholeTurns) {
+  plain::gear_joint<double> gear;
+  auto& p = gear.parameters;
+  for (double* frame : {&p.fa_x_x, &p.ga_x_x}) frame[0] = frame[4] = frame[8] = 1;
+  for (double* frame : {&p.fb_x_x, &p.gb_x_x}) frame[1] = frame[5] = frame[6] = 1;
+  p.ratio = 1.3;
+  spatial::Pose<double> q[2] = {plain::pose(0., 0., 0., 1., 0., 0., 0.), plain::pose(0., 0., 0., 1., 0., 0., 0.)};
+  const spatial::InverseMass<double> m[2] = {{1, 2, 2, 2, 0, 0, 0}, {1, 3, 3, 3, 0, 0, 0}};
+  spatial::Velocity<double> v[2] = {{0, 0, 0, 9, 0, 0}, {}};
+  gear.by_default(spatial::gear::index_of_angle_a_turns, q, 0);
+  gear.angle_a() = {12, 0.5};  // 1 rad/s^2 of a alone
+  double a = 0, b = 0;
+  const double h = 1e-2;
+  for (int n = 0; n < 1200; ++n) {
+    gear.prepare(q, m, n * h, h);
+    gear.warm_start(m, v);
+    for (int sweep = 0; sweep < 8; ++sweep) gear.solve(m, v);
+    for (int i = 0; i < 2; ++i) plain::move(q[i], v[i], h);
+    EXPECT_LT(gear.project(q, m, n * h), 1e-4) << n;
+    a += std::remainder(2 * std::atan2(q[0].e1, q[0].e0) - a, 2 * pi);
+    b += std::remainder(2 * std::atan2(q[1].e2, q[1].e0) - b, 2 * pi);
+  }
+  EXPECT_GT(a, 100);
+  EXPECT_NEAR(a + 1.3 * b, 0, 1e-9);
+  EXPECT_NEAR(v[0].wx, 12, 1e-6);
+  EXPECT_NEAR(v[0].wx + 1.3 * v[1].wy, 0, 1e-6);
+  EXPECT_NEAR(p.angle_a_turns, 2 * pi * std::round(a / (2 * pi)), 1e-9);
 }
 
 // An emitted kernel and the one in generated/ at one pose: the same bits.
