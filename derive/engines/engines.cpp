@@ -25,10 +25,10 @@ const std::vector<Engine> table = {
     {"box2d",  "Box2D 2.4: a b2Joint",                                           "box2d::Joint<BLOCKS>", "", 2, 2, {plain, {"BOX2D", adapter_box2d}}, in_impulses},
     {"jolt",   "Jolt 5: a TwoBodyConstraint; built and compared with 5.5, not in every test run", "jolt::Constraint<BLOCKS>", "", 3, 2, {plain, {"JOLT", adapter_jolt}}, in_impulses},
     {"simbody", "Simbody 3: a Constraint::Custom, for joints without C >= 0",    "simbody::Constraint<BLOCKS>", "", 3, 0, {{"SIMBODY", adapter_simbody}}, in_accelerations, false, false},
+    {"dart",    "DART 6: a ConstraintBase",                                      "dart::Constraint<BLOCKS>", "", 3, 0, {plain, rows, {"DART", adapter_dart}}, in_rows},
 };
 constexpr NoEngine without_adapter[] = {
     {"ode",  "ODE makes joints of its own kinds only: the class behind them is not in its headers"},
-    {"dart", "no adapter was ever compiled beside DART here. --for plain has what dart::constraint::ConstraintBase asks for"},
 };
 // clang-format on
 
