@@ -36,6 +36,21 @@ json motors_of(const SceneJoint& joint) {
   return motors;
 }
 
+const char* law_name(const Motor&) { return "motor"; }
+const char* law_name(const Limit&) { return "limit"; }
+const char* law_name(const CoordinateSpring&) { return "spring"; }
+const char* law_name(const DryFriction&) { return "friction"; }
+const char* law_name(const Load&) { return "load"; }
+const std::string& law_name(const SpecEffect& effect) { return effect.type; }
+
+// The specs in specs/coordinate, or own ones, behind the effects on its coordinates.
+json laws_of(const SceneJoint& joint) {
+  json laws = json::array();
+  for (const CoordinateEffects& effects : joint.effects)
+    effects.each([&](const auto& effect) { laws.push_back(law_name(effect)); });
+  return laws;
+}
+
 template <class S>
 json joint_json(const SceneJoint& joint, const BasicWorld<S>& world, int number) {
   const JointType& type = world.joint_type(number);
@@ -56,7 +71,8 @@ json joint_json(const SceneJoint& joint, const BasicWorld<S>& world, int number)
           {"bodies", joint.definition.bodies},
           {"parameters", parameters},
           {"coordinates", coordinates},
-          {"motors", motors_of(joint)}};
+          {"motors", motors_of(joint)},
+          {"laws", laws_of(joint)}};
 }
 
 json spring_json(const SpringDefinition& s) {

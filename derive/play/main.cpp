@@ -1,9 +1,16 @@
 // `cdot-play`: the command `play` of `cdot`, in a program of its own: a scene -> a page where it moves.
+#include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <fmt/format.h>
+#include <memory>
+#include <spawn.h>
+#include <thread>
+#include <unistd.h>
 
 #include "derive/play/page.hpp"
+#include "derive/play/serve.hpp"
 #include "runtime/command_line/command_line.hpp"
 #include "runtime/command_line/installation.hpp"
 #include "runtime/command_line/waiting.hpp"
@@ -20,7 +27,9 @@ using command_line::Line;
 using command_line::Run;
 
 struct Options {
-  std::string start, output = "playground.html", specs = "specs", engine;
+  std::string start, output, specs = "specs", engine;
+  int port = 8060;
+  bool no_browser = false;
 };
 
 // Where the build, or an installation, keeps the engine.
@@ -30,8 +39,7 @@ fs::path engine_of(const Options& options) {
   return command_line::own_folder().parent_path() / "playground";
 }
 
-int run(const Options& options) {
-  const std::string start = options.start.empty() ? "" : file_of_scene(options.start);
+int write_page(const Options& options, const std::string& start) {
   const std::string page = [&] {
     const command_line::Waiting waiting("cdot play");
     const text::Stage stage("deriving what the page begins with");
@@ -42,12 +50,54 @@ int run(const Options& options) {
   return 0;
 }
 
+// By the desktop's own choice, where there is a desktop.
+void open_in_browser(std::string address) {
+  if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
+  std::string program = "xdg-open";
+  char* const arguments[] = {program.data(), address.data(), nullptr};
+  pid_t child;
+  posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ);
+}
+
+int serve_page(const Options& options, const std::string& start) {
+  // This thread and those that follow leave the signals to the one that waits for them.
+  sigset_t ends;
+  sigemptyset(&ends), sigaddset(&ends, SIGINT), sigaddset(&ends, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &ends, nullptr);
+  const auto server = [&] {
+    const command_line::Waiting waiting("cdot play");
+    const text::Stage stage("deriving what the page begins with");
+    return std::make_unique<PageServer>(start, options.specs, engine_of(options), options.port);
+  }();
+  fmt::print("{}\nThe page follows {} on disk. Ctrl-C ends it; -o FILE writes a page that needs no server.\n",
+             server->address(), start.empty() ? "the specs" : start);
+  std::fflush(stdout);
+  if (!options.no_browser) open_in_browser(server->address());
+  std::thread waits([&] {
+    int signal;
+    sigwait(&ends, &signal);
+    server->stop();
+  });
+  server->run();
+  waits.join();
+  return 0;
+}
+
+int run(const Options& options) {
+  const std::string start = options.start.empty() ? "" : file_of_scene(options.start);
+  return options.output.empty() ? serve_page(options, start) : write_page(options, start);
+}
+
 void add_options(Line& line, Options& options) {
   line.add(
       "SCENE|SPEC", &options.start,
       "To begin with: a scene, by its file or its name in specs/scenes; or a .joint or .effect file, in a first scene "
       "for it");
-  line.add("-o,--output", &options.output, "The page: one file that needs no server").shown_as("FILE").shows_default();
+  line.add("-o,--output", &options.output, "Write the page instead of serving it: one file that needs no server")
+      .shown_as("FILE");
+  line.add("--port", &options.port, "Where the page is served on 127.0.0.1; if it is taken, or 0, any that is free")
+      .shows_default();
+  line.add("--no-browser", &options.no_browser, "Do not open the page in the desktop's browser");
   line.add("--engine", &options.engine, "Folder of engine.js and engine.wasm, which the target `playground` builds")
       .shown_as("DIR");
   line.add("--specs", &options.specs, "Folder of specs").shown_as("DIR").shows_default();
@@ -56,7 +106,7 @@ void add_options(Line& line, Options& options) {
 Run play_command(Line& line) { return command_line::with_options<Options>(line, add_options, run); }
 
 constexpr command_line::Command commands[] = {
-    {"play", "Write a page where equation, derivation and moving mechanism are live", play_command}};
+    {"play", "Open a page where equation, derivation and moving mechanism are live", play_command}};
 constexpr command_line::Program program = {
     "cdot", "Equation, derivation and moving mechanism on one page, which computes in the browser",
     "Exit status: 0 all well; 2 bad usage or input, or the engine is not built."};

@@ -62,12 +62,30 @@ json example(const fs::path& file) {
   return {{"title", title.empty() ? file.stem().string() : title}, {"scene", scene}, {"specs", specs}};
 }
 
+// To begin a spec of one's own with.
+json blank(const fs::path& spec) {
+  std::smatch header;
+  const std::string text = read_file(spec.string());
+  std::regex_search(text, header, std::regex("(joint|effect) \\w+ (planar|spatial|coordinate)"));
+  json begun = example(spec);
+  begun["title"] = fmt::format("new {}, {}", header[1].str(),
+                               header[2] == "coordinate" ? "on a coordinate"
+                               : header[2] == "spatial"  ? "in space"
+                                                         : "in the plane");
+  return begun;
+}
+
 constexpr std::size_t longest_scene = 40000;  // bytes of an example
 
 // The page opens with the scene asked for, or with one that has much to see.
+fs::path first_file(const std::string& start, const fs::path& specs) {
+  return start.empty() ? specs / "scenes" / "machine.toml" : fs::path(start);
+}
+
 json gallery(const std::string& start, const fs::path& specs) {
-  const fs::path first = start.empty() ? specs / "scenes" / "machine.toml" : fs::path(start);
+  const fs::path first = first_file(start, specs);
   json all = json::array({example(first)});
+  for (const fs::path& spec : files_in(specs / "scenes" / "new", {".joint", ".effect"})) all.push_back(blank(spec));
   for (const char* folder : {"scenes/gallery", "scenes", "scenes/spatial"})
     for (const fs::path& scene : files_in(specs / folder, {".toml"}))
       if (fs::file_size(scene) < longest_scene && !fs::equivalent(scene, first)) all.push_back(example(scene));
@@ -109,6 +127,8 @@ std::string filled(std::string_view page, const std::vector<std::pair<std::strin
 }
 
 }  // namespace
+
+json first_example(const std::string& start, const fs::path& specs) { return example(first_file(start, specs)); }
 
 std::string playground_page(const std::string& start, const fs::path& specs, const fs::path& engine) {
   for (const char* part : {"engine.js", "engine.wasm"})

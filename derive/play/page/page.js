@@ -23,9 +23,9 @@ function begin(loaded) {
   scene = loaded, hand = grabbed = null, chosen = -1;
   hint(scene.title);
   view.show(scene);
-  const before = by('joints').value, types = [...new Set(scene.joints.map(joint => joint.type))];
-  by('joints').replaceChildren(...types.map(type => new Option(type, type)));
-  by('joints').value = types.includes(before) ? before : types.find(type => texts.specs[own(type) + '.joint']) ?? types[0] ?? '';
+  const before = by('joints').value, types = [...new Set(scene.joints.flatMap(typesOf))];
+  by('joints').replaceChildren(...types.map(type => new Option(nameOf(type), type)));
+  by('joints').value = types.includes(before) ? before : types.find(isOwn) ?? types[0] ?? '';
   showControls();
   take(scene.state);
 }
@@ -59,7 +59,7 @@ function frame(now) {
 }
 
 async function findMarks() {
-  const joint = scene.joints.findIndex(one => one.type === by('joints').value);
+  const joint = scene.joints.findIndex(one => typesOf(one).includes(by('joints').value));
   if (joint < 0) return;
   const found = await mover.ask({do: 'marks', joint});
   if (!found.problems) marks = found;
@@ -118,3 +118,16 @@ setDark(matchMedia('(prefers-color-scheme: dark)').matches);
 const linked = fromFragment(location.hash.slice(1));
 open(linked ?? data.gallery[0], linked ? null : data.first);
 requestAnimationFrame(frame);
+
+// A page that `cdot play` serves follows the files on disk: an editor of one's own changes what moves here.
+async function follow(edition) {
+  try {
+    const answer = await (await fetch(`example?edition=${edition}`)).json();
+    if (answer.problems) hint(answer.problems, true);
+    else if (edition && answer.scene) open(answer);
+    setTimeout(follow, 500, answer.edition);
+  } catch {
+    hint('The program that serves this page has ended. The page itself goes on.');
+  }
+}
+if (location.protocol === 'http:' && location.hostname === '127.0.0.1') follow('');

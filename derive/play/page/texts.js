@@ -2,11 +2,17 @@
 const own = name => `${folderOf(texts.scene)}${name}`;
 const scenePath = () => own('scene.toml');
 
-// The file of the spec that the panel shows: that of the chosen joint.
-const chosenJoint = () => by('joints').value.replace(/#\d+$/, '') || 'revolute';
+// The specs of a joint and of the effects on its coordinates. Their names may be those of effects between bodies.
+const onCoordinate = 'coordinate/';
+const typesOf = joint => [joint.type, ...joint.laws.map(law => onCoordinate + law)];
+const nameOf = type => type.replace(onCoordinate, '').replace(/#\d+$/, '');
+// The file of the spec that the panel shows: that of the chosen joint or effect.
+const chosenSpec = () => nameOf(by('joints').value) || 'revolute';
+const isOwn = type => ['.joint', '.effect'].some(ending => texts.specs[own(nameOf(type)) + ending] !== undefined);
 function specFile() {
-  const joint = own(chosenJoint()) + '.joint', effect = own(chosenJoint()) + '.effect';
-  return texts.specs[effect] !== undefined || data.files[effect] !== undefined ? effect : joint;
+  const file = own(chosenSpec()), law = by('joints').value.startsWith(onCoordinate);
+  if (law) return texts.specs[file + '.effect'] ? file + '.effect' : `specs/${by('joints').value}.effect`;
+  return textOf(file + '.effect') ? file + '.effect' : file + '.joint';
 }
 const handFile = () => specFile().replace(/\.(joint|effect)$/, '.hand');
 const textOf = file => texts.specs[file] ?? data.files[file] ?? '';
@@ -27,16 +33,21 @@ async function showText() {
   if (shown === 'hand') await judge();
 }
 
-// A copy of a joint of the catalogue gets a name of its own, in its header and in the scene.
+// A copy from the catalogue gets a name of its own, in its header and in the scene: there as a type, or as an effect on
+// a coordinate (angle.spring = …).
 function adopt(text) {
-  const file = specFile(), name = chosenJoint();
+  const file = specFile(), name = chosenSpec();
   if (!data.files[file] || texts.specs[file]) return texts.specs[file] = text;
   const mine = `my_${name}`;
-  texts.scene = texts.scene.replaceAll(`"${name}"`, `"${mine}"`);
+  const law = file.startsWith('specs/coordinate/');
+  texts.scene = law ?
+      texts.scene.replace(new RegExp(`([.{,]\\s*)${name}(?=\\s*[=.\\]])`, 'g'), `$1${mine}`) :
+      texts.scene.replaceAll(`"${name}"`, `"${mine}"`);
   const option = [...by('joints').options].find(one => one.value === by('joints').value);
-  option.value = option.textContent = mine;
+  option.value = law ? onCoordinate + mine : mine;
+  option.textContent = mine;
   const renamed = text.replace(new RegExp(`^(\\s*(?:joint|effect)\\s+)${name}\\b`, 'm'), `$1${mine}`);
-  return texts.specs[file.replace(`/${name}.`, `/${mine}.`)] = renamed;
+  return texts.specs[own(mine) + /\.\w+$/.exec(file)[0]] = renamed;
 }
 
 let waiting = 0;
@@ -74,7 +85,7 @@ function showLecture(path, {title, html}) {
   document.documentElement.dataset.derived = path;
 }
 
-// The verdicts on the derivations by hand of the chosen joint.
+// The verdicts on the derivations by hand of the chosen spec.
 async function judge() {
   const path = handFile(), text = textOf(path);
   document.documentElement.dataset.judged = '';

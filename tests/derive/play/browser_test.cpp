@@ -1,5 +1,6 @@
 // The playground in a real browser, used as a person uses it. The engine is the same code compiled for this machine,
 // behind a stand-in for the page's Workers. With CDOT_PLAYGROUND=index.html the page with its WebAssembly is used.
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -8,10 +9,12 @@
 #include <gtest/gtest.h>
 #include <map>
 #include <optional>
+#include <thread>
 #include <unistd.h>
 
 #include "derive/play/engine.hpp"
 #include "derive/play/page.hpp"
+#include "derive/play/serve.hpp"
 #include "tests/derive/play/chromium.hpp"
 
 namespace cdot::test {
@@ -74,7 +77,8 @@ class Playground : public testing::Test {
     const char* const built = std::getenv("CDOT_PLAYGROUND");
     if (built) page = built;
     else std::ofstream(page) << play::playground_page((folder_ / "scene.toml").string(), specs_, folder_ / "engine");
-    browser_.emplace(page, built ? "" : stand_in, [this](const std::string& text) { answer(json::parse(text)); });
+    browser_.emplace("file://" + page.string(), built ? "" : stand_in,
+                     [this](const std::string& text) { answer(json::parse(text)); });
     ASSERT_TRUE(until("document.documentElement.dataset.edition === '1'"));
     if (!built) return;
     write("scene", scene);
@@ -119,10 +123,11 @@ class Playground : public testing::Test {
   }
 
   std::optional<Chromium> browser_;
+  const fs::path folder_ = fs::temp_directory_path() / fmt::format("cdot_playground_{}", getpid());
+  const fs::path specs_ = fs::path(CDOT_SOURCE_DIR) / "specs";
 
  private:
-  const fs::path folder_ = fs::temp_directory_path() / fmt::format("cdot_playground_{}", getpid());
-  const fs::path before_ = fs::current_path(), specs_ = fs::path(CDOT_SOURCE_DIR) / "specs";
+  const fs::path before_ = fs::current_path();
   std::map<int, play::Engine> engines_;
 };
 
@@ -155,6 +160,45 @@ TEST_F(Playground, ATypedJointMoves) {
       until("+document.documentElement.dataset.time > 0.1 && "
             "Math.abs(JSON.parse(document.documentElement.dataset.bodies)[0] - 3) < 0.5"));
   EXPECT_NEAR(from_origin(), 3, 1e-6);
+}
+
+// A copy of a spring on the string's turn is typed anew: it pushes with its whole force, so the bob stands aside.
+TEST_F(Playground, ATypedEffectActs) {
+  std::string scene = pendulum;
+  scene.replace(scene.find("distance"), 8, "revolute");
+  scene.replace(scene.find("pa     = [0, 0]\npb     = [0, 0]"), 31,
+                "at     = [0, 0]\nangle.spring = { stiffness = 20, damping = 8 }");
+  open(scene);
+  value(
+      "(() => { const s = document.getElementById('joints'); s.value = 'coordinate/spring'; s.dispatchEvent(new "
+      "Event('change')); "
+      "})()");
+  ASSERT_TRUE(until("document.documentElement.dataset.derived === 'specs/coordinate/spring.effect'"));
+  write("spec",
+        "effect spring coordinate\n  coordinate s [any]\n  scalar stiffness [J/any]\n"
+        "  scalar damping [J*s/any^2]\n  force on s = stiffness - damping * rate(s)\n");
+  ASSERT_TRUE(until("document.documentElement.dataset.derived === 'specs/planar/my_spring.effect'"));
+  EXPECT_NE(value("texts.scene").get<std::string>().find("angle.my_spring = {"), std::string::npos);
+  // m g l sin(angle) = 20 N m, of 40
+  ASSERT_TRUE(until("Math.abs(JSON.parse(document.documentElement.dataset.bodies)[0] - 1) < 1e-3"));
+}
+
+TEST_F(Playground, NewSpecsAreInTheGallery) {
+  open(pendulum);
+  const json titles = value("data.gallery.map(one => one.title)");
+  for (const char* title :
+       {"new joint, in the plane", "new joint, in space", "new effect, in the plane", "new effect, on a coordinate"}) {
+    const auto place = std::find(titles.begin(), titles.end(), title) - titles.begin();
+    ASSERT_LT(place, titles.size()) << title;
+    value(
+        fmt::format("(() => {{ const s = document.getElementById('gallery'); s.value = {}; s.dispatchEvent(new "
+                    "Event('change')); }})()",
+                    place));
+    ASSERT_TRUE(
+        until("/^specs.*my_/.test(document.documentElement.dataset.derived) && live && "
+              "+document.documentElement.dataset.time > 0.1"));
+    EXPECT_EQ(value("document.querySelectorAll('#messages .error').length"), 0) << title;
+  }
 }
 
 TEST_F(Playground, ADerivationByHandIsJudged) {
@@ -248,6 +292,39 @@ TEST_F(Playground, TheLastOfManyChangesWins) {
       "live && +document.documentElement.dataset.time > 0.1 && document.documentElement.dataset.edition == edition"));
 }
 
+// A server on a free port, while it lives.
+class Serving {
+ public:
+  Serving(const std::string& start, const fs::path& specs, const fs::path& engine)
+      : server_(start, specs, engine, 0), thread_([this] { server_.run(); }) {}
+  ~Serving() {
+    server_.stop();
+    thread_.join();
+  }
+  std::string address() const { return server_.address(); }
+
+ private:
+  play::PageServer server_;
+  std::thread thread_;
+};
+
+// `cdot play`: the page is served, and follows the scene and a spec beside it as they change on disk.
+TEST_F(Playground, AServedPageFollowsTheFiles) {
+  std::ofstream("scene.toml") << pendulum;
+  const Serving serving((folder_ / "scene.toml").string(), specs_, folder_ / "engine");
+  browser_.emplace(serving.address(), stand_in, [this](const std::string& text) { answer(json::parse(text)); });
+  EXPECT_TRUE(until("document.documentElement.dataset.edition === '1' && live"));
+  std::string scene = pendulum;
+  scene.replace(scene.find("distance"), 8, "rod_of_3");
+  std::ofstream("rod_of_3.joint")
+      << "joint rod_of_3 planar\n  point pa on a\n  point pb on b\n  norm(pa - pb) = 3 [m]\n";
+  scene.replace(scene.find("[0, -2]"), 7, "[0, -3]");
+  std::ofstream("scene.toml") << scene;
+  EXPECT_TRUE(
+      until("document.documentElement.dataset.derived === 'specs/planar/rod_of_3.joint' && "
+            "Math.abs(JSON.parse(document.documentElement.dataset.bodies)[1] + 3) < 1e-6"));
+}
+
 // On a phone nothing is wider than the screen, and the mechanism comes first.
 TEST_F(Playground, FitsAPhone) {
   open(pendulum);
@@ -261,7 +338,7 @@ TEST_F(Playground, FitsAPhone) {
 TEST_F(Playground, TheFirstSightNeedsNoEngine) {
   std::ofstream("scene.toml") << pendulum;
   std::ofstream("index.html") << play::playground_page("scene.toml", fs::path(CDOT_SOURCE_DIR) / "specs", "engine");
-  browser_.emplace(fs::absolute("index.html"), stand_in, [](const std::string&) {});
+  browser_.emplace("file://" + fs::absolute("index.html").string(), stand_in, [](const std::string&) {});
   EXPECT_TRUE(until("document.documentElement.dataset.bodies"));
   EXPECT_DOUBLE_EQ(place()[1], -2);
   EXPECT_EQ(value("document.documentElement.dataset.derived"), "specs/planar/distance.joint");

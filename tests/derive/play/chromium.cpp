@@ -46,8 +46,7 @@ std::string decoded(const std::string& base64) {
 
 }  // namespace
 
-Chromium::Chromium(const std::filesystem::path& page, const std::string& first,
-                   std::function<void(const std::string&)> asked)
+Chromium::Chromium(const std::string& address, const std::string& first, std::function<void(const std::string&)> asked)
     : asked_(std::move(asked)),
       profile_(std::filesystem::temp_directory_path() / fmt::format("cdot_chromium_{}", getpid())) {
   std::filesystem::create_directories(profile_);
@@ -64,9 +63,9 @@ Chromium::Chromium(const std::filesystem::path& page, const std::string& first,
   call("Runtime.enable");
   call("Runtime.addBinding", {{"name", "ask"}});
   call("Page.addScriptToEvaluateOnNewDocument", {{"source", first}});
-  call("Page.navigate", {{"url", "file://" + page.string()}});
-  if (!becomes_true("location.protocol === 'file:' && document.readyState === 'complete'"))
-    throw std::runtime_error("the browser does not open " + page.string());
+  call("Page.navigate", {{"url", address}});
+  if (!becomes_true("location.href !== 'about:blank' && document.readyState === 'complete'"))
+    throw std::runtime_error("the browser does not open " + address);
 }
 
 Chromium::~Chromium() { end(); }

@@ -15,7 +15,7 @@ class Chromium {
  public:
   // `asked(text)`: the page called ask(text). `first` is a script that runs before those of the page. Throws
   // std::runtime_error if no browser answers.
-  Chromium(const std::filesystem::path& page, const std::string& first, std::function<void(const std::string&)> asked);
+  Chromium(const std::string& address, const std::string& first, std::function<void(const std::string&)> asked);
   Chromium(const Chromium&) = delete;
   Chromium& operator=(const Chromium&) = delete;
   ~Chromium();
