@@ -31,11 +31,6 @@ void write_emitted(const EmittedJoint& made, const EmitOptions& options) {
 int emit(const EmitOptions& options) {
   const SpecsFolder folder(options.specs_folder);
   const std::filesystem::path spec = folder.find(options.spec);
-  for (const NoEngine& none : no_engines()) {
-    if (none.name != options.engine) continue;
-    fmt::print(stderr, "cdot emit: there is no adapter for {}: {}\n", none.name, none.why);
-    return command_line::wrong_usage;
-  }
   const Engine& engine = engine_named(options.engine);
   try {
     std::optional<EmittedJoint> made;
@@ -59,11 +54,6 @@ void add_emit_options(Line& line, EmitOptions& options) {
   for (const Engine& engine : engines()) {
     names.emplace_back(engine.name);
     list += fmt::format("  {:<9} {}\n", engine.name, engine.title);
-  }
-  list += "Without an adapter:\n";
-  for (const NoEngine& engine : no_engines()) {
-    names.emplace_back(engine.name);
-    list += fmt::format("  {:<9} {}\n", engine.name, engine.why);
   }
   line.add("SPEC", &options.spec, "A joint, by path or by name; - is standard input").required();
   line.add("--for", &options.engine, "The engine (see below)").one_of(names).required();

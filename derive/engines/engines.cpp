@@ -26,9 +26,7 @@ const std::vector<Engine> table = {
     {"jolt",   "Jolt 5: a TwoBodyConstraint; built and compared with 5.5, not in every test run", "jolt::Constraint<BLOCKS>", "", 3, 2, {plain, {"JOLT", adapter_jolt}}, in_impulses},
     {"simbody", "Simbody 3: a Constraint::Custom, for joints without C >= 0",    "simbody::Constraint<BLOCKS>", "", 3, 0, {{"SIMBODY", adapter_simbody}}, in_accelerations, false, false},
     {"dart",    "DART 6: a ConstraintBase",                                      "dart::Constraint<BLOCKS>", "", 3, 0, {plain, rows, {"DART", adapter_dart}}, in_rows},
-};
-constexpr NoEngine without_adapter[] = {
-    {"ode",  "ODE makes joints of its own kinds only: the class behind them is not in its headers"},
+    {"ode",     "ODE 0.16: a dJointID",                                          "ode::Joint<BLOCKS>", "", 3, 2, {plain, rows, {"ODE", adapter_ode}}, in_rows},
 };
 // clang-format on
 
@@ -156,7 +154,6 @@ void refuse_unfit(const Engine& engine, const Joint& joint) {
 }  // namespace
 
 std::span<const Engine> engines() { return table; }
-std::span<const NoEngine> no_engines() { return without_adapter; }
 
 const Engine& engine_named(std::string_view name) {
   const auto found = std::ranges::find(table, name, &Engine::name);

@@ -28,13 +28,7 @@ struct Engine {
   bool drives = true;                         // motors and limits are the adapter's
 };
 
-// An engine that people ask for and that has no adapter.
-struct NoEngine {
-  std::string_view name, why;
-};
-
 std::span<const Engine> engines();
-std::span<const NoEngine> no_engines();
 const Engine& engine_named(std::string_view name);  // throws std::out_of_range
 
 // Thrown for a joint that an engine cannot have; its text says why and what to do.

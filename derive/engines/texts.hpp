@@ -7,6 +7,6 @@
 namespace cdot::derive {
 
 extern const std::string_view contract_text, adapter_plain, adapter_rows, adapter_bullet, adapter_box2d, adapter_dart,
-    adapter_simbody, adapter_jolt;
+    adapter_ode, adapter_simbody, adapter_jolt;
 
 }  // namespace cdot::derive

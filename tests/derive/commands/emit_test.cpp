@@ -46,7 +46,6 @@ TEST_F(Emit, SaysWhyItCannot) {
        "not. Likely fix: --for plain\n"},
       {"drag --for plain", "drag cannot be emitted for plain: it is an effect, and adapters are for joints."},
       {"gear_revolute_revolute --for box2d", "it joins 4 bodies, and a constraint of the engine at most 2."},
-      {"line --for ode", "cdot emit: there is no adapter for ode: ODE makes joints of its own kinds only"},
       {"line --for bulet", "--for: bulet not in {plain,bullet,box2d,jolt,simbody"},
       {"lime --for plain", "lime"},
   };

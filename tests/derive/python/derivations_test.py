@@ -112,8 +112,8 @@ class Texts(unittest.TestCase):
         self.assertIn("btTypedConstraint", hinge.emit("bullet"))
         with self.assertRaisesRegex(ValueError, "engine must be one of .* but is `bulet`"):
             hinge.emit("bulet")
-        with self.assertRaisesRegex(cdot.Error, "there is no adapter for dart"):
-            hinge.emit("dart")
+        with self.assertRaisesRegex(RuntimeError, "line cannot be emitted for dart: it is planar"):
+            cdot.derive("line").emit("dart")
 
     def test_own_spec_from_text(self):
         joint = cdot.derive("joint rod planar\npoint pa on a\npoint pb on b\n"
