@@ -24,6 +24,7 @@ using Eigen::Vector3d;
 
 constexpr double usual_density = 1000;  // [kg/m^3]
 constexpr double perpendicular = 1e-6;  // cosine of directions that count as such
+constexpr double light = 1e-6;          // mass between two joints of one body, as a share of that body's
 
 class MjcfReader : MjcfElements {
  public:
@@ -53,6 +54,9 @@ class MjcfReader : MjcfElements {
     for (const Element& e : children(root)) tell_section(e.Name());
     if (model_.links.size() == 1) fail(root.GetLineNum(), "the model has no <body> in its <worldbody>");
     add_counted(left_out_, model_.left_out);
+    if (rows_of_joints_ > 0)
+      model_.changed.push_back(fmt::format(
+          "{} bodies have several joints: bodies of {} of their mass stand between these", rows_of_joints_, light));
     return std::move(model_);
   }
 
@@ -210,14 +214,28 @@ class MjcfReader : MjcfElements {
       if (part.Name() == std::string_view("joint")) axes.push_back(read_axis(part, child_class, body));
       else if (part.Name() == std::string_view("freejoint"))
         axes.push_back({"free_joint_of_" + body, "free", {}, {}, {}});
-    ModelJoint joint = joined(axes, e);
-    joint.line = e.GetLineNum(), joint.parent = parent, joint.child = child, joint.origin = pose_of(e);
-    if (axes.empty()) joint.name = "joint_of_" + body;
-    model_.joints.push_back(joint);
+    const std::optional<ModelJoint> one = joined(axes);
+    if (one) add_joint(*one, axes, e, parent, child);
+    else add_row_of_joints(axes, e, parent, child);
   }
 
-  // Several joints of one body, as one.
-  ModelJoint joined(const std::vector<Axis>& axes, const Element& body) {
+  void add_joint(ModelJoint joint, const std::vector<Axis>& axes, const Element& body, int parent, int child) {
+    joint.line = body.GetLineNum(), joint.parent = parent, joint.child = child, joint.origin = pose_of(body);
+    if (axes.empty()) joint.name = fmt::format("joint_of_{}", model_.links[static_cast<std::size_t>(child)].name);
+    place_coordinates(joint, axes);
+    model_.joints.push_back(joint);
+  }
+  // Where actuators find them.
+  void place_coordinates(const ModelJoint& joint, const std::vector<Axis>& axes) {
+    const std::size_t number = model_.joints.size();
+    if (joint.type == ModelJointType::hinge || joint.type == ModelJointType::slider ||
+        joint.type == ModelJointType::universal)
+      coordinates_[axes[0].name] = {number, &ModelJoint::coordinate};
+    if (joint.type == ModelJointType::universal) coordinates_[axes[1].name] = {number, &ModelJoint::about_second};
+  }
+
+  // Several joints of one body, as one that keeps all that acts on them; none if there is no such joint.
+  std::optional<ModelJoint> joined(const std::vector<Axis>& axes) {
     std::string kinds;
     for (const Axis& a : axes) kinds += a.type[0];
     ModelJoint joint;
@@ -231,24 +249,43 @@ class MjcfReader : MjcfElements {
       joint.type = ModelJointType::universal;
       joint.axis = axes[0].axis, joint.second = axes[1].axis;
       joint.coordinate = axes[0].coordinate, joint.about_second = axes[1].coordinate;
-    } else if (kinds == "ssh" && square) {
+    } else if (kinds == "ssh" && square && !is_any_busy({axes.begin(), axes.begin() + 2})) {
       joint.type = ModelJointType::plane, joint.name = axes[2].name;
       joint.axis = axes[2].axis, joint.coordinate = axes[2].coordinate;
-      leave_out({axes.begin(), axes.begin() + 2});
-    } else if (kinds == "b" || (kinds == "hhh" && square && at_one_point)) {
+    } else if (kinds == "b" || (kinds == "hhh" && square && at_one_point && !is_any_busy(axes))) {
       joint.type = ModelJointType::ball;
-      leave_out(axes);
-    } else if (kinds == "f" || kinds == "sssb" || (kinds == "ssshhh" && square)) {
+    } else if (kinds == "f" || ((kinds == "sssb" || kinds == "ssshhh") && square && !is_any_busy(axes))) {
       joint.type = ModelJointType::free;
-      leave_out(axes);
     } else {
-      fail(body.GetLineNum(),
-           fmt::format(
-               "body \"{}\" has {} joints, of types that make no joint of a scene. Likely fix: a body of its own "
-               "for each, with a small mass",
-               body.Attribute("name") ? body.Attribute("name") : "", axes.size()));
+      return {};
     }
     return joint;
+  }
+
+  // Each joint with a body of its own, as MuJoCo's documentation explains joints of one body: in their order, each
+  // turns the axes of those behind it.
+  void add_row_of_joints(const std::vector<Axis>& axes, const Element& e, int parent, int child) {
+    const ModelLink body = model_.links[static_cast<std::size_t>(child)];
+    if (std::ranges::any_of(axes, [](const Axis& a) { return a.type == "free"; }))
+      fail(body.line,
+           fmt::format("body \"{}\" is free and has other joints too. Likely fix: leave these out", body.name));
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+      ModelJoint joint = *joined({axes[k]});
+      const bool last = k + 1 == axes.size();
+      const int next = last ? child : static_cast<int>(model_.links.size());
+      if (!last) model_.links.push_back(light_link(body, fmt::format("{}_{}", body.name, k + 1), axes[k].point));
+      add_joint(joint, {axes[k]}, e, parent, next);
+      if (k > 0) model_.joints.back().origin.setIdentity();
+      parent = next;
+    }
+    ++rows_of_joints_;
+  }
+  static ModelLink light_link(const ModelLink& body, const std::string& name, const Vector3d& at) {
+    ModelLink link;
+    link.name = name, link.line = body.line, link.centre = at;
+    link.mass = light * body.mass;
+    link.inertia = light * std::max(body.inertia.trace() / 3, 1e-4 * body.mass) * Matrix3d::Identity();
+    return link;
   }
   static bool are_perpendicular(const std::vector<Axis>& axes) {
     for (std::size_t i = 0; i < axes.size(); ++i)
@@ -261,10 +298,11 @@ class MjcfReader : MjcfElements {
   static bool are_at_one_point(const std::vector<Axis>& axes) {
     return std::ranges::all_of(axes, [&](const Axis& a) { return (a.point - axes[0].point).norm() < perpendicular; });
   }
-  void leave_out(const std::vector<Axis>& axes) {
-    for (const Axis& a : axes)
-      if (a.coordinate.range || a.coordinate.damping > 0 || a.coordinate.stiffness > 0)
-        model_.left_out.push_back(fmt::format("the limits, springs and dampers of joint \"{}\"", a.name));
+  static bool is_any_busy(const std::vector<Axis>& axes) {
+    return std::ranges::any_of(axes, [](const Axis& a) {
+      const ModelCoordinate& c = a.coordinate;
+      return c.range || c.damping > 0 || c.stiffness > 0 || c.friction > 0;
+    });
   }
 
   // --- loops and actuators ---------------------------------------------------------------------
@@ -324,14 +362,16 @@ class MjcfReader : MjcfElements {
     }
   }
   ModelCoordinate* coordinate_of(const std::string& name) {
-    const auto found = std::ranges::find(model_.joints, name, &ModelJoint::name);
-    if (found == model_.joints.end()) return nullptr;
-    const bool has_one = found->type == ModelJointType::hinge || found->type == ModelJointType::slider;
-    return has_one ? &found->coordinate : nullptr;
+    const auto found = coordinates_.find(name);
+    if (found == coordinates_.end()) return nullptr;
+    const auto& [joint, member] = found->second;
+    return &(model_.joints[joint].*member);
   }
 
   Model model_;
+  int rows_of_joints_ = 0;               // bodies with joints that make no single one
   std::map<std::string, double> zeros_;  // by joint: its coordinate where the scene's is 0
+  std::map<std::string, std::pair<std::size_t, ModelCoordinate ModelJoint::*>> coordinates_;  // by joint of the file
 };
 
 }  // namespace
