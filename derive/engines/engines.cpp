@@ -24,7 +24,7 @@ const std::vector<Engine> table = {
     {"bullet", "Bullet 3: a btTypedConstraint",                                  "bullet::Constraint<BLOCKS>", "", 3, 2, {plain, rows, {"BULLET", adapter_bullet}}, in_rows},
     {"box2d",  "Box2D 2.4: a b2Joint",                                           "box2d::Joint<BLOCKS>", "", 2, 2, {plain, {"BOX2D", adapter_box2d}}, in_impulses},
     {"jolt",   "Jolt 5: a TwoBodyConstraint; built and compared with 5.5, not in every test run", "jolt::Constraint<BLOCKS>", "", 3, 2, {plain, {"JOLT", adapter_jolt}}, in_impulses},
-    {"simbody", "Simbody 3: a Constraint::Custom, for joints without C >= 0",    "simbody::Constraint<BLOCKS>", "", 3, 0, {{"SIMBODY", adapter_simbody}}, in_accelerations, false, false},
+    {"simbody", "Simbody 3: a Constraint::Custom, for joints without C >= 0",    "simbody::Constraint<BLOCKS>", "", 3, 0, {plain, {"SIMBODY", adapter_simbody}}, in_accelerations, false, false},
     {"dart",    "DART 6: a ConstraintBase",                                      "dart::Constraint<BLOCKS>", "", 3, 0, {plain, rows, {"DART", adapter_dart}}, in_rows},
     {"ode",     "ODE 0.16: a dJointID",                                          "ode::Joint<BLOCKS>", "", 3, 2, {plain, rows, {"ODE", adapter_ode}}, in_rows},
 };
@@ -138,11 +138,6 @@ std::string objection(const Engine& engine, const Joint& joint) {
                        joint.bodies.size(), engine.most_bodies);
   if (!engine.bounds && std::ranges::any_of(joint.rows, [](const Row& r) { return r.kind == RowKind::inequality; }))
     return "it has a row C >= 0, and the engine's constraints are equations. Likely fix: --for plain";
-  for (const Parameter& p : joint.parameters) {
-    if (!engine.drives && p.name.ends_with("_turns"))
-      return fmt::format("its parameter {} counts whole turns, which the adapter does not. Likely fix: --for plain",
-                         p.name);
-  }
   return "";
 }
 

@@ -2,12 +2,15 @@
 //
 // C, Cdot and the accelerations follow from the kernel, so Simbody's multipliers, projections and accuracy hold as for
 // its own constraints. Points and directions of `parameters` are those of the bodies' frames. Ground is a body like
-// others. Motors, limits and springs are Simbody's own forces; a row C >= 0 has no counterpart.
+// others. Motors, limits and springs are Simbody's own forces; a row C >= 0 has no counterpart. Whole turns of an angle
+// that a row reads are counted from step to step in the State.
 #pragma once
 
 #include <Simbody.h>
 
 #include <cdot/kernel.hpp>
+
+#include "runtime/engines/plain.hpp"
 
 namespace cdot::simbody {
 
@@ -29,7 +32,7 @@ inline spatial::Velocity<double> velocity_of(const SimTK::SpatialVec& V) {
   return {V[1][0], V[1][1], V[1][2], V[0][0], V[0][1], V[0][2]};
 }
 
-template <class Block>
+template <class Block, class... Coordinates>
 class Equations final : public SimTK::Constraint::Custom::Implementation {
   static constexpr int n = Block::rows, count = Block::bodies;
   static_assert(rows_of<Block>(RowKind::inequality) == 0, "Simbody's constraints are equations");
@@ -49,15 +52,26 @@ class Equations final : public SimTK::Constraint::Custom::Implementation {
     for (int i = 0; i < count; ++i) indices_[i] = addConstrainedBody(*bodies[i]);
     addConstrainedBody(matter.Ground());  // so that all is measured in its frame
   }
+  void realizeTopology(SimTK::State& state) const override {
+    if (counts_turns())
+      last_ = this->getMatterSubsystem().allocateAutoUpdateDiscreteVariable(
+          state, SimTK::Stage::Position, new SimTK::Value<SimTK::Vector>(SimTK::Vector(angles, SimTK::NaN)),
+          SimTK::Stage::Position);
+  }
   Base* clone() const override { return new Equations(*this); }
 
   void calcPositionErrors(const SimTK::State& state, const Bodies& X, const Numbers<SimTK::ConstrainedQIndex>&,
                           SimTK::Array_<SimTK::Real>& errors) const override {
     spatial::Pose<double> q[count];
     for (int i = 0; i < count; ++i) q[i] = pose_of(getBodyTransform(X, indices_[i]));
+    SimTK::Vector now(angles);
     double C[n];
-    Block::position(q, parameters_, state.getTime(), C);
+    Block::position(q, counted(state, q, now), state.getTime(), C);
     take(C, RowKind::equality, errors);
+    if (!counts_turns()) return;
+    const auto& matter = this->getMatterSubsystem();
+    SimTK::Value<SimTK::Vector>::updDowncast(matter.updDiscreteVarUpdateValue(state, last_)) = now;
+    matter.markDiscreteVarUpdateValueRealized(state, last_);
   }
   void calcPositionDotErrors(const SimTK::State& state, const Rates& V, const Numbers<SimTK::ConstrainedQIndex>&,
                              SimTK::Array_<SimTK::Real>& errors) const override {
@@ -86,15 +100,47 @@ class Equations final : public SimTK::Constraint::Custom::Implementation {
   }
 
  private:
+  static constexpr int angles = sizeof...(Coordinates);
+
+  bool counts_turns() const {
+    [[maybe_unused]] Parameters p = parameters_;
+    return ((Coordinates::turns(p) != nullptr) || ...);
+  }
+  // The parameters with the turns that bring each angle nearest to that of the last step; `now`: these angles.
+  template <class Poses>
+  Parameters counted(const SimTK::State& state, const Poses& q, SimTK::Vector& now) const {
+    Parameters p = parameters_;
+    if (!counts_turns()) return p;
+    const SimTK::Vector& last =
+        SimTK::Value<SimTK::Vector>::downcast(this->getMatterSubsystem().getDiscreteVariable(state, last_));
+    int i = 0;
+    [[maybe_unused]] const auto count_one = [&](auto coordinate) {
+      using Coordinate = decltype(coordinate);
+      double* const turns = Coordinate::turns(p);
+      double C[1] = {0};
+      if (turns != nullptr) {
+        Coordinate::position(q, p, state.getTime(), C);
+        if (!SimTK::isNaN(last[i])) *turns = plain::whole_turns<Coordinate>(C[0], last[i]);
+        C[0] += *turns;
+      }
+      now[i++] = C[0];
+    };
+    (count_one(Coordinates()), ...);
+    return p;
+  }
+
   struct Evaluated {
     spatial::Pose<double> q[count];
+    Parameters p;
     double C[n];
     typename Block::template Jacobian<double> J;
   };
   Evaluated evaluated(const SimTK::State& state) const {
     Evaluated at;
     for (int i = 0; i < count; ++i) at.q[i] = pose_of(getBodyTransformFromState(state, indices_[i]));
-    Block::jacobian(at.q, parameters_, state.getTime(), at.C, at.J);
+    SimTK::Vector now(angles);
+    at.p = counted(state, at.q, now);
+    Block::jacobian(at.q, at.p, state.getTime(), at.C, at.J);
     return at;
   }
   // The rows of one kind, in their order.
@@ -110,7 +156,7 @@ class Equations final : public SimTK::Constraint::Custom::Implementation {
     for (int i = 0; i < count; ++i) v[i] = velocity_of(getBodyVelocity(V, indices_[i]));
     double Jv[n], C_t[n];
     Block::velocity(at.J, v, Jv);
-    Block::time_derivative(at.q, parameters_, state.getTime(), C_t);
+    Block::time_derivative(at.q, at.p, state.getTime(), C_t);
     for (int i = 0; i < n; ++i) Jv[i] += C_t[i];
     take(Jv, kind, errors);
   }
@@ -125,7 +171,7 @@ class Equations final : public SimTK::Constraint::Custom::Implementation {
     }
     double Ja[n], gamma[n];
     Block::velocity(at.J, a, Ja);
-    Block::gamma(at.q, v, parameters_, state.getTime(), gamma);
+    Block::gamma(at.q, v, at.p, state.getTime(), gamma);
     for (int i = 0; i < n; ++i) Ja[i] -= gamma[i];
     take(Ja, kind, errors);
   }
@@ -150,10 +196,11 @@ class Equations final : public SimTK::Constraint::Custom::Implementation {
 
   Parameters parameters_;
   SimTK::ConstrainedBodyIndex indices_[count];
+  mutable SimTK::DiscreteVariableIndex last_;  // angles that count turns, at the last step
 };
 
 // A handle, as those of Simbody's own constraints; the matter subsystem owns what it stands for.
-template <class Block>
+template <class Block, class... Coordinates>
 class Constraint : public SimTK::Constraint::Custom {
  public:
   using Parameters = typename Block::template Parameters<double>;
@@ -164,10 +211,11 @@ class Constraint : public SimTK::Constraint::Custom {
 
  private:
   template <class... Bodies>
-  static Equations<Block>* make(SimTK::SimbodyMatterSubsystem& matter, const Parameters& p, const Bodies*... bodies) {
+  static Equations<Block, Coordinates...>* make(SimTK::SimbodyMatterSubsystem& matter, const Parameters& p,
+                                                const Bodies*... bodies) {
     static_assert(sizeof...(Bodies) == Block::bodies, "give each body of the joint");
     const SimTK::MobilizedBody* const all[] = {bodies...};
-    return new Equations<Block>(matter, all, p);
+    return new Equations<Block, Coordinates...>(matter, all, p);
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include "simbody/constant_velocity.hpp"
 #include "simbody/driven.hpp"
+#include "simbody/gear.hpp"
 #include "simbody/rolling_sphere.hpp"
 #include "simbody/spherical.hpp"
 
@@ -106,6 +107,25 @@ TEST(SimbodyJoints, FollowsAPrescribedMotion) {
   s.system.realize(later, SimTK::Stage::Velocity);
   EXPECT_NEAR(body.getBodyAngularVelocity(later)[0], 2, 1e-8);
   EXPECT_NEAR(body.getBodyRotation(later)[2][1], std::sin(3), 1e-6);
+}
+
+// A bevel gear, driven through many turns: a about z, b about x.
+TEST(SimbodyJoints, AGearCountsWholeTurns) {
+  System s;
+  MobilizedBody::Pin a(s.matter.Ground(), brick);
+  MobilizedBody::Pin b(s.matter.Ground(), SimTK::Rotation(SimTK::Pi / 2, SimTK::YAxis), brick, SimTK::Transform());
+  simbody::gear_joint::Parameters p{};
+  for (double* frame : {&p.fa_x_x, &p.ga_x_x, &p.fb_x_x}) frame[2] = frame[3] = frame[7] = 1;  // x: z of the body
+  p.gb_x_x = p.gb_z_y = 1, p.gb_y_z = -1;  // where the frame of b stands at angle 0
+  p.ratio = 1.3;
+  simbody::gear_joint gear(p, a, b);
+  SimTK::Force::MobilityConstantForce motor(s.forces, a, SimTK::MobilizerUIndex(0), 3);
+  SimTK::State state = s.system.realizeTopology();
+  state = s.run(state, 10);
+  EXPECT_GT(a.getAngle(state), 50);
+  EXPECT_NEAR(a.getAngle(state) + 1.3 * b.getAngle(state), 0, 1e-6);
+  const double inertia = 2 * 0.4 * (1 + 1 / (1.3 * 1.3));
+  EXPECT_NEAR(a.getRate(state), 10 * 3 / inertia, 1e-6);
 }
 
 }  // namespace
