@@ -1,6 +1,7 @@
 // The derivation for other programs: every entry as a plain infix expression over documented component names. The
 // schema is printed by `cdot explain --help`.
 #include <algorithm>
+#include <fmt/format.h>
 #include <set>
 
 #include "derive/explain/explain.hpp"
@@ -26,6 +27,14 @@ class Infix {
   }
 
   std::string of(Expr scalar) { return print(components_.of(scalar), Level::sum); }
+
+  Json of_optional(Expr scalar) { return scalar ? Json(of(scalar)) : Json(); }
+  Json of_all(const std::vector<Expr>& scalars) {
+    Json list = Json::array();
+    for (const Expr e : scalars) list.push_back(of_optional(e));
+    return list;
+  }
+  ExplainedSymbols& names() { return symbols_; }
 
   const Json& intermediates() const { return intermediates_; }
   const Json& guards() const { return guards_; }
@@ -166,6 +175,67 @@ void add_block(Json& out, Infix& infix, const Block& block) {
   }
 }
 
+const Unit second = {.s = 1}, joule = {.m = 2, .s = -2, .kg = 1};
+
+// Leaves of the law, under the names of its rows: length, and rate_length.
+void name_leaves(Infix& infix, const Joint& joint, const DerivedLaw& law) {
+  std::size_t row = 0;
+  for (const LawInput& input : joint.law->inputs) {
+    const std::size_t rows = input.rate->vector ? static_cast<std::size_t>(joint.dimension) : 1;
+    for (std::size_t k = 0; k < rows; ++k, ++row) {
+      const std::string name = rows > 1 ? input.name + "_" + "xyz"[k] : input.name;
+      infix.names().add_leaf(law.value[row], name, "value", "the value of the row " + name, input.unit);
+      infix.names().add_leaf(law.rate[row], "rate_" + name, "rate", "the rate of the row " + name, input.unit / second);
+    }
+    infix.names().add_leaf(joint.law->mass, "mass", "mass", "the effective mass 1/K of the coordinate",
+                           joule * second * second / (input.unit * input.unit));
+  }
+}
+
+Json law_json(Infix& infix, const Joint& joint, const DerivedLaw& law) {
+  name_leaves(infix, joint, law);
+  Json out{{"value", infix.of_all(law.value)},
+           {"rate", infix.of_all(law.rate)},
+           {"energy", infix.of_optional(law.energy)},
+           {"force", infix.of_all(law.force)},
+           {"unstored", infix.of_all(law.unstored)},
+           {"stiffness", Json::array()},
+           {"damping", Json::array()}};
+  for (const std::vector<Expr>& row : law.stiffness) out["stiffness"].push_back(infix.of_all(row));
+  for (const std::vector<Expr>& row : law.damping) out["damping"].push_back(infix.of_all(row));
+  return out;
+}
+
+Json bound_json(Infix& infix, const Joint& joint, const BoundedRow& row, const DerivedBound& bound) {
+  const auto known = std::ranges::find(joint.coordinates, row.coordinate, &Coordinate::name);
+  const Unit unit = known == joint.coordinates.end() ? joint.law->free->unit : known->unit;
+  const auto add = [&](Expr leaf, const char* before, const char* kind, const std::string& of, const Unit& its) {
+    infix.names().add_leaf(leaf, before + of, kind, fmt::format("the {} of {}", kind, of), its);
+  };
+  add(row.value, "", "value", row.coordinate, unit);
+  add(row.own_rate, "rate_", "rate", row.coordinate, unit / second);
+  add(row.own_load, "force_", "force", row.name, joule / unit);
+  return {{"name", row.name},
+          {"text", row.text},
+          {"coordinate", row.coordinate},
+          {"rate", infix.of_optional(bound.rate)},
+          {"lower", infix.of_optional(bound.lower)},
+          {"upper", infix.of_optional(bound.upper)},
+          {"by_lower", infix.of_optional(bound.by_lower)},
+          {"by_upper", infix.of_optional(bound.by_upper)},
+          {"after", infix.of_optional(row.after)},
+          {"until", infix.of_optional(row.until)}};
+}
+
+// What an effect adds to its rows: null without one.
+void add_effect(Json& out, Infix& infix, const Derivation& derivation) {
+  const Joint& joint = derivation.joint;
+  out["law"] = derivation.law ? law_json(infix, joint, *derivation.law) : Json();
+  out["bounds"] = Json::array();
+  for (std::size_t i = 0; i < derivation.bounded.size(); ++i)
+    out["bounds"].push_back(bound_json(infix, joint, joint.law->bounded[i], derivation.bounded[i]));
+}
+
 }  // namespace
 
 std::string explanation_json(const Derivation& derivation) {
@@ -189,6 +259,8 @@ std::string explanation_json(const Derivation& derivation) {
     add_block(out, infix, derivation.coordinates[i]);
     coordinates.push_back(std::move(out));
   }
+  Json effect;
+  add_effect(effect, infix, derivation);
   Json all{{"format", 1},
            {"joint", joint.name},
            {"title", joint.title},
@@ -202,6 +274,7 @@ std::string explanation_json(const Derivation& derivation) {
   all["guards"] = infix.guards();
   all.update(rows);
   all["coordinates"] = std::move(coordinates);
+  all.update(effect);
   return all.dump(2) + "\n";
 }
 

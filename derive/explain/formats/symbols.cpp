@@ -201,6 +201,12 @@ void ExplainedSymbols::add_axis(Expr symbol) {
   add(leaf, leaf, doc);
 }
 
+void ExplainedSymbols::add_leaf(Expr leaf, const std::string& wish, const std::string& kind, const std::string& meaning,
+                                const Unit& unit) {
+  if (leaf && !names_.contains(leaf->symbol))
+    add(leaf->symbol, wish, {kind, meaning, derive::text(unit), "", "", "", false});
+}
+
 std::string ExplainedSymbols::name(Expr symbol) {
   if (!names_.contains(symbol->symbol)) add_axis(symbol);
   return names_.at(symbol->symbol);

@@ -15,7 +15,10 @@ class ExplainedSymbols {
  public:
   explicit ExplainedSymbols(const Joint& joint);
 
-  std::string name(Expr symbol);                 // of a scalar leaf; arms are renamed: ra_x is r_pa_x
+  std::string name(Expr symbol);  // of a scalar leaf; arms are renamed: ra_x is r_pa_x
+  // A leaf of the law of an effect: what stands for a row's value or rate, for a mass or a load.
+  void add_leaf(Expr leaf, const std::string& wish, const std::string& kind, const std::string& meaning,
+                const Unit& unit);
   std::string reserve(const std::string& wish);  // a name that nothing else has, near the wish
   text::Json json() const { return docs_; }
   // Triads among the parameters: name, and three axes of three components each.

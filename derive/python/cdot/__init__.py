@@ -21,11 +21,11 @@ _cdot._install_in(_os.path.dirname(_os.path.abspath(__file__)))
 
 from ._cdot import (CannotEmit, Error, NoSuchSpec, Result, Scene, SceneError, Snapshot, SpatialWorld,  # noqa: E402
                     World, __version__)
-from .derivation import Block, Derivation, derive  # noqa: E402
+from .derivation import Block, Bound, Derivation, Law, derive  # noqa: E402
 from .run import batch, simulate  # noqa: E402
 
 for _part in (CannotEmit, Error, NoSuchSpec, Result, Scene, SceneError, Snapshot, SpatialWorld, World):
     _part.__module__ = "cdot"  # as messages name it
 
-__all__ = ["Block", "CannotEmit", "Derivation", "Error", "NoSuchSpec", "Result", "Scene", "SceneError", "Snapshot",
+__all__ = ["Block", "Bound", "CannotEmit", "Derivation", "Error", "Law", "NoSuchSpec", "Result", "Scene", "SceneError", "Snapshot",
            "SpatialWorld", "World", "batch", "derive", "simulate", "__version__"]

@@ -67,8 +67,54 @@ class Block:
         return f"<{type(self).__name__} {self.name}>"
 
 
+class Law:
+    """The law of an effect along its rows, in the symbols of Derivation.symbols. Forces act by J' F on the bodies.
+
+    value      a symbol a row: its C; None where a turn in space has no value
+    rate       a symbol a row: its Cdot
+    energy     what it stores [J]; 0 if nothing
+    force      [rows, 1]     F, with the part -dE/d(value)
+    unstored   [rows, 1]     the part of F that has no energy
+    stiffness  [rows, rows]  -dF/d(value)
+    damping    [rows, rows]  -dF/d(rate)
+    """
+
+    def __init__(self, data: Mapping[str, Any], of: Callable[[str], sympy.Expr]):
+        self.value: tuple[Any, ...] = tuple(of(each) if each else None for each in data["value"])
+        self.rate: tuple[sympy.Expr, ...] = tuple(of(each) for each in data["rate"])
+        self.energy: sympy.Expr = of(data["energy"] or "0")
+        self.force, self.unstored = (sympy.ImmutableMatrix(len(data[key]), 1, [of(entry) for entry in data[key]])
+                                     for key in ("force", "unstored"))
+        self.stiffness, self.damping = (
+            sympy.ImmutableMatrix([[of(entry) for entry in row] for row in data[key]]) for key in ("stiffness", "damping"))
+
+    def __repr__(self) -> str:
+        return f"<Law of {len(self.rate)} rows>"
+
+
+class Bound:
+    """A row with bounds of an effect; missing parts are None.
+
+    lower, upper        the ends of its coordinate; if it has a rate, the bounds of its force
+    by_lower, by_upper  what each unit of the load adds to these
+    rate                that it prescribes
+    after, until        at most 0 where it begins and where it ends
+    """
+
+    def __init__(self, data: Mapping[str, Any], of: Callable[[str], sympy.Expr]):
+        self.name: str = data["name"]
+        self.text: str = data["text"]
+        self.coordinate: str = data["coordinate"]
+        self.rate, self.lower, self.upper, self.by_lower, self.by_upper, self.after, self.until = (
+            of(data[key]) if data[key] else None
+            for key in ("rate", "lower", "upper", "by_lower", "by_upper", "after", "until"))
+
+    def __repr__(self) -> str:
+        return f"<Bound {self.text}>"
+
+
 class Derivation(Block):
-    """A joint or an effect, derived by the rules of the textbook. Of an effect the rows are empty: see `coordinates`.
+    """A joint or an effect, derived by the rules of the textbook. `law` and `bounds` are those of an effect.
 
     Cdot proves the specs of its catalogue with GiNaC; this module has no GiNaC and proves nothing. `cdot derive` and
     `cdot check` prove a spec of your own.
@@ -97,6 +143,8 @@ class Derivation(Block):
             self._named[each["name"]] = self._expression(each["definition"])
         self.coordinates: Mapping[str, Block] = MappingProxyType(
             {each["name"]: Block(each["name"], each, self._expression) for each in data["coordinates"]})
+        self.law: Any = Law(data["law"], self._expression) if data["law"] else None
+        self.bounds: tuple[Bound, ...] = tuple(Bound(each, self._expression) for each in data["bounds"])
 
     def _expression(self, text: str) -> sympy.Expr:
         return _sympy_of(ast.parse(text, mode="eval").body, self._named)
@@ -167,7 +215,7 @@ class Derivation(Block):
         return self._texts.kernel()
 
     def emit(self, engine: str) -> str:
-        """A header that makes the joint one of an engine: box2d, bullet, jolt, simbody or plain."""
+        """A header that makes the joint one of an engine: box2d, bullet, dart, jolt, ode, simbody or plain."""
         return self._texts.emit(engine)
 
     def _repr_latex_(self) -> str:

@@ -56,7 +56,7 @@ class Program:
         for name, symbol in self.symbols.items():
             if symbol["kind"] == "constant":
                 state[name] = mp.pi
-            elif symbol["kind"] in ("mass", "parameter", "time"):
+            elif symbol["kind"] in ("mass", "parameter", "time", "value", "rate", "force"):
                 state[name] = mpf(rng.uniform(0.5, 2))
             elif symbol["kind"] in ("position", "velocity", "orientation"):
                 state[name] = mpf(rng.uniform(-2, 2))
@@ -192,6 +192,37 @@ class Checks:
                     self.failures.append(f"{self.where}: J[{i}][{j}] is zero but says {text}")
 
 
+class Law:
+    """Forces are the slopes of the energy, and slopes those of the forces; expressions of bounds can be read."""
+
+    def __init__(self, program, data):
+        self.program, self.where, self.failures, self.done = program, data["joint"] + ".law", [], 0
+        law = data["law"] or {"value": [], "rate": [], "energy": None, "force": [], "unstored": [], "stiffness": [],
+                              "damping": []}
+        self.leaves = {"stiffness": law["value"], "damping": law["rate"]}
+        self.energy = program.compiled(law["energy"] or "0")
+        self.force, self.unstored = ([program.compiled(e) for e in law[key]] for key in ("force", "unstored"))
+        self.slopes = {key: [[program.compiled(e) for e in row] for row in law[key]] for key in self.leaves}
+        self.bounds = [program.compiled(e) for bound in data["bounds"] for key, e in bound.items()
+                       if e is not None and key not in ("name", "text", "coordinate")]
+
+    def at(self, state):
+        along = {leaf: state.neighbours({leaf: mpf(1)}) for leaves in self.leaves.values() for leaf in leaves if leaf}
+        slope = lambda function, leaf: difference(function, along[leaf]) if leaf else mpf(0)
+        for i, force in enumerate(self.force):
+            stored = force(state.values) - self.unstored[i](state.values)
+            self.expect(f"force[{i}]", stored, -slope(self.energy, self.leaves["stiffness"][i]))
+            for key, leaves in self.leaves.items():
+                for j, leaf in enumerate(leaves):
+                    self.expect(f"{key}[{i}][{j}]", self.slopes[key][i][j](state.values), -slope(force, leaf))
+        for bound in self.bounds:
+            self.done += 1
+            if not mp.isfinite(bound(state.values)):
+                self.failures.append(f"{self.where}: a bound has no value")
+
+    expect = Checks.expect
+
+
 def check(path):
     with open(path) as file:
         data = json.load(file)
@@ -203,8 +234,12 @@ def check(path):
         blocks.append(Checks(program, c, [c.get("kind", "equality")], data["joint"] + "." + c["name"]))
     rng = random.Random(7)
     states = [State(program, program.random_state(rng)) for _ in range(3)]
+    law = Law(program, data)
+    for state in states:
+        law.at(state)
     for block in blocks:
         block.zeros([block.at(state) for state in states])
+    blocks.append(law)
     return sum(b.done for b in blocks), [f for b in blocks for f in b.failures]
 
 

@@ -148,7 +148,6 @@ TEST(ExplainJson, IsTrueForTheCatalogueWhenSympyEvaluatesIt) {
   const fs::path files = folder("json");
   for (const std::string& name : spec_names()) {
     const Derivation derivation = read_spec(name);
-    if (derivation.joint.on_any_coordinate()) continue;  // without rows there is nothing to check
     write(files / (flat(name) + ".json"), explanation_json(derivation));
   }
   const Ran ran = check_json(files);

@@ -56,6 +56,39 @@ class Sympy(unittest.TestCase):
         self.assertEqual(angle.J, sympy.Matrix([[0, 0, -1, 0, 0, 1]]))
         self.assertEqual(angle.K, sympy.Matrix([[joint.symbols["inv_I_a"] + joint.symbols["inv_I_b"]]]))
 
+    def test_laws_of_effects(self):
+        """Forces are the slopes of energies, and slopes those of forces: sympy differentiates on its own."""
+        laws = bounds = 0
+        for folder in ("planar", "coordinate"):
+            for file in sorted(os.listdir(f"{source}/specs/{folder}")):
+                if not file.endswith(".effect"):
+                    continue
+                effect = cdot.derive(f"{source}/specs/{folder}/{file}")
+                bounds += len(effect.bounds)
+                if effect.law is None:
+                    self.assertTrue(effect.bounds, file)
+                    continue
+                laws += 1
+                law = effect.law
+                rows = range(len(law.rate))
+                slope = lambda e, by: 0 if by is None else sympy.diff(e, by)
+                off = [law.force[i] - law.unstored[i] + slope(law.energy, law.value[i]) for i in rows]
+                off += [law.stiffness[i, j] + slope(law.force[i], law.value[j]) for i in rows for j in rows]
+                off += [law.damping[i, j] + slope(law.force[i], law.rate[j]) for i in rows for j in rows]
+                free = sorted(set().union(*(sympy.sympify(e).free_symbols for e in off)), key=lambda symbol: symbol.name)
+                numbers = {symbol: sympy.Rational(2 * k + 3, 5 + k) for k, symbol in enumerate(free)}
+                for e in off:
+                    self.assertLess(abs(sympy.sympify(e).subs(numbers).doit().evalf(30)), 1e-20, f"{file}: {e}")
+        self.assertGreater(laws, 25)
+        self.assertGreater(bounds, 12)
+
+    def test_bounds_of_an_effect(self):
+        brake = cdot.derive("planar/rough_line")
+        hold = next(bound for bound in brake.bounds if bound.rate is not None)
+        self.assertEqual(hold.rate, 0)
+        self.assertEqual(hold.by_upper, brake.symbols["mu"])
+        self.assertEqual(hold.by_lower, -brake.symbols["mu"])
+
     def test_numbers_of_the_runtime(self):
         """C, Cdot of a World by its compiled kernel, and by sympy."""
         rng = random.Random(5)
