@@ -249,7 +249,7 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   const bool other_rows = system.lawful() && !island.acceleration_level;
   for (int round = 0;; ++round) {
     const T worst = find_errors(world, island, time);
-    if (round == 0 && stays_misfit(world, island, worst)) return;
+    if (round == 0 && stays_misfit(world, island, worst, time - T(world.time))) return;
     island.residual = worst;
     if (round == 0) island.misfit = 0;
     if (!(worst > tolerance * island.scale) || round == newton_rounds) return;

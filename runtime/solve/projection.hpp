@@ -23,10 +23,10 @@ typename S::Scalar round_off_of(const WorldData<S>& world, const Island<S>& isla
 template <class S>
 void clear_correction(WorldData<S>& world, Island<S>& island);
 
-// True if `error` is what the last projection has left of joints that contradict each other, which is
-// Island::residual. They would creep, were they corrected again and again.
+// True if `error`, after a step of h, is what the last projection has left of joints that contradict each other, which
+// is Island::residual. They would creep, were they corrected again and again.
 template <class S>
-bool stays_misfit(const WorldData<S>& world, const Island<S>& island, typename S::Scalar error);
+bool stays_misfit(const WorldData<S>& world, const Island<S>& island, typename S::Scalar error, typename S::Scalar h);
 
 // Writes the part of C to remove at the present poses to Batch::error. Returns the largest entry.
 template <class S>

@@ -212,11 +212,11 @@ typename S::Scalar improve(WorldData<S>& world, Island<S>& island, typename S::S
 // creep.
 template <class S>
 typename S::Scalar find_errors_but_misfits(WorldData<S>& world, Island<S>& island, typename S::Scalar time,
-                                           typename S::Scalar at_start) {
+                                           typename S::Scalar at_start, typename S::Scalar h) {
   using T = typename S::Scalar;
   const T error = find_errors(world, island, time);
   island.residual = at_start;
-  if (!stays_misfit(world, island, error)) return island.residual = error;
+  if (!stays_misfit(world, island, error, h)) return island.residual = error;
   for (const auto& [batch, begin, end, whole] : island.segments)
     if (!batch->law) each_row(*batch, begin, end, [of = batch](int i) { of->error[i] = T(0); });
   return T(0);
@@ -247,7 +247,7 @@ bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     if (renew) stiffen_masses(world, island, h / 4);
     drift_with_rates(world, island, h);
     find_misses_of_bounded(world, island, h, true);
-    const T misfit = find_errors_but_misfits(world, island, time, at_start) == T(0) ? T(island.residual) : T(0);
+    const T misfit = find_errors_but_misfits(world, island, time, at_start, h) == T(0) ? T(island.residual) : T(0);
     find_errors_of_rates(island, h);
     if (!std::isfinite(double(island.residual))) return false;
     find_misses_of_bounded(world, island, h, false);

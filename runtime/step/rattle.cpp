@@ -97,7 +97,7 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
   for (int vain = 0;;) {
     drift(world, island, h);
     const T error = find_errors(world, island, time);
-    if (first && stays_misfit(world, island, error)) return true;
+    if (first && stays_misfit(world, island, error, h)) return true;
     if (first) at_first = error;
     first = false;
     island.residual = error;

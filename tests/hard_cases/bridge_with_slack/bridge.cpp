@@ -15,7 +15,13 @@ void sag(Trial& t) {
   for (const BodyState& plank : t.frame().bodies)
     lowest = std::min(lowest, plank.y - 0.5 * std::abs(std::sin(plank.angle)));
   t.near("sag [m]", -lowest, 10.93409, 1e-2);
-  const double tension = t.ask([](const auto& world) { return double(std::abs(world.reaction(0, 0).force_x)); });
+  // In float, planks wander across within their gaps: the tension varies by 2e-3 from step to step. This is its mean.
+  constexpr int steps = 240;
+  double tension = 0;
+  for (int k = 0; k < steps; ++k) {
+    t.run(1.0 / 60);
+    tension += t.ask([](const auto& world) { return double(std::abs(world.reaction(0, 0).force_x)); }) / steps;
+  }
   t.near("tension, relative", tension / 14086.96, 1, 1e-3);
 }
 
