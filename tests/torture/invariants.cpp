@@ -227,7 +227,8 @@ std::optional<Verdict> Trial<S>::look(BasicWorld<S>& world, int k) {
     return verdict(Outcome::limited, "an effect has no energy at a pose, which cdot-run tells", "", 0, 0, k);
   const Gap gap = gap_now(world);
   const Motion now = motion_of(world);
-  accounts_->step(now, spring_rows(world), frame.energy, operations_, world.step_counts().taken, length_of_step(k));
+  accounts_->step(now, spring_rows(world), frame.energy, operations_, world.step_counts().taken, length_of_step(k),
+                  speed_left_across(world, *scene_));
   if (auto broken = look_at_joints(world, gap, k)) return broken;
   if (auto broken = look_at_momentum(now, world, gap.share, k)) {
     // Impulses of rows that contradict each other, or nearly, cancel to round-off of their size before they are summed.
@@ -244,7 +245,7 @@ Verdict Trial<S>::watch(BasicWorld<S>& world) {
   start_energy_ = world.energy();
   accounts_.emplace(start_, spring_rows(world), start_energy_,
                     asked_->forces ? under_largest_forces(*scene_, sizes_.length) : *scene_, sizes_.length,
-                    std::numeric_limits<T>::epsilon());
+                    std::numeric_limits<T>::epsilon(), speed_left_across(world, *scene_));
   Verdict first;
   BalanceWatch balances;
   for (int k = 1; k <= steps_; ++k) {

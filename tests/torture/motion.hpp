@@ -15,6 +15,7 @@ struct BodyMotion {
   double mass = 0;
   std::array<double, 3> x{}, v{}, w{}, spin{};  // spin: its angular momentum about its own centre
   spatial::Symmetric<double> inertia{};
+  spatial::Pose<double> pose{};
 };
 
 struct Motion {
@@ -30,6 +31,8 @@ BodyMotion motion_of(const planar::Pose<T>& q, const planar::Velocity<T>& v, con
   BodyMotion body;
   body.mass = 1 / double(m.m);
   body.inertia.zz = m.I > 0 ? 1 / double(m.I) : 0;
+  const double half = double(q.angle) / 2;
+  body.pose = spatial::oriented<double>(q.x, q.y, 0, std::cos(half), 0, 0, std::sin(half));
   body.x = {q.x, q.y, 0}, body.v = {v.x, v.y, 0}, body.w = {0, 0, v.w};
   return body;
 }
@@ -38,6 +41,7 @@ BodyMotion motion_of(const spatial::Pose<T>& q, const spatial::Velocity<T>& v, c
   BodyMotion body;
   body.mass = 1 / double(m.m);
   body.inertia = spatial::inverse(spatial::Symmetric<double>{m.Ixx, m.Iyy, m.Izz, m.Ixy, m.Ixz, m.Iyz});
+  body.pose = spatial::oriented<double>(q.x, q.y, q.z, q.e0, q.e1, q.e2, q.e3);
   body.x = {q.x, q.y, q.z}, body.v = {v.x, v.y, v.z}, body.w = {v.wx, v.wy, v.wz};
   return body;
 }
@@ -87,6 +91,26 @@ inline VelocityChange change(const Motion& from, const Motion& to) {
       c[3 + k] = to.bodies[i].w[k] - from.bodies[i].w[k];
     }
     d.bodies.push_back(c);
+  }
+  return d;
+}
+// The rotation between two poses with whole turns, as many as at the mean spin in h.
+inline spatial::Vector<double> turn_between(const BodyMotion& a, const BodyMotion& b, double h) {
+  constexpr double full = 6.283185307179586;
+  const auto turn = spatial::turn_between(a.pose, b.pose);
+  const double size = spatial::norm(turn);
+  if (size == 0) return turn;
+  const double at_mean = h / 2 * ((a.w[0] + b.w[0]) * turn.x + (a.w[1] + b.w[1]) * turn.y + (a.w[2] + b.w[2]) * turn.z);
+  return (1 + full * std::round((at_mean / size - size) / full) / size) * turn;
+}
+// The first part of that change: up to the mean velocity of the way in between, of duration h.
+inline VelocityChange change_to_mean(const Motion& from, const Motion& to, double h) {
+  VelocityChange d;
+  for (std::size_t i = 0; i < to.bodies.size(); ++i) {
+    const BodyMotion &a = from.bodies[i], &b = to.bodies[i];
+    const auto turn = turn_between(a, b, h);
+    d.bodies.push_back({(b.x[0] - a.x[0]) / h - a.v[0], (b.x[1] - a.x[1]) / h - a.v[1], (b.x[2] - a.x[2]) / h - a.v[2],
+                        turn.x / h - a.w[0], turn.y / h - a.w[1], turn.z / h - a.w[2]});
   }
   return d;
 }

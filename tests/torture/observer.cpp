@@ -64,13 +64,39 @@ double independence(const SystemMatrix& system, double round_off) {
   return std::sqrt(least);
 }
 
+double speed_across(const SystemMatrix& system, const std::vector<double>& v, const std::vector<char>& counts) {
+  const auto k = [&](int r, int c) { return system.K[static_cast<std::size_t>(r * system.rows + c)]; };
+  std::vector<int> rows;
+  for (int r = 0; r < system.rows; ++r)
+    if (counts[static_cast<std::size_t>(r)] && k(r, r) > 0) rows.push_back(r);
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  if (n == 0) return 0;
+  Eigen::MatrixXd K(n, n);
+  Eigen::VectorXd e = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const int r = rows[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const int c = rows[static_cast<std::size_t>(j)];
+      K(i, j) = k(r, c) / std::sqrt(k(r, r) * k(c, c));
+    }
+    for (int c = 0; c < system.columns; ++c) e(i) += system.entry(r, c) * v[static_cast<std::size_t>(c)];
+    e(i) /= std::sqrt(k(r, r));
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(K);
+  double sum = 0;
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (solver.eigenvalues()(i) > 1e-10)
+      sum += std::pow(solver.eigenvectors().col(i).dot(e), 2) / solver.eigenvalues()(i);
+  return std::sqrt(sum);
+}
+
 double turned(const SystemMatrix& before, const SystemMatrix& after, double length) {
   if (after.rows == 0 || before.rows != after.rows || after.columns == 0) return 0;
   return (unit_rows(after, length) - unit_rows(before, length)).rowwise().norm().maxCoeff();
 }
 
 Accounts::Accounts(const Motion& start, std::vector<SpringRow> springs, double energy, const Scene& scene,
-                   double length, double epsilon)
+                   double length, double epsilon, double across)
     : order_(order_of(scene.settings.integrator)),
       epsilon_(epsilon),
       start_energy_(energy),
@@ -82,7 +108,8 @@ Accounts::Accounts(const Motion& start, std::vector<SpringRow> springs, double e
       substep_(scene.step / scene.settings.substeps),
       springs_(std::move(springs)),
       farthest_(length),
-      last_(start) {}
+      last_(start),
+      across_(across) {}
 
 // The torques that a first-order step leaves: it corrects the poses by d, x1 = x0 + h v1 + d, at their velocities, and
 // the impulses of the correction, d / h, act at the end of the step along the directions of its start. A body has moved
@@ -101,11 +128,33 @@ double torques_of_corrections(const Motion& before, const Motion& now, double h)
   return sum;
 }
 
+// A first-order step kicks and corrects, then projects: both changes, which may oppose each other.
+double parts_of_change(const Motion& before, const Motion& now, const VelocityChange& d, double h) {
+  const VelocityChange first = change_to_mean(before, now, h);
+  return std::sqrt(square(now, first)) + std::sqrt(square(now, d, first));
+}
+
+// [J], and relative to twice the kinetic energy in the angular momentum.
+void Accounts::add_error(const Motion& now, double energy) {
+  order_error_ += energy;
+  if (largest_speed_ > 0) angular_order_ += now.angular_size * energy / (largest_speed_ * largest_speed_);
+}
+
+void Accounts::add_round_off(const Motion& now, double operations) {
+  for (const BodyMotion& body : now.bodies) farthest_ = std::max(farthest_, norm(body.x));
+  // Positions and arms are rounded too: forces do work on the rounding errors, and velocities correct them.
+  round_off_ += operations * epsilon_ *
+                (largest_energy_ + pushed_ / step_ * now.root_mass * farthest_ +
+                 epsilon_ * now.root_mass * now.root_mass * farthest_ * farthest_ / (step_ * step_));
+  momentum_ += operations * epsilon_ * now.linear_size;
+  angular_ += operations * epsilon_ * now.angular_size;
+}
+
 // Per step: (|dv| (|dv| + |h F|) + missed_work) rho^(p-1), where rho is the change of acceleration in a step relative
 // to the largest so far. dv does not show joint forces against the turning of a tensor, so the larger dv, with or
 // without that turning, counts.
 void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double energy, double operations,
-                    long long taken, double h) {
+                    long long taken, double h, double across) {
   const VelocityChange d = change(last_, now);
   pushed_ = std::max(pushed_, constant_ + push_of(springs, substep_));
   for (const SpringRow& spring : springs_)
@@ -113,19 +162,19 @@ void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double en
         std::max(fastest_,
                  std::sqrt(spring.mass * (order_ > 1 ? std::abs(spring.stiffness) : std::max(0.0, -spring.stiffness))));
   const double size = std::sqrt(square(now, d));
-  const double done = std::max(size, std::sqrt(square(now, d, turning(last_, step_))));
+  const double done = std::max(
+      {size, std::sqrt(square(now, d, turning(last_, step_))), order_ == 1 ? parts_of_change(last_, now, d, h) : 0});
   const double first_order = done * (done + pushed_) + missed_work(springs_, springs, step_, size);
   largest_change_ = std::max(largest_change_, size);
   largest_speed_ = std::max(largest_speed_, std::sqrt(2 * now.kinetic));
   largest_energy_ = std::max({largest_energy_, now.kinetic, std::abs(energy - start_energy_)});
+  add_error(now, (size + step_ / substep_ * pushed_) * (across_ + across) / 2);
   if (!change_) roughest_ = largest_speed_ > 0 ? size / largest_speed_ : 0;
   if (change_) {
     const double noise = 1000 * epsilon_ * largest_speed_;
     const double rough = largest_change_ > noise ? std::sqrt(square(now, d, *change_)) / largest_change_ : 0;
     const double rho = std::pow(std::max(rough, rough_before_), order_ - 1);
-    const double term = (first_order + pending_) * rho;
-    order_error_ += term;
-    if (largest_speed_ > 0) angular_order_ += now.angular_size * term / (largest_speed_ * largest_speed_);
+    add_error(now, (first_order + pending_) * rho);
     roughest_ = std::max(roughest_, rough);
     rough_before_ = rough;
     pending_ = 0;
@@ -133,17 +182,11 @@ void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double en
     pending_ = first_order;  // of the first step
   }
   // An error of local_error in every pose and velocity, at the end of each step taken.
-  const double chosen = double(taken - taken_) * local_error_ *
-                        (now.linear_size + now.spin_size + largest_change_ / step_ * now.root_mass);
-  order_error_ += chosen;
-  angular_order_ += chosen * (largest_speed_ > 0 ? now.angular_size / (largest_speed_ * largest_speed_) : 0);
+  add_error(now, double(taken - taken_) * local_error_ *
+                     (now.linear_size + now.spin_size + largest_change_ / step_ * now.root_mass));
   if (order_ == 1) angular_order_ += torques_of_corrections(last_, now, h);
-  for (const BodyMotion& body : now.bodies) farthest_ = std::max(farthest_, norm(body.x));
-  // Positions and arms are rounded too, and forces do work on the rounding errors.
-  round_off_ += operations * epsilon_ * (largest_energy_ + pushed_ / step_ * now.root_mass * farthest_);
-  momentum_ += operations * epsilon_ * now.linear_size;
-  angular_ += operations * epsilon_ * now.angular_size;
-  change_ = d;
+  add_round_off(now, operations);
+  change_ = d, across_ = across;
   springs_ = std::move(springs);
   last_ = now;
   taken_ = taken;

@@ -90,16 +90,50 @@ Gap gap_of(const BasicWorld<S>& world, const Scene& scene, const RowSizes& sizes
   return gap;
 }
 
+// The speed across the rows marked in `counts`, in the metric of the masses: sqrt((J v)' K^-1 (J v)). v: by column.
+double speed_across(const SystemMatrix& system, const std::vector<double>& v, const std::vector<char>& counts);
+
+// The same, across all joints but soft, broken and slack ones.
+template <class S>
+double speed_across(BasicWorld<S>& world, const Scene& scene) {
+  const SystemMatrix system = system_matrix(world);
+  std::vector<char> counts(static_cast<std::size_t>(system.rows), 1);
+  for (const SystemMatrix::Joint& joint : system.joints) {
+    const JointType& type = world.joint_type(joint.joint);
+    const auto j = static_cast<std::size_t>(joint.joint);  // springs between points follow
+    const bool hard = j < scene.joints.size() && !type.is_effect && !scene.joints[j].definition.soft;
+    const std::vector<double> C = world.position_error(joint.joint);
+    for (std::size_t r = 0; r < static_cast<std::size_t>(joint.rows); ++r)
+      if (!hard || (type.row_kinds[r] == RowKind::inequality && C[r] > 0))
+        counts[static_cast<std::size_t>(joint.first) + r] = 0;
+  }
+  std::vector<double> v;
+  for (const int body : system.bodies) {
+    const BodyMotion is = motion_of(world.pose(body), world.velocity(body), world.inverse_mass(body));
+    if (S::dimension == Dimension::planar) v.insert(v.end(), {is.v[0], is.v[1], is.w[2]});
+    else v.insert(v.end(), {is.v[0], is.v[1], is.v[2], is.w[0], is.w[1], is.w[2]});
+  }
+  return speed_across(system, v, counts);
+}
+
+// The same, where steps leave it: sweeps and Baumgarte's correction do.
+template <class S>
+double speed_left_across(BasicWorld<S>& world, const Scene& scene) {
+  const bool exact = scene.settings.solver == Solver::direct && scene.settings.drift == Drift::projection;
+  return exact ? 0 : speed_across(world, scene);
+}
+
 // The bounds of energy and angular momentum after the steps so far; see README.md.
 class Accounts {
  public:
   // `length`: of the mechanism, with the arms of its joints.
   Accounts(const Motion& start, std::vector<SpringRow> springs, double energy, const Scene& scene, double length,
-           double epsilon);
+           double epsilon, double across);
 
   // `taken`: adaptive steps so far; h: the length of the step.
+  // `across`: speed_left_across() at its end.
   void step(const Motion& now, std::vector<SpringRow> springs, double energy, double operations, long long taken,
-            double h);
+            double h, double across);
 
   // For RATTLE plus the distance to the energy that its steps conserve, h^2 (v'V''v / 12 - F'M^-1 F / 24). The force
   // of a velocity row has no V: in the last half kick it does the work h^2 lambda (dJ/dt) v / 8, which the first half
@@ -117,6 +151,9 @@ class Accounts {
   double angular_order_error() const { return angular_order_; }
 
  private:
+  void add_error(const Motion& now, double energy);
+  void add_round_off(const Motion& now, double operations);
+
   double order_, epsilon_, start_energy_, local_error_;
   bool rolls_;                // it has velocity rows
   double constant_, pushed_;  // what the constant forces, and springs as well, add to the velocities in a step, in the
@@ -126,6 +163,7 @@ class Accounts {
   double farthest_;  // from the origin, or the longest arm [m]
   long long taken_ = 0;
   Motion last_;
+  double across_;
   std::optional<VelocityChange> change_;
   double rough_before_ = 0, pending_ = 0, largest_change_ = 0, largest_speed_ = 0, largest_energy_ = 0;
   double fastest_ = 0, order_error_ = 0, round_off_ = 0, roughest_ = 0, momentum_ = 0, angular_ = 0, angular_order_ = 0;
