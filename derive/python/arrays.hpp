@@ -31,6 +31,7 @@ py::array_t<double> readable(const py::handle& value, const std::string& name, c
 double* writable(const py::array& value, const std::string& name, const Shape& shape);
 
 // The parts of the module, one file each.
+void bind_compiled(py::module_& module);
 void bind_derivation(py::module_& module);
 void bind_scene(py::module_& module);
 void bind_world(py::module_& module);

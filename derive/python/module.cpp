@@ -22,4 +22,5 @@ PYBIND11_MODULE(_cdot, module) {
   cdot::python::bind_derivation(module);
   cdot::python::bind_scene(module);
   cdot::python::bind_world(module);
+  cdot::python::bind_compiled(module);
 }

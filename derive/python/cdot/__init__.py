@@ -19,13 +19,13 @@ from . import _cdot
 
 _cdot._install_in(_os.path.dirname(_os.path.abspath(__file__)))
 
-from ._cdot import (CannotEmit, Error, NoSuchSpec, Result, Scene, SceneError, Snapshot, SpatialWorld,  # noqa: E402
-                    World, __version__)
+from ._cdot import (CannotEmit, Compiled, Error, NoSuchSpec, Result, Scene, SceneError, Snapshot,  # noqa: E402
+                    SpatialWorld, World, __version__)
 from .derivation import Block, Bound, Derivation, Law, derive  # noqa: E402
-from .run import batch, simulate  # noqa: E402
+from .run import batch, compile, simulate  # noqa: E402
 
-for _part in (CannotEmit, Error, NoSuchSpec, Result, Scene, SceneError, Snapshot, SpatialWorld, World):
+for _part in (CannotEmit, Compiled, Error, NoSuchSpec, Result, Scene, SceneError, Snapshot, SpatialWorld, World):
     _part.__module__ = "cdot"  # as messages name it
 
-__all__ = ["Block", "Bound", "CannotEmit", "Derivation", "Error", "Law", "NoSuchSpec", "Result", "Scene", "SceneError", "Snapshot",
-           "SpatialWorld", "World", "batch", "derive", "simulate", "__version__"]
+__all__ = ["Block", "Bound", "CannotEmit", "Compiled", "Derivation", "Error", "Law", "NoSuchSpec", "Result", "Scene",
+           "SceneError", "Snapshot", "SpatialWorld", "World", "batch", "compile", "derive", "simulate", "__version__"]

@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <dlfcn.h>
 #include <fmt/format.h>
-#include <fstream>
 #include <limits>
 #include <set>
 
 #include <cdot/methods.hpp>
 
-#include "runtime/command_line/installation.hpp"
 #include "runtime/tool/compiled/compiler.hpp"
 #include "runtime/tool/run/process.hpp"
 #include "runtime/tool/run/simulate.hpp"
@@ -19,123 +16,9 @@
 namespace cdot {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr int most_lanes = 8;
 constexpr double least_measured = 2e-3;  // [s]: a shorter run is repeated
 constexpr int most_repeats = 1000;
-constexpr const char* optimised = "-O2 -march=native";
-// The same bits alone and in a lane (the head of each compiled scene tells why).
-constexpr const char* for_library = "-std=c++20 -ffp-contract=off -fno-tree-slp-vectorize -fPIC -shared -w";
-
-// The functions of CompiledStep for {0} lanes each.
-constexpr const char* program_text = R"(#include <cdot/pack.hpp>
-
-#include "scene.hpp"
-
-namespace {
-
-double first(double x) { return x; }
-template <class Pack>
-double first(const Pack& x) { return x[0]; }
-
-template <class T>
-struct Run {
-  using Scene = cdot::scenes::Compiled<T>;
-  using State = typename Scene::State;
-
-  static void* make() {
-    State* const state = new State;
-    Scene::reset(*state);
-    return state;
-  }
-  static void destroy(void* state) { delete static_cast<State*>(state); }
-  static void advance(void* state, double h, int steps) {
-    for (int k = 0; k < steps; ++k) Scene::step(*static_cast<State*>(state), T(h));
-  }
-  static void look(const void* of, double* numbers) {
-    const State& state = *static_cast<const State*>(of);
-    for (int i = 0; i < Scene::bodies; ++i) numbers = body(state.q[i], state.v[i], numbers);
-    *numbers++ = first(Scene::energy(state));
-    *numbers = numbers[1] = 0;
-    if constexpr (Scene::rows > 0) {
-      T C[Scene::rows], Cdot[Scene::rows];
-      Scene::errors(state.q, state.time, C);
-      Scene::rates(state.J, state.v, Cdot);
-      for (int r = 0; r < Scene::rows; ++r) {
-        larger(numbers[0], first(C[r]));
-        larger(numbers[1], first(Cdot[r]));
-      }
-    }
-  }
-
- private:
-  static void larger(double& most, double x) {
-    if (!((x < 0 ? -x : x) <= most)) most = x < 0 ? -x : x;
-  }
-  template <class Pose, class Velocity>
-  static double* body(const Pose& q, const Velocity& v, double* to) {
-    if constexpr (requires { q.e0; }) {
-      for (const T& x : {q.x, q.y, q.z, q.e0, q.e1, q.e2, q.e3, v.x, v.y, v.z, v.wx, v.wy, v.wz}) *to++ = first(x);
-    } else {
-      for (const T& x : {q.x, q.y, q.angle, v.x, v.y, v.w}) *to++ = first(x);
-    }
-    return to;
-  }
-};
-
-struct Step {
-  void* (*make)();
-  void (*destroy)(void*);
-  void (*advance)(void*, double, int);
-  void (*look)(const void*, double*);
-};
-template <class T>
-constexpr Step step = {Run<T>::make, Run<T>::destroy, Run<T>::advance, Run<T>::look};
-
-}  // namespace
-
-extern "C" const void* cdot_step(int lanes) {
-  return lanes == 1 ? &step<double> : &step<cdot::Pack<double, 8>>;
-}
-)";
-
-// The first of these places that is there, seen from the running program.
-fs::path beside_program(std::initializer_list<const char*> places) {
-  std::error_code none;
-  for (const char* place : places)
-    if (const fs::path path = command_line::own_folder() / place; fs::exists(path, none)) return fs::canonical(path);
-  return {};
-}
-
-// The folder of specs to which the scene belongs, as an option; none: `cdot compile` knows where to look.
-std::string specs_of(const Scene& scene) {
-  for (fs::path folder = fs::absolute(scene.file).parent_path(); folder.has_relative_path();
-       folder = folder.parent_path())
-    if (folder.filename() == "specs") return " --specs " + quoted(folder.string());
-  return {};
-}
-
-// Writes the step of one method into the folder and compiles it to `library`. Returns the reason if it cannot.
-std::string build(const Scene& scene, Integrator integrator, const ScratchFolder& folder, const std::string& library,
-                  const SceneCompiler& compiler) {
-  if (compiler.program.empty() || compiler.include.empty())
-    return "the program cdot-compile is not beside cdot-run. Fix: build or install it";
-  const Ran written = shell(fmt::format(
-      "{} compile {} --integrator {} --name Compiled -o {}{}", quoted(compiler.program.string()), quoted(scene.file),
-      name_of(integrators, integrator), quoted(folder.file("scene.hpp")), specs_of(scene)));
-  if (!written.well) return first_line(written.output);
-  std::ofstream(folder.file("program.cpp")) << program_text;
-  const Ran built = shell(fmt::format("ulimit -t {}; {} {} {} -I{} {} -o {}", std::ceil(compiler.cpu), compiler_name(),
-                                      optimised, for_library, quoted(compiler.include.string()),
-                                      quoted(folder.file("program.cpp")), quoted(library)));
-  if (built.well) return {};
-  if (built.output.find("signal") != std::string::npos)
-    return fmt::format("{} takes more than {} s of CPU time. Fix: a larger --budget", compiler_name(),
-                       std::ceil(compiler.cpu));
-  return fmt::format("{} failed: {}", compiler_name(), first_line(built.output));
-}
-
 }  // namespace
 
 const std::vector<Way>& compiled_ways() {
@@ -147,14 +30,6 @@ const std::vector<Way>& compiled_ways() {
     return ways;
   }();
   return ways;
-}
-
-std::string compiled_by() { return fmt::format("{} {}", compiler_name(), optimised); }
-
-// Where both are installed, or in the folder of a build.
-SceneCompiler scene_compiler_beside_program() {
-  const fs::path header = beside_program({"../include/cdot/pack.hpp"});
-  return {beside_program({"cdot-compile", "../derive/cdot-compile"}), header.parent_path().parent_path()};
 }
 
 CompiledScenes::CompiledScenes(const Scene& scene, std::vector<Way>& ways, const SceneCompiler& compiler,
@@ -178,22 +53,11 @@ CompiledScenes::CompiledScenes(const Scene& scene, std::vector<Way>& ways, const
     if (!compiles) break;
     const std::string name(name_of(integrators, integrator));
     doing("compiling the scene for " + name);
-    const ScratchFolder folder;
-    const std::string library = folder.file("step.so");
-    const std::string failure = build(scene, integrator, folder, library, compiler);
-    if (failure.empty()) load(library, integrator);
-    else left_out_.push_back(name + ": " + failure);
+    const LoadedSteps steps = load_steps(scene, {integrator, most_lanes, {}}, compiler);
+    if (steps.failure.empty()) steps_[{integrator, 1}] = steps.one, steps_[{integrator, most_lanes}] = steps.many;
+    else left_out_.push_back(name + ": " + steps.failure);
   }
   std::erase_if(ways, [&](const Way& way) { return way.lanes > 0 && !steps_.contains({way.integrator, way.lanes}); });
-}
-
-// The library stays loaded to the end of the program.
-void CompiledScenes::load(const std::string& library, Integrator integrator) {
-  void* const loaded = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
-  void* const found = loaded ? dlsym(loaded, "cdot_step") : nullptr;
-  if (!found) throw Error(fmt::format("a compiled scene cannot be loaded: {}", dlerror()));
-  const auto step = reinterpret_cast<const void* (*)(int)>(found);
-  for (const int lanes : {1, most_lanes}) steps_[{integrator, lanes}] = *static_cast<const CompiledStep*>(step(lanes));
 }
 
 CompiledRun::CompiledRun(const CompiledScenes& scenes, const Way& way)

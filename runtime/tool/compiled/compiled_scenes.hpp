@@ -1,33 +1,16 @@
 // A scene as its own step (`cdot compile`), built by the machine's compiler and loaded: ways beside those of the World.
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "runtime/tool/compiled/step_library.hpp"
 #include "runtime/tool/run/trajectory.hpp"
 
 namespace cdot {
-
-// The functions of a loaded step. A state has so many lanes; all lanes move alike.
-struct CompiledStep {
-  void* (*make)();  // a state at the start of the scene
-  void (*destroy)(void* state);
-  void (*advance)(void* state, double h, int steps);
-  // Of the first lane: for each body that moves its place and velocity in the order of state_columns(); then the energy
-  // [J], the largest |C| [m], [rad] and the largest |dC/dt|.
-  void (*look)(const void* state, double* numbers);
-};
-
-// The program cdot-compile, and the folder of <cdot/pack.hpp>; empty paths if they are not there.
-struct SceneCompiler {
-  std::filesystem::path program, include;
-  double cpu = 20;  // seconds of CPU time that the C++ compiler may take for each method
-};
-SceneCompiler scene_compiler_beside_program();
 
 class CompiledScenes {
  public:
@@ -45,8 +28,6 @@ class CompiledScenes {
   }  // the reasons, each with its fix if it has one
 
  private:
-  void load(const std::string& library, Integrator integrator);
-
   friend class CompiledRun;
   Dimension dimension_;
   Frame start_;                      // of a World: bodies that do not move stay there
@@ -76,7 +57,4 @@ class CompiledRun {
 
 // By each method that `cdot compile` writes: alone, and eight at a time.
 const std::vector<Way>& compiled_ways();
-// "c++ -O2 -march=native"
-std::string compiled_by();
-
 }  // namespace cdot
