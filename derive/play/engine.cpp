@@ -37,6 +37,7 @@ json Engine::answer(const json& request) {
   if (wanted == "write") return write_files(request.at("files"));
   if (wanted == "check") return check_spec(request.at("path"));
   if (wanted == "explain") return explain_spec(request.at("path"));
+  if (wanted == "kernel") return kernel_of_spec(request.at("path"));
   if (wanted == "judge") return judge_hand(request.at("path"));
   if (wanted == "hand") return first_entry(request.at("path"));
   if (wanted == "load") {

@@ -14,6 +14,7 @@ class LiveScene;
 //   write    files {path: text}                       writes them below the current directory
 //   check    path                                     messages of the reader of specs
 //   explain  path                                     the derivation as HTML; every name carries data-name
+//   kernel   path                                     its C++ as HTML, with the same names
 //   judge    path                                     verdicts on a .hand file beside its spec
 //   hand     path                                     of a spec: the text of an entry to begin with
 //   load     path, method, rate, measure              reads a scene and makes its World; describes it

@@ -161,8 +161,12 @@ class LiveSceneIn final : public LiveScene {
   json marks(const json& request) override {
     const int joint = request.at("joint");
     if (joint < 0 || joint >= std::ssize(scene_.joints)) throw Error("there is no such joint");
-    JointPose pose{{}, world_->joint_parameters(joint), world_->time()};
-    for (const int body : world_->joint_bodies(joint)) pose.bodies.push_back(sample_of(world_->place(body)));
+    JointPose pose{{}, world_->joint_parameters(joint), world_->time(), {}};
+    for (const int body : world_->joint_bodies(joint)) {
+      pose.bodies.push_back(sample_of(world_->place(body)));
+      pose.forces.push_back(world_->is_static(body) ? derive::Triple<double>{}
+                                                    : force_of(world_->reaction(joint, body)));
+    }
     return marks_of_spec(spec_of(world_->joint_type(joint)), pose);
   }
 
@@ -225,6 +229,8 @@ class LiveSceneIn final : public LiveScene {
     }
     return all;
   }
+  static derive::Triple<double> force_of(const planar::Wrench& w) { return {w.force_x, w.force_y, 0}; }
+  static derive::Triple<double> force_of(const spatial::Wrench& w) { return {w.force_x, w.force_y, w.force_z}; }
   static double size_of(const planar::Wrench& w) { return std::hypot(w.force_x, w.force_y); }
   static double size_of(const spatial::Wrench& w) { return std::hypot(w.force_x, w.force_y, w.force_z); }
 

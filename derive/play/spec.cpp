@@ -2,6 +2,7 @@
 #include "derive/play/spec.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "derive/derivation/derivation.hpp"
 #include "derive/explain/explain.hpp"
@@ -82,17 +83,23 @@ json check_spec(const std::string& path) {
   return answer;
 }
 
-json explain_spec(const std::string& path) {
+json with_derivation(const std::string& path, const std::function<json(const Derivation&)>& answer) {
   const ReadResult read = SpecsFolder().read(path);
   if (!read.joint) return {{"problems", render(*read.file, read.diagnostics)}};
   try {
-    const Explanation steps = explain(derive::derive(*read.joint));
-    return {{"title", steps.title}, {"html", body_of(explanation_html(steps))}};
+    return answer(derive::derive(*read.joint));
   } catch (const NotLinear& error) {
     return refused(read, error.what());
   } catch (const NumberTooLarge& error) {
     return refused(read, error.what());
   }
+}
+
+json explain_spec(const std::string& path) {
+  return with_derivation(path, [](const Derivation& derivation) {
+    const Explanation steps = explain(derivation);
+    return json{{"title", steps.title}, {"html", body_of(explanation_html(steps))}};
+  });
 }
 
 json marks_of_spec(const std::string& path, const JointPose& pose) {
@@ -115,7 +122,21 @@ json marks_of_spec(const std::string& path, const JointPose& pose) {
     const Triple<double>& centre = sample.bodies[static_cast<std::size_t>(p.body)].x;
     arrows.push_back(arrow_json(std::string(p.symbol->symbol), centre, numbers.vector(p.symbol)));
   }
-  return {{"points", points}, {"arrows", arrows}};
+  json forces = json::array();
+  for (std::size_t body = 0; body < pose.forces.size(); ++body) {
+    const Triple<double>& force = pose.forces[body];
+    if (std::hypot(force[0], force[1], force[2]) == 0) continue;
+    Triple<double> from = sample.bodies[body].x;
+    const auto point = std::ranges::find_if(joint.parameters, [&](const Parameter& p) {
+      return p.kind == derive::ParameterKind::point && p.body == static_cast<int>(body);
+    });
+    if (point != joint.parameters.end()) {
+      const Triple<double> arm = numbers.vector(point->symbol);
+      for (std::size_t k = 0; k < 3; ++k) from[k] += arm[k];
+    }
+    forces.push_back({{"from", from}, {"force", force}});
+  }
+  return {{"points", points}, {"arrows", arrows}, {"forces", forces}};
 }
 
 }  // namespace cdot::play

@@ -1,10 +1,12 @@
 // A spec for the page: messages about it, its derivation, and its names in the picture.
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "derive/derivation/derivation.hpp"
 #include "derive/numbers/numeric.hpp"
 #include "derive/syntax/source.hpp"
 
@@ -19,14 +21,21 @@ nlohmann::json messages_json(const derive::SourceFile& file, const derive::Diagn
 nlohmann::json check_spec(const std::string& path);
 // {title, html}, or {problems}.
 nlohmann::json explain_spec(const std::string& path);
+// {html}: the kernel's C++ with the names of the derivation marked as there; or {problems}.
+nlohmann::json kernel_of_spec(const std::string& path);
+// What `answer` makes of the derivation, or {problems} if there is none.
+nlohmann::json with_derivation(const std::string& path,
+                               const std::function<nlohmann::json(const derive::Derivation&)>& answer);
 
 // Poses of a joint's bodies and its parameters, laid out as in cdot::JointType.
 struct JointPose {
   std::vector<derive::Sample::Body> bodies;
   std::vector<double> parameters;
   double time = 0;
+  std::vector<derive::Triple<double>> forces;  // of the joint on its bodies [N]
 };
-// {points: [{name, at}], arrows: [{name, from, along}]}, at this pose; or {problems}.
+// {points: [{name, at}], arrows: [{name, from, along}], forces: [{from, force}]}, at this pose; or {problems}. A force
+// begins at the first point of its body that the spec names, or at its centre.
 nlohmann::json marks_of_spec(const std::string& path, const JointPose& pose);
 
 }  // namespace cdot::play

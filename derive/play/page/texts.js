@@ -71,10 +71,13 @@ async function derive() {
   if (shown === 'spec') showMessages(checked.messages ?? messagesIn(checked.problems ?? ''));
   if ((checked.messages ?? [{severity: 'error'}]).some(m => m.severity === 'error'))
     return by('lecture').classList.add('stale');
-  if (derived === path + text) return by('lecture').classList.remove('stale');
+  if (derived === path + text) {
+    by('lecture').classList.remove('stale');
+    return by('code') ? undefined : showKernel();
+  }
   const lecture = await reader.ask({do: 'explain', path}, 20);
   if (lecture.replaced) return;
-  if (!lecture.problems) return showLecture(path, lecture);
+  if (!lecture.problems) return showLecture(path, lecture), showKernel();
   if (shown === 'spec') showMessages(messagesIn(lecture.problems));
 }
 
@@ -83,6 +86,16 @@ function showLecture(path, {title, html}) {
   by('lecture').className = '';
   by('lecture').innerHTML = `<h2>${escapedText(title)}</h2>${html}`;
   document.documentElement.dataset.derived = path;
+}
+
+// The C++ below the derivation.
+async function showKernel() {
+  const mine = derived, {html, replaced} = await reader.ask({do: 'kernel', path: specFile()}, 20);
+  if (!html || replaced || mine !== derived) return;
+  const kernel = document.createElement('section');
+  kernel.innerHTML = `<h2>The kernel</h2><pre id="code">${html}</pre>`;
+  by('code')?.parentElement.remove();
+  by('lecture').append(kernel);
 }
 
 // The verdicts on the derivations by hand of the chosen spec.

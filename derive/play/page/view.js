@@ -200,10 +200,9 @@ class View {
   }
 
   // Arrows and points of a spec by their names.
-  #marks({arrows, points, lit}, ink) {
+  #marks({arrows, points, forces, lit}, ink) {
     pen.strokeStyle = pen.fillStyle = ink.light, pen.lineWidth = 2.5, pen.font = 'bold 14px system-ui, sans-serif';
-    for (const {name, from, along} of arrows) {
-      if (!lit.has(name)) continue;
+    for (const {name, from, along} of [...arrows.filter(({name}) => lit.has(name)), ...this.#forceArrows(forces, lit)]) {
       const [ax, ay] = this.project(from), [bx, by] = this.project(from.map((v, k) => v + along[k]));
       const length = Math.hypot(bx - ax, by - ay) || 1, ux = (bx - ax) / length, uy = (by - ay) / length;
       this.line([[ax, ay], [bx, by]]), pen.stroke();
@@ -216,6 +215,13 @@ class View {
       const [x, y] = this.project(at);
       pen.beginPath(), pen.arc(x, y, 6, 0, 7), pen.stroke(), pen.fillText(name, x + 8, y - 8);
     }
+  }
+
+  // With C and J the forces J' lambda on the bodies; the largest is a third of the mechanism.
+  #forceArrows(forces, lit) {
+    if (!lit.has('C') && !lit.has('J')) return [];
+    const sizes = forces.map(({force}) => Math.hypot(...force)), scale = this.radius / 3 / Math.max(...sizes, 1e-300);
+    return forces.map(({from, force}, k) => ({name: `${+sizes[k].toPrecision(3)} N`, from, along: force.map(v => v * scale)}));
   }
 
   // The movable body at a place of the picture, and the point of it there.

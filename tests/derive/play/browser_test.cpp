@@ -183,6 +183,24 @@ TEST_F(Playground, ATypedEffectActs) {
   ASSERT_TRUE(until("Math.abs(JSON.parse(document.documentElement.dataset.bodies)[0] - 1) < 1e-3"));
 }
 
+// Pointing at a name of the derivation lights it up in the picture and in the kernel; pointing at J shows the force.
+TEST_F(Playground, PointingLightsUp) {
+  open(pendulum);
+  ASSERT_TRUE(until("document.querySelector('#code [data-name=ra]')"));
+  const auto point_at = [&](const char* name) {
+    value(
+        fmt::format("document.querySelector('#lecture [data-name={}]').dispatchEvent(new PointerEvent('pointerover', "
+                    "{{bubbles: true}}))",
+                    name));
+  };
+  point_at("ra");
+  EXPECT_TRUE(until("document.querySelectorAll('#code .lit').length > 1"));
+  EXPECT_TRUE(until("marks && marks.arrows.some(arrow => arrow.name === 'ra')"));
+  EXPECT_EQ(value("[...document.querySelectorAll('.lit')].every(e => e.dataset.name === 'ra')"), true);
+  point_at("J");
+  EXPECT_TRUE(until("lit.has('J') && marks && Math.abs(marks.forces[0].force[1] - 20) < 0.5"));
+}
+
 TEST_F(Playground, NewSpecsAreInTheGallery) {
   open(pendulum);
   const json titles = value("data.gallery.map(one => one.title)");

@@ -189,6 +189,32 @@ TEST_F(Play, NamesOfTheDerivationAreMarked) {
   EXPECT_EQ(html.find("<html"), html.npos);
 }
 
+// The kernel has the names of the derivation: ra_x of ra, a.x of x_a, va.w of w_a.
+TEST_F(Play, NamesOfTheKernelAreMarked) {
+  const json kernel = ask({{"do", "kernel"}, {"path", "specs/planar/line.joint"}});
+  ASSERT_FALSE(kernel.contains("problems")) << kernel;
+  const std::string html = kernel["html"];
+  for (const char* name :
+       {"<span data-name=\"ra\">ra_x</span>", "<span data-name=\"u\">u_y</span>", "<span data-name=\"x_a\">a.x</span>",
+        "<span data-name=\"w_a\">va.w</span>", "<span data-name=\"inv_m_b\">mb.m</span>", "template &lt;class T&gt;"})
+    EXPECT_NE(html.find(name), html.npos) << name << "\n" << html.substr(0, 3000);
+}
+
+// A bob of 1 kg that hangs at rest: the rod carries 10 N, at the point pa of the bob.
+TEST_F(Play, TheForceOfARowHasItsPlace) {
+  ask({{"do", "write"}, {"files", {{"specs/planar/ring.joint", own_joint}}}});
+  std::string hanging = bead;
+  hanging.replace(hanging.find("[2, 0]"), 6, "[0, -2.25]");
+  hanging.replace(hanging.find("pa     = [0, 0]"), 15, "pa     = [0, 0.25]");
+  load(hanging, {{"rate", 1000}, {"method", "rattle"}});
+  run(0.1);
+  const json marks = ask({{"do", "marks"}, {"joint", 0}});
+  ASSERT_EQ(marks["forces"].size(), 1u) << marks;
+  EXPECT_NEAR(marks["forces"][0]["force"][1].get<double>(), 10, 1e-6);
+  EXPECT_NEAR(marks["forces"][0]["force"][0].get<double>(), 0, 1e-6);
+  EXPECT_NEAR(marks["forces"][0]["from"][1].get<double>(), -2, 1e-6);
+}
+
 // Without the term of the turning normal the entry differs, at its place; with it, it agrees.
 TEST_F(Play, AHandDerivationIsJudged) {
   const std::string entry = "entry MINE-1 \"mine\"\n  source \"me\"\n  J = ";
