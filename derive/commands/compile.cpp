@@ -18,7 +18,8 @@ int run_beside(const std::string& command, char** argv) {
 }
 
 // run_beside() takes all arguments before they are read.
-Run command_beside(Line&) {
+Run command_beside(Line& line) {
+  line.is_of_a_program();
   return [] { return command_line::wrong_usage; };
 }
 

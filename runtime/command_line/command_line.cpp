@@ -67,6 +67,7 @@ Option Line::add(const std::string& names, const Target& to, const std::string& 
 void Line::footer(const std::string& text) { app_.footer(text); }
 
 void Line::retire() { app_.group("")->allow_extras()->set_help_flag(); }
+void Line::is_of_a_program() { app_.allow_extras(); }
 
 namespace {
 
@@ -81,7 +82,8 @@ std::vector<std::string> values_of(const CLI::Option& option) {
 }
 
 CompletedCommand completed(const CLI::App& command) {
-  CompletedCommand result{command.get_name(), first_line(command.get_description()), {}, {}};
+  CompletedCommand result{
+      command.get_name(), first_line(command.get_description()), {}, {}, command.get_allow_extras()};
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_positional()) {
       result.values = values_of(*option);

@@ -49,7 +49,8 @@ class Line {
   // The names are "-o,--output", or one in capitals for an argument without a name.
   Option add(const std::string& names, const Target& to, const std::string& help);
   void footer(const std::string& text);
-  void retire();  // not in the help, and takes any argument
+  void retire();           // not in the help, and takes any argument
+  void is_of_a_program();  // beside this one, which knows its options
 
  private:
   CLI::App& app_;

@@ -46,6 +46,12 @@ std::string zsh_option(const CompletedOption& option) {
   return text;
 }
 
+// A pipe that prints the long options of a command, one a line.
+std::string asked_options(const std::string& program, const CompletedCommand& command) {
+  return fmt::format("$({} {} --help 2>/dev/null | sed -nE \"s/^ +(-[a-z],)?(--[a-z-]+).*/\\\\2/p\")", program,
+                     command.name);
+}
+
 }  // namespace
 
 std::string bash_completion(const std::string& program, std::span<const CompletedCommand> commands) {
@@ -54,8 +60,9 @@ std::string bash_completion(const std::string& program, std::span<const Complete
   std::string values, words;
   for (const CompletedCommand& command : commands) {
     names.push_back(command.name);
-    words += fmt::format("    {}) options='{}' values='{}' ;;\n", command.name,
-                         fmt::join(names_of(command.options), " "), fmt::join(command.values, " "));
+    const std::string options = command.asks_help ? asked_options(program, command)
+                                                  : fmt::format("'{}'", fmt::join(names_of(command.options), " "));
+    words += fmt::format("    {}) options={} values='{}' ;;\n", command.name, options, fmt::join(command.values, " "));
     for (const CompletedOption& option : command.options)
       if (!option.values.empty())
         values +=
@@ -88,6 +95,8 @@ std::string zsh_completion(const std::string& program, std::span<const Completed
     names += fmt::format("    '{}:{}'\n", command.name, quoted(command.summary));
     options += fmt::format("    {})\n      _arguments", command.name);
     for (const CompletedOption& option : command.options) options += zsh_option(option);
+    if (command.asks_help)
+      options += fmt::format(" \\\n        ${{${{(f)\"{}\"}}/%/:value:_files}}", asked_options(program, command));
     const bool files = command.values.empty();
     options += fmt::format(" \\\n        '*:argument:{}' ;;\n",
                            files ? "_files" : fmt::format("({})", fmt::join(command.values, " ")));

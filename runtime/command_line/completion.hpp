@@ -18,6 +18,7 @@ struct CompletedCommand {
   std::string name, summary;
   std::vector<std::string> values;  // of its argument; empty: files
   std::vector<CompletedOption> options;
+  bool asks_help = false;  // its options are those that its help lists when a person completes them
 };
 
 // Any other value or argument is completed as a file.

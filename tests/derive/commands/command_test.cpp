@@ -168,6 +168,19 @@ TEST_F(Derive, MisspeltWordsAreUnderstood) {
     EXPECT_EQ(cdot(typed).said.substr(0, said.size()), said);
 }
 
+// `compile` and `play` are programs of their own, which know their options.
+TEST_F(Derive, OptionsOfProgramsBesideAreCompleted) {
+  const std::string path = "export PATH=\"$(dirname " CDOT "):$PATH\"; ";
+  write("bash", path +
+                    "source <(cdot completion bash); COMP_WORDS=(cdot compile --in); COMP_CWORD=2; _cdot; "
+                    "echo ${COMPREPLY[@]}; COMP_WORDS=(cdot play --po); _cdot; echo ${COMPREPLY[@]}\n");
+  EXPECT_EQ(run("bash bash").said, "--integrator --input\n--port\n");
+  write("zsh", path +
+                   "_arguments() { print -rl -- \"$@\" }; words=(cdot compile \"\"); CURRENT=3; "
+                   "source <(cdot completion zsh)\n");
+  EXPECT_NE(run("zsh -f zsh").said.find("--bill:value:_files\n--json"), std::string::npos);
+}
+
 // The catalogue of an installation must not be written into the folder where somebody happens to be.
 TEST_F(Derive, WithoutASpecsFolderNothingIsDerived) {
   fs::remove_all(place_ / "specs");
