@@ -11,6 +11,7 @@
 #include <cdot/settings.hpp>
 
 #include "runtime/text/spelling.hpp"
+#include "runtime/tool/import/joined.hpp"
 #include "runtime/tool/import/mjcf_elements.hpp"
 #include "runtime/tool/import/model.hpp"
 #include "runtime/tool/import/solids.hpp"
@@ -23,7 +24,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double usual_density = 1000;  // [kg/m^3]
-constexpr double perpendicular = 1e-6;  // cosine of directions that count as such
 constexpr double light = 1e-6;          // mass between two joints of one body, as a share of that body's
 
 class MjcfReader : MjcfElements {
@@ -168,20 +168,14 @@ class MjcfReader : MjcfElements {
 
   // --- joints ----------------------------------------------------------------------------------
 
-  struct Axis {
-    std::string name, type;
-    Vector3d point, axis;
-    ModelCoordinate coordinate;
-  };
-
-  Axis read_axis(Element& e, const std::string& child_class, const std::string& body) {
+  MjcfAxis read_axis(Element& e, const std::string& child_class, const std::string& body) {
     inherit(e, child_class);
     const bool turns = !e.Attribute("type") || e.Attribute("type") == std::string_view("hinge");
-    Axis a{e.Attribute("name") ? e.Attribute("name") : "joint_of_" + body,
-           e.Attribute("type") ? e.Attribute("type") : "hinge",
-           vector(e, "pos", Vector3d::Zero()),
-           direction(e, "axis", Vector3d::UnitZ()),
-           {}};
+    MjcfAxis a{e.Attribute("name") ? e.Attribute("name") : "joint_of_" + body,
+               e.Attribute("type") ? e.Attribute("type") : "hinge",
+               vector(e, "pos", Vector3d::Zero()),
+               direction(e, "axis", Vector3d::UnitZ()),
+               {}};
     static constexpr std::array types = {"hinge", "slide", "ball", "free"};
     if (std::ranges::find(types, a.type) == types.end())
       fail(e.GetLineNum(), fmt::format("a joint has no type \"{}\"; one of hinge, slide, ball, free", a.type));
@@ -208,7 +202,7 @@ class MjcfReader : MjcfElements {
   double last_number(const Element& e, const char* key) const { return list(e, key).back(); }
 
   void read_joints(Element& e, const std::string& child_class, int parent, int child) {
-    std::vector<Axis> axes;
+    std::vector<MjcfAxis> axes;
     const std::string& body = model_.links[static_cast<std::size_t>(child)].name;
     for (Element& part : children(e))
       if (part.Name() == std::string_view("joint")) axes.push_back(read_axis(part, child_class, body));
@@ -219,14 +213,14 @@ class MjcfReader : MjcfElements {
     else add_row_of_joints(axes, e, parent, child);
   }
 
-  void add_joint(ModelJoint joint, const std::vector<Axis>& axes, const Element& body, int parent, int child) {
+  void add_joint(ModelJoint joint, const std::vector<MjcfAxis>& axes, const Element& body, int parent, int child) {
     joint.line = body.GetLineNum(), joint.parent = parent, joint.child = child, joint.origin = pose_of(body);
     if (axes.empty()) joint.name = fmt::format("joint_of_{}", model_.links[static_cast<std::size_t>(child)].name);
     place_coordinates(joint, axes);
     model_.joints.push_back(joint);
   }
   // Where actuators find them.
-  void place_coordinates(const ModelJoint& joint, const std::vector<Axis>& axes) {
+  void place_coordinates(const ModelJoint& joint, const std::vector<MjcfAxis>& axes) {
     const std::size_t number = model_.joints.size();
     if (joint.type == ModelJointType::hinge || joint.type == ModelJointType::slider ||
         joint.type == ModelJointType::universal)
@@ -234,39 +228,11 @@ class MjcfReader : MjcfElements {
     if (joint.type == ModelJointType::universal) coordinates_[axes[1].name] = {number, &ModelJoint::about_second};
   }
 
-  // Several joints of one body, as one that keeps all that acts on them; none if there is no such joint.
-  std::optional<ModelJoint> joined(const std::vector<Axis>& axes) {
-    std::string kinds;
-    for (const Axis& a : axes) kinds += a.type[0];
-    ModelJoint joint;
-    if (axes.empty()) return joint;
-    joint.name = axes.front().name, joint.point = axes.back().point;
-    const bool square = are_perpendicular(axes), at_one_point = are_at_one_point(axes);
-    if (kinds == "h" || kinds == "s") {
-      joint.type = kinds == "h" ? ModelJointType::hinge : ModelJointType::slider;
-      joint.axis = axes[0].axis, joint.coordinate = axes[0].coordinate;
-    } else if (kinds == "hh" && square && at_one_point) {
-      joint.type = ModelJointType::universal;
-      joint.axis = axes[0].axis, joint.second = axes[1].axis;
-      joint.coordinate = axes[0].coordinate, joint.about_second = axes[1].coordinate;
-    } else if (kinds == "ssh" && square && !is_any_busy({axes.begin(), axes.begin() + 2})) {
-      joint.type = ModelJointType::plane, joint.name = axes[2].name;
-      joint.axis = axes[2].axis, joint.coordinate = axes[2].coordinate;
-    } else if (kinds == "b" || (kinds == "hhh" && square && at_one_point && !is_any_busy(axes))) {
-      joint.type = ModelJointType::ball;
-    } else if (kinds == "f" || ((kinds == "sssb" || kinds == "ssshhh") && square && !is_any_busy(axes))) {
-      joint.type = ModelJointType::free;
-    } else {
-      return {};
-    }
-    return joint;
-  }
-
   // Each joint with a body of its own, as MuJoCo's documentation explains joints of one body: in their order, each
   // turns the axes of those behind it.
-  void add_row_of_joints(const std::vector<Axis>& axes, const Element& e, int parent, int child) {
+  void add_row_of_joints(const std::vector<MjcfAxis>& axes, const Element& e, int parent, int child) {
     const ModelLink body = model_.links[static_cast<std::size_t>(child)];
-    if (std::ranges::any_of(axes, [](const Axis& a) { return a.type == "free"; }))
+    if (std::ranges::any_of(axes, [](const MjcfAxis& a) { return a.type == "free"; }))
       fail(body.line,
            fmt::format("body \"{}\" is free and has other joints too. Likely fix: leave these out", body.name));
     for (std::size_t k = 0; k < axes.size(); ++k) {
@@ -287,30 +253,13 @@ class MjcfReader : MjcfElements {
     link.inertia = light * std::max(body.inertia.trace() / 3, 1e-4 * body.mass) * Matrix3d::Identity();
     return link;
   }
-  static bool are_perpendicular(const std::vector<Axis>& axes) {
-    for (std::size_t i = 0; i < axes.size(); ++i)
-      for (std::size_t j = i + 1; j < axes.size(); ++j)
-        if ((axes[i].type == axes[j].type || axes.size() == 3) &&
-            std::abs(axes[i].axis.dot(axes[j].axis)) > perpendicular)
-          return false;
-    return true;
-  }
-  static bool are_at_one_point(const std::vector<Axis>& axes) {
-    return std::ranges::all_of(axes, [&](const Axis& a) { return (a.point - axes[0].point).norm() < perpendicular; });
-  }
-  static bool is_any_busy(const std::vector<Axis>& axes) {
-    return std::ranges::any_of(axes, [](const Axis& a) {
-      const ModelCoordinate& c = a.coordinate;
-      return c.range || c.damping > 0 || c.stiffness > 0 || c.friction > 0;
-    });
-  }
-
   // --- loops and actuators ---------------------------------------------------------------------
 
   void read_equality(Element& e) {
     inherit(e, "");
     const std::string kind = e.Name();
     const bool off = e.Attribute("active") && e.Attribute("active") == std::string_view("false");
+    if (!off && kind == "joint" && read_coupling(e)) return;
     if (off || (kind != "connect" && kind != "weld") || !e.Attribute("body1")) {
       ++left_out_[fmt::format("<{}> of <equality>{}", kind, off ? ", which is not active" : "")];
       return;
@@ -321,6 +270,24 @@ class MjcfReader : MjcfElements {
     loop.name = e.Attribute("name") ? e.Attribute("name") : fmt::format("{}_{}", kind, model_.loops.size() + 1);
     loop.point = vector(e, "anchor", Vector3d::Zero());
     model_.loops.push_back(loop);
+  }
+  // Of coordinates that stand alone in their joint.
+  bool read_coupling(const Element& e) {
+    ModelCoupling coupling;
+    coupling.first = coupled(e, "joint1");
+    coupling.second = coupled(e, "joint2");
+    if (coupling.first < 0 || (e.Attribute("joint2") && coupling.second < 0)) return false;
+    coupling.name = e.Attribute("name") ? e.Attribute("name") : fmt::format("coupling_{}", model_.couplings.size() + 1);
+    coupling.coefficients = list(e, "polycoef");
+    if (coupling.coefficients.empty()) coupling.coefficients = {0, 1};
+    model_.couplings.push_back(coupling);
+    return true;
+  }
+  int coupled(const Element& e, const char* key) const {
+    const auto found = coordinates_.find(e.Attribute(key) ? e.Attribute(key) : "");
+    if (found == coordinates_.end()) return -1;
+    const std::size_t joint = found->second.first;
+    return model_.joints[joint].type == ModelJointType::universal ? -1 : static_cast<int>(joint);
   }
   int known_body(const Element& e, const char* key) const {
     const std::string name = attribute(e, key);

@@ -56,16 +56,30 @@ struct ModelLoop {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  // in the frame of a
 };
 
+// A hinge or slider whose coordinate is a polynomial of that of another one: joints by number, -1: none.
+struct ModelCoupling {
+  std::string name;
+  int first = -1, second = -1;
+  std::vector<double> coefficients;  // from the constant on
+};
+
+// A spec beside the scene: the name of its file, and its text.
+struct ModelSpec {
+  std::string file, text;
+};
+
 struct Model {
   std::string name, file;
   std::vector<ModelLink> links;
   std::vector<ModelJoint> joints;
   std::vector<ModelLoop> loops;
+  std::vector<ModelCoupling> couplings;
   std::optional<Eigen::Vector3d> gravity;  // [m/s^2]
   bool grounded = false;                   // the root is the world, whatever the options say
   std::string word = "link";               // of the format, for a link
   std::vector<std::string> left_out;       // for a person: one thing each
   std::vector<std::string> changed;        // likewise, by scene_text()
+  std::vector<ModelSpec> specs;            // by scene_text(): its joints without a type of the catalogue
 };
 
 // A cylinder along z as a shape of a scene: a rod, which lies along x, or a disc.
@@ -86,10 +100,11 @@ struct ImportOptions {
   bool floating = false;  // the root moves; without this it is the world, unless the model is a single body
   bool balance = false;   // an inertia that no rigid body has becomes the mean of its principal moments about all axes
                           // (MuJoCo, `balanceinertia`)
+  std::string stem = "model";  // of the names of specs beside the scene
 };
 
-// The text of a scene: links that fixed joints hold become one body. Adds to model.changed. Throws cdot::Error with
-// file and line.
+// The text of a scene: links that fixed joints hold become one body. Adds to model.changed and model.specs. Throws
+// cdot::Error with file and line.
 std::string scene_text(Model& model, const ImportOptions& options);
 
 }  // namespace cdot

@@ -7,6 +7,7 @@
 #include <cdot/settings.hpp>
 
 #include "runtime/text/json.hpp"
+#include "runtime/tool/import/coupling.hpp"
 #include "runtime/tool/import/model.hpp"
 
 namespace cdot {
@@ -57,10 +58,11 @@ const char* mistake_of(const Matrix3d& I) { return mistake_in({I(0, 0), I(1, 1),
 
 class Writer {
  public:
-  Writer(Model& model, const ImportOptions& options) : model_(model) {
+  Writer(Model& model, const ImportOptions& options) : model_(model), stem_(options.stem) {
     give_valid_names(model_.links);
     give_valid_names(model_.joints);
     give_valid_names(model_.loops);
+    give_valid_names(model_.couplings);
     place_links();
     // An object of its own is not the world; a floor is.
     const bool still =
@@ -73,18 +75,22 @@ class Writer {
     for (Part& part : parts_) check(part, options.balance);
   }
 
-  std::string text() const {
+  std::string text() {
+    std::string couplings;
+    for (const ModelCoupling& coupling : model_.couplings) couplings += text_of(coupling);
     std::string text = comment(fmt::format("Of the robot {} in {}, with every joint at 0 or at its nearest limit.",
                                            quoted(model_.name), model_.file));
     for (const std::string& thing : model_.left_out) text += comment("Left out: " + thing + ".");
     for (const std::string& thing : model_.changed) text += comment("Changed: " + thing + ".");
     text += fmt::format("title     = {}\ndimension = 3\n", quoted(model_.name));
     if (model_.gravity) text += fmt::format("gravity   = {}\n", list(*model_.gravity));
+    if (!model_.couplings.empty())
+      text += "project   = true\n";  // a coordinate at its limit may not be where another wants
     for (const Part& part : parts_) text += text_of(part);
     for (const ModelJoint& joint : model_.joints)
       if (joint.type != ModelJointType::fixed && joint.type != ModelJointType::free) text += text_of(joint);
     for (const ModelLoop& loop : model_.loops) text += text_of(loop);
-    return text;
+    return text + couplings;
   }
 
  private:
@@ -282,6 +288,41 @@ class Writer {
     return text;
   }
 
+  // A joint of one's own, whose spec lies beside the scene.
+  std::string text_of(const ModelCoupling& coupling) {
+    std::vector<std::string> bodies;
+    std::string parameters;
+    const auto letter = [&](int link) {
+      const std::string body = body_of(link);
+      const auto known = std::ranges::find(bodies, body);
+      const auto place = known - bodies.begin();
+      if (known == bodies.end()) bodies.push_back(body);
+      return static_cast<char>('a' + place);
+    };
+    const auto coordinate = [&](int number, int k) {
+      const ModelJoint& joint = model_.joints[static_cast<std::size_t>(number)];
+      const Isometry3d& pose = poses_[static_cast<std::size_t>(joint.child)];
+      const bool turns = joint.type == ModelJointType::hinge;
+      const std::string axis = list(pose.linear() * joint.axis), at = list(pose * joint.point);
+      parameters += turns ? fmt::format("f{}     = {{ world = {} }}\n", k, axis)
+                          : fmt::format(
+                                "u{0}     = {{ world = {1} }}\np{0}     = {{ world = {2} }}\ns{0}     = {{ world = "
+                                "{2} }}\n",
+                                k, axis, at);
+      const char above = letter(joint.parent), below = letter(joint.child);
+      return CoupledCoordinate{above, below, turns, joint.coordinate.start()};
+    };
+    const CoupledCoordinate first = coordinate(coupling.first, 1);
+    std::optional<CoupledCoordinate> second;
+    if (coupling.second >= 0) second = coordinate(coupling.second, 2);
+    const std::string type = stem_ + "_" + coupling.name;
+    model_.specs.push_back({type + ".joint", coupling_spec(type, first, second, coupling.coefficients)});
+    std::string names;
+    for (const std::string& body : bodies) names += (names.empty() ? "" : ", ") + quoted(body);
+    return fmt::format("\n[[joint]]\nname   = {}\ntype   = {}\nbodies = [{}]\n{}", quoted(coupling.name), quoted(type),
+                       names, parameters);
+  }
+
   static const char* type_of(const ModelJoint& joint) {
     switch (joint.type) {
       case ModelJointType::hinge: return "hinge";
@@ -312,6 +353,7 @@ class Writer {
   }
 
   Model& model_;
+  const std::string stem_;
   int root_ = -1;
   std::vector<const ModelJoint*> above_;  // by link; none above the root
   std::vector<Isometry3d> poses_;         // of the links' frames, in the world

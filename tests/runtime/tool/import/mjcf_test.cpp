@@ -314,6 +314,31 @@ TEST(Mjcf, NamesBecomeValid) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
+// Coupled joints need a spec: it goes beside the scene, under the scene's name.
+TEST(Mjcf, CoupledJointsBringTheirSpec) {
+  const TemporaryFolder folder;
+  const auto hinge = [](const char* name, const char* range) {
+    return fmt::format(
+        "<body name=\"{0}\"><joint name=\"{0}\" axis=\"0 1 0\"{1}/><geom size=\"0.1\" pos=\"0 0 -1\"/></body>", name,
+        range);
+  };
+  std::ofstream(folder / "two.xml") << model(
+      hinge("p", "") + hinge("q", " range=\"30 60\""),
+      "<equality><joint name=\"both\" joint1=\"q\" joint2=\"p\" polycoef=\"0 2 0 0 0\"/></equality>");
+  const std::string from = (folder / "two.xml").string(), scene = (folder / "two arms.toml").string();
+  const CommandResult well = cdot_run(fmt::format("import '{}' -o '{}'", from, scene));
+  EXPECT_EQ(well.status, 0) << well.err;
+  EXPECT_NE(well.out.find("wrote     two_arms_both.joint"), std::string::npos) << well.out;
+  EXPECT_NE(read_text(folder / "two_arms_both.joint").find("  follows: x1 = 2*x2\n"), std::string::npos);
+  // q starts at its limit of 30 degrees, so p is taken to 15.
+  auto projected = build_world_in<Spatial<double>>(read_scene(scene));
+  projected.project(1e-12);
+  EXPECT_NEAR(projected.coordinate(2, "q1") + 30 * degree, 2 * projected.coordinate(2, "q2"), 1e-9);
+  const CommandResult alone = cdot_run(fmt::format("import '{}'", from));
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_NE(alone.err.find("goes beside the scene. Likely fix: -o FILE"), std::string::npos) << alone.err;
+}
+
 TEST(Mjcf, TheCommandReadsIt) {
   const TemporaryFolder folder;
   const std::string scene = (folder / "arm.toml").string();

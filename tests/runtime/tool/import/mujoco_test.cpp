@@ -79,7 +79,9 @@ Beside beside(const std::string& mjcf) {
   std::string text = scene_text(model, {});
   const std::string head = "dimension = 3\n";
   text.insert(text.find(head) + head.size(), "integrator = \"dop853\"\nlocal_error = 1e-10\n");
-  const Scene scene = read_scene(text, "model.toml");
+  const TemporaryFolder folder;
+  for (const ModelSpec& spec : model.specs) std::ofstream(folder / spec.file) << spec.text;
+  const Scene scene = read_scene(text, (folder / "model.toml").string());
   MujocoRun mujoco(mjcf);
   const Positions start = mujoco.positions();
   Beside result;
@@ -161,6 +163,26 @@ TEST(BesideMujoco, Actuators) {
                 model_of(arm,
                          "<actuator><position joint=\"s\" kp=\"30\" gear=\"2\"/><velocity joint=\"e\" kv=\"3\"/>"
                          "<position joint=\"w\" kp=\"5\"/></actuator>"));
+}
+
+// A gripper whose fingers mirror each other, with a tip that bends as a polynomial of the wrist says: specs beside the
+// scene. MuJoCo's couplings are soft.
+TEST(BesideMujoco, CoupledJoints) {
+  const std::string finger = "<geom type=\"box\" size=\"0.02 0.02 0.1\"/>",
+                    stiff = R"(solref="0.001 1" solimp="0.999 0.999 0.001")";
+  expect_beside(
+      "coupled joints",
+      model_of(R"(<body name="palm" pos="0 0 1"><joint name="wrist" axis="1 0 0" pos="0 0 0.1"/>
+  <geom type="box" size="0.1 0.2 0.05"/>
+  <body name="left" pos="0 0.1 -0.1"><joint name="left" type="slide" axis="0 1 0" stiffness="20" springref="0.2"/>)" +
+                   finger + R"(</body>
+  <body name="right" pos="0 -0.1 -0.1"><joint name="right" type="slide" axis="0 -1 0"/>)" +
+                   finger + R"(
+    <body name="tip" pos="0 0 -0.1"><joint name="tip" axis="1 0 0.2"/><geom type="capsule" fromto="0 0 0 0 0.1 -0.2" size="0.02"/>
+    </body></body></body>)",
+               "<equality><joint name=\"mirror\" joint1=\"right\" joint2=\"left\" " + stiff +
+                   "/><joint joint1=\"tip\" joint2=\"wrist\" polycoef=\"0 0.5 0.3 0 0\" " + stiff + "/></equality>"),
+      5e-4);
 }
 
 // MuJoCo's loops are soft, so the answers agree as far as its loop is closed.
