@@ -9,6 +9,7 @@
 #include "derive/pipeline/pipeline.hpp"
 #include "derive/pipeline/process_pool.hpp"
 #include "runtime/text/colour.hpp"
+#include "runtime/text/files.hpp"
 
 namespace cdot::derive {
 
@@ -217,21 +218,8 @@ void add_specs(Line& line, std::string& folder) {
 }
 
 void write_file(const fs::path& path, const std::string& content) {
-  if (path == "-") {
-    std::fwrite(content.data(), 1, content.size(), stdout);
-    return;
-  }
   if (path.has_parent_path()) fs::create_directories(path.parent_path());
-  const fs::file_status status = fs::symlink_status(path);
-  const bool in_place = fs::exists(status) && !fs::is_regular_file(status);
-  fs::path written = path;
-  if (!in_place) written += ".new";
-  {
-    std::ofstream out(written, std::ios::binary);
-    out << content;
-    if (!out.flush()) throw std::runtime_error(fmt::format("cannot write {}", written.string()));
-  }
-  if (!in_place) fs::rename(written, path);
+  text::write_file(path.string(), content);
 }
 
 void add_jobs(Line& line, int& processes) {

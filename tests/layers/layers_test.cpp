@@ -28,7 +28,7 @@ const std::vector<std::string> bridges = {"derive/compile", "derive/play", "deri
 const std::set<std::string> doors = {"derive/interpret/formula.hpp", "derive/own/own_kernel.hpp"};
 
 const std::vector<std::string> rooms = {
-    "runtime/text",          // a line with carets, the nearest word, JSON
+    "runtime/text",          // a line with carets, the nearest word, JSON, files
     "runtime/command_line",  // arguments to the options of a command
     "runtime/include/cdot",  // what programs include; its kernel.hpp is the contract of both halves
     "runtime/tape",          // straight-line programs over any number type

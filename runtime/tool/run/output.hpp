@@ -1,40 +1,17 @@
-// Output files, which appear whole or not at all; rows of a trajectory; saved states.
+// Output files; rows of a trajectory; saved states.
 #pragma once
 
-#include <cstdio>
-#include <initializer_list>
 #include <string>
-#include <string_view>
 
 #include <cdot/snapshot.hpp>
 
+#include "runtime/text/files.hpp"
 #include "runtime/tool/run/frame.hpp"
 #include "runtime/tool/scene/scene.hpp"
 
 namespace cdot {
 
-// Writes a temporary file and renames it when it is complete; writes to a device or a pipe directly. "-" is standard
-// output. Throws cdot::Error if the disk refuses.
-class OutputFile {
- public:
-  explicit OutputFile(const std::string& path);
-  ~OutputFile();  // removes the file unless commit() was called
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
-
-  void write(std::string_view text);
-  void commit();
-
- private:
-  [[noreturn]] void fail(const char* what) const;
-  std::string path_, final_, temporary_;  // as asked for; the file to be; the file until then. Else empty
-  std::FILE* file_ = nullptr;
-};
-
-void write_file(const std::string& path, std::string_view text);
-// Where the summary goes: to standard output, unless one of the outputs takes that. Throws Error if two of them do.
-std::FILE* summary_beside(std::initializer_list<std::string_view> outputs);
-std::string read_file(const std::string& path);
+using text::OutputFile, text::write_file, text::summary_beside, text::read_file;
 
 // time, then the state_columns() of every body by name: "rod.x"; then the sensors. Numbers read back to the same bits.
 std::string csv_head(const Scene& scene);
