@@ -1,6 +1,7 @@
 // Emitted joints in DART, beside DART's own and closed forms.
 #include <dart/constraint/BallJointConstraint.hpp>
-#include <dart/constraint/ConstraintSolver.hpp>
+#include <dart/constraint/BoxedLcpConstraintSolver.hpp>
+#include <dart/constraint/PgsBoxedLcpSolver.hpp>
 #include <dart/dynamics/FreeJoint.hpp>
 #include <dart/dynamics/RevoluteJoint.hpp>
 #include <dart/dynamics/TranslationalJoint.hpp>
@@ -304,6 +305,21 @@ TEST_F(DartJoints, JoinsThreeBodies) {
   EXPECT_NEAR(b->getLinearVelocity().x(), 1e-3 * lambda / 3, 1e-9);
   EXPECT_NEAR(c->getLinearVelocity().x(), 1e-3 * (7 - 2 * lambda) / 5, 1e-9);
   EXPECT_THROW(joints::midpoint_joint({}, a, b, a), std::invalid_argument) << "three of one skeleton";
+}
+
+// One sweep a step holds a chain that hangs at rest, since it starts from the impulses of the last step.
+TEST_F(DartJoints, StartsSweepsWithTheLastImpulses) {
+  const auto sweeps = std::make_shared<dart::constraint::PgsBoxedLcpSolver>();
+  sweeps->setOption({1, 0, 0});
+  world->setConstraintSolver(std::make_unique<dart::constraint::BoxedLcpConstraintSolver>(sweeps));
+  BodyNode* last = nullptr;
+  for (int k = 0; k < 10; ++k) {
+    BodyNode* const next = body({0, 0, -1. - k});
+    add<joints::spherical_joint>({0, 0, k == 0 ? 0 : -0.5, 0, 0, k == 0 ? 1 : 0.5}, last, next);
+    last = next;
+  }
+  run(2);
+  EXPECT_NEAR(place(last).z(), -10, 1e-6);
 }
 
 }  // namespace
