@@ -15,6 +15,7 @@
 
 #include "jolt/constant_velocity.hpp"
 #include "jolt/distance.hpp"
+#include "jolt/gear.hpp"
 #include "jolt/hinge.hpp"
 
 namespace {
@@ -167,6 +168,28 @@ TEST_F(JoltJoints, AConstantVelocityJointThatJoltLacks) {
   }
   EXPECT_NEAR(a.GetAngularVelocity().GetX(), 3, 1e-2f);
   EXPECT_LT(worst, 1e-2f);
+}
+
+// A bevel gear, driven through many turns: a about x, b about y.
+TEST_F(JoltJoints, AGearCountsWholeTurns) {
+  system_.SetGravity(Vec3::sZero());
+  JPH::Body &a = body(Vec3::sZero()), &b = body(Vec3::sZero());
+  jolt::gear_joint::Parameters p{};
+  for (float* frame : {&p.fa_x_x, &p.ga_x_x}) frame[0] = frame[4] = frame[8] = 1;
+  for (float* frame : {&p.fb_x_x, &p.gb_x_x}) frame[1] = frame[5] = frame[6] = 1;
+  p.ratio = 1.3f;
+  auto& gear = add<jolt::gear_joint>(a, b, p);
+  gear.by_default(spatial::gear::index_of_angle_a_turns);
+  gear.angle_a().speed = 12;
+  gear.angle_a().most = 1;
+  float worst = 0;
+  for (int n = 0; n < 2400; ++n) {
+    run(1.0f / 240);
+    worst = std::max(worst, std::fabs(a.GetAngularVelocity().GetX() + 1.3f * b.GetAngularVelocity().GetY()));
+  }
+  EXPECT_NEAR(a.GetAngularVelocity().GetX(), 12, 1e-3f);
+  EXPECT_GT(gear.parameters.angle_a_turns, 50);
+  EXPECT_LT(worst, 1e-3f);
 }
 
 // A saved state has the impulses: the same steps follow, to the bit.
