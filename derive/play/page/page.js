@@ -127,7 +127,7 @@ async function follow(edition) {
     else if (edition && answer.scene) open(answer);
     setTimeout(follow, 500, answer.edition);
   } catch {
-    hint('The program that serves this page has ended. The page itself goes on.');
+    if (edition) hint('The program that serves this page has ended. The page itself goes on.');  // else it is another server
   }
 }
 if (location.protocol === 'http:' && location.hostname === '127.0.0.1') follow('');
