@@ -16,7 +16,7 @@ constexpr cdot::command_line::Command commands[] = {
     {"check",   "Report errors and risks of a spec, before any code exists", check_command},
     {"emit",    "Write a joint as a header that makes it one of another engine: its kernel and an adapter", emit_command},
     {"compile", "Write a scene as its own step: a C++ header of straight lines", command_beside},
-    {"play",    "Write a page where equation, derivation and moving mechanism are live", command_beside},
+    {"play",    "Open a page where equation, derivation and moving mechanism are live", command_beside},
 };
 // clang-format on
 

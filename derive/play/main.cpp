@@ -9,6 +9,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "derive/play/native_engine.hpp"
 #include "derive/play/page.hpp"
 #include "derive/play/serve.hpp"
 #include "runtime/command_line/command_line.hpp"
@@ -39,6 +40,8 @@ fs::path engine_of(const Options& options) {
   return command_line::own_folder().parent_path() / "playground";
 }
 
+fs::path own_program() { return fs::read_symlink("/proc/self/exe"); }
+
 int write_page(const Options& options, const std::string& start) {
   const std::string page = [&] {
     const command_line::Waiting waiting("cdot play");
@@ -67,7 +70,8 @@ int serve_page(const Options& options, const std::string& start) {
   const auto server = [&] {
     const command_line::Waiting waiting("cdot play");
     const text::Stage stage("deriving what the page begins with");
-    return std::make_unique<PageServer>(start, options.specs, engine_of(options), options.port);
+    return std::make_unique<PageServer>(start, fs::absolute(options.specs), engine_of(options), own_program(),
+                                        options.port);
   }();
   fmt::print("{}\nThe page follows {} on disk. Ctrl-C ends it; -o FILE writes a page that needs no server.\n",
              server->address(), start.empty() ? "the specs" : start);
@@ -98,15 +102,23 @@ void add_options(Line& line, Options& options) {
   line.add("--port", &options.port, "Where the page is served on 127.0.0.1; if it is taken, or 0, any that is free")
       .shows_default();
   line.add("--no-browser", &options.no_browser, "Do not open the page in the desktop's browser");
-  line.add("--engine", &options.engine, "Folder of engine.js and engine.wasm, which the target `playground` builds")
+  line.add("--engine", &options.engine,
+           "Folder of engine.js and engine.wasm, which the target `playground` builds; a served page does without")
       .shown_as("DIR");
   line.add("--specs", &options.specs, "Folder of specs").shown_as("DIR").shows_default();
 }
 
 Run play_command(Line& line) { return command_line::with_options<Options>(line, add_options, run); }
 
+// What the page's requests begin; not for people.
+Run engine_command(Line& line) {
+  line.retire();
+  return [] { return answer_lines(); };
+}
+
 constexpr command_line::Command commands[] = {
-    {"play", "Open a page where equation, derivation and moving mechanism are live", play_command}};
+    {"play", "Open a page where equation, derivation and moving mechanism are live", play_command},
+    {"engine", "Answer the requests of a page", engine_command}};
 constexpr command_line::Program program = {
     "cdot", "Equation, derivation and moving mechanism on one page, which computes in the browser",
     "Exit status: 0 all well; 2 bad usage or input, or the engine is not built."};

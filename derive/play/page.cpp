@@ -130,23 +130,40 @@ std::string filled(std::string_view page, const std::vector<std::pair<std::strin
 
 json first_example(const std::string& start, const fs::path& specs) { return example(first_file(start, specs)); }
 
-std::string playground_page(const std::string& start, const fs::path& specs, const fs::path& engine) {
-  for (const char* part : {"engine.js", "engine.wasm"})
-    if (!fs::exists(engine / part))
-      throw std::runtime_error(
-          fmt::format("there is no {}. Fix: install emscripten and build the target playground: "
-                      "cmake --build build/dev --target playground",
-                      (engine / part).string()));
+namespace {
+
+bool has_engine(const fs::path& engine) {
+  return fs::exists(engine / "engine.js") && fs::exists(engine / "engine.wasm");
+}
+
+std::string page_of(const std::string& start, const fs::path& specs, const std::string& glue, const std::string& wasm) {
   std::string script;
   for (int k = 0; k < script_count; ++k) script += scripts[k];
   const json files = all_specs(specs), scenes = gallery(start, specs);
-  const json data = {{"files", files}, {"gallery", scenes}, {"first", first_sight(files, scenes[0])}};
+  const json data = {
+      {"files", files}, {"gallery", scenes}, {"first", first_sight(files, scenes[0])}, {"served", wasm.empty()}};
   return filled(page_html, {{"style", std::string(page_css)},
-                            {"glue", in_a_script(read_file((engine / "engine.js").string()))},
+                            {"glue", in_a_script(glue)},
                             {"worker", std::string(worker_js)},
-                            {"wasm", in_base64(read_file((engine / "engine.wasm").string()))},
+                            {"wasm", in_base64(wasm)},
                             {"data", in_a_script(data.dump())},
                             {"script", script}});
+}
+
+}  // namespace
+
+std::string playground_page(const std::string& start, const fs::path& specs, const fs::path& engine) {
+  if (!has_engine(engine))
+    throw std::runtime_error(
+        fmt::format("there is no engine in {}. Fix: without -o the page needs none; or install emscripten and build "
+                    "the target playground: cmake --build build/dev --target playground",
+                    engine.string()));
+  return page_of(start, specs, read_file((engine / "engine.js").string()),
+                 read_file((engine / "engine.wasm").string()));
+}
+
+std::string served_page(const std::string& start, const fs::path& specs, const fs::path& engine) {
+  return has_engine(engine) ? playground_page(start, specs, engine) : page_of(start, specs, "", "");
 }
 
 }  // namespace cdot::play

@@ -11,6 +11,10 @@ namespace cdot::play {
 std::string playground_page(const std::string& start, const std::filesystem::path& specs,
                             const std::filesystem::path& engine);
 
+// The same for a server on this machine: without an engine in WebAssembly the page asks the server.
+std::string served_page(const std::string& start, const std::filesystem::path& specs,
+                        const std::filesystem::path& engine);
+
 // The example that the page begins with, as its files are now: {title, scene, specs}.
 nlohmann::json first_example(const std::string& start, const std::filesystem::path& specs);
 

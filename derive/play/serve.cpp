@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "derive/play/native_engine.hpp"
 #include "derive/play/page.hpp"
 
 namespace cdot::play {
@@ -15,19 +16,35 @@ namespace cdot::play {
 using nlohmann::json;
 
 struct PageServer::Parts {
-  Parts(std::string start_, std::filesystem::path specs_, std::filesystem::path engine_)
-      : start(std::move(start_)), specs(std::move(specs_)), engine(std::move(engine_)) {}
+  Parts(std::string start_, std::filesystem::path specs_, std::filesystem::path engine_,
+        const std::filesystem::path& program)
+      : start(std::move(start_)), specs(std::move(specs_)), engine(std::move(engine_)), engines(program) {}
 
   std::string start;
   std::filesystem::path specs, engine;
   int port = 0;
   std::mutex derives;  // one request at a time
+  NativeEngines engines;
   httplib::Server server;
 
-  // Other pages of the browser cannot ask under a name of their own that leads here.
+  // Other pages of the browser cannot ask: not under a name of their own that leads here, and not from elsewhere.
   bool is_asked_by_us(const httplib::Request& request) const {
-    const std::string host = request.get_header_value("Host");
-    return host == fmt::format("127.0.0.1:{}", port) || host == fmt::format("localhost:{}", port);
+    const auto is_here = [&](const std::string& name) {
+      return name == fmt::format("127.0.0.1:{}", port) || name == fmt::format("localhost:{}", port);
+    };
+    const std::string origin = request.get_header_value("Origin"), scheme = "http://";
+    return is_here(request.get_header_value("Host")) &&
+           (origin.empty() || (origin.starts_with(scheme) && is_here(origin.substr(scheme.size()))));
+  }
+
+  void answer_engine(const httplib::Request& request, httplib::Response& response) {
+    try {
+      if (request.body.find('\n') != std::string::npos) throw std::runtime_error("a request is one line");
+      response.set_content(engines.ask(request.matches[1], request.body), "application/json");
+    } catch (const std::exception& error) {
+      response.status = 500;
+      response.set_content(error.what(), "text/plain; charset=utf-8");
+    }
   }
 
   // A mistake on disk is an answer too: the page tells it.
@@ -48,7 +65,7 @@ struct PageServer::Parts {
   void answer_page(httplib::Response& response) {
     const std::lock_guard one(derives);
     try {
-      response.set_content(playground_page(start, specs, engine), "text/html; charset=utf-8");
+      response.set_content(served_page(start, specs, engine), "text/html; charset=utf-8");
     } catch (const std::exception& error) {
       response.status = 500;
       response.set_content(error.what(), "text/plain; charset=utf-8");
@@ -57,11 +74,11 @@ struct PageServer::Parts {
 };
 
 PageServer::PageServer(const std::string& start, const std::filesystem::path& specs,
-                       const std::filesystem::path& engine, int port)
-    : parts_(new Parts(start, specs, engine)) {
-  playground_page(start, specs, engine);  // tells at once why there is none
+                       const std::filesystem::path& engine, const std::filesystem::path& program, int port)
+    : parts_(new Parts(start, specs, engine, program)) {
+  served_page(start, specs, engine);  // tells at once why there is none
   httplib::Server& server = parts_->server;
-  server.new_task_queue = [] { return new httplib::ThreadPool(2); };
+  server.new_task_queue = [] { return new httplib::ThreadPool(16); };
   server.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
     if (parts_->is_asked_by_us(request)) return httplib::Server::HandlerResponse::Unhandled;
     response.status = 403;
@@ -70,6 +87,13 @@ PageServer::PageServer(const std::string& start, const std::filesystem::path& sp
   server.Get("/", [this](const httplib::Request&, httplib::Response& response) { parts_->answer_page(response); });
   server.Get("/example", [this](const httplib::Request& request, httplib::Response& response) {
     parts_->answer_example(request, response);
+  });
+  const char* const engine_name = R"(/engine/([0-9a-z-]{1,40}))";
+  server.Post(engine_name, [this](const httplib::Request& request, httplib::Response& response) {
+    parts_->answer_engine(request, response);
+  });
+  server.Delete(engine_name, [this](const httplib::Request& request, httplib::Response&) {
+    parts_->engines.end(request.matches[1]);
   });
   const char* const here = "127.0.0.1";
   parts_->port = port > 0 && server.bind_to_port(here, port) ? port : server.bind_to_any_port(here);

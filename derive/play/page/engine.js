@@ -2,7 +2,30 @@
 const by = id => document.getElementById(id);
 const data = JSON.parse(by('data').textContent);
 
-const engineModule = (async () => {
+// A page of `cdot play` without WebAssembly asks the machine that serves it, one request after the other.
+class ServedWorker {
+  static all = new Set();
+  #name = Array.from(crypto.getRandomValues(new Uint8Array(12)), byte => byte.toString(16).padStart(2, '0')).join('');
+  #last = Promise.resolve();
+
+  constructor() { ServedWorker.all.add(this); }
+  postMessage({id, text, files}) {
+    const body = files ? JSON.stringify({do: 'write', files}) : text;
+    this.#last = this.#last.then(async () => {
+      const answer = await fetch(`engine/${this.#name}`, {method: 'POST', body}).catch(() => null);
+      const told = answer ? await answer.text() : 'the program that serves this page has ended';
+      this.onmessage?.({data: answer?.ok ? {id, answer: told} : {id, crash: told}});
+    });
+  }
+  terminate() {
+    this.onmessage = null;
+    ServedWorker.all.delete(this);
+    fetch(`engine/${this.#name}`, {method: 'DELETE', keepalive: true}).catch(() => {});
+  }
+}
+addEventListener('pagehide', () => ServedWorker.all.forEach(worker => worker.terminate()));
+
+const engineModule = data.served ? null : (async () => {
   const text = atob(by('wasm').textContent.trim());
   const bytes = new Uint8Array(text.length);
   for (let k = 0; k < bytes.length; ++k) bytes[k] = text.charCodeAt(k);
@@ -36,7 +59,7 @@ class Engine {
   }
 
   async #begin() {
-    const worker = this.#worker = new Worker(engineSource);
+    const worker = this.#worker = data.served ? new ServedWorker() : new Worker(engineSource);
     worker.onmessage = ({data: {id, answer, crash}}) => {
       const waiting = this.#waiting.get(id);
       if (!waiting) return;

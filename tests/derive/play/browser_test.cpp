@@ -314,7 +314,7 @@ TEST_F(Playground, TheLastOfManyChangesWins) {
 class Serving {
  public:
   Serving(const std::string& start, const fs::path& specs, const fs::path& engine)
-      : server_(start, specs, engine, 0), thread_([this] { server_.run(); }) {}
+      : server_(start, specs, engine, CDOT_PLAY, 0), thread_([this] { server_.run(); }) {}
   ~Serving() {
     server_.stop();
     thread_.join();
@@ -341,6 +341,23 @@ TEST_F(Playground, AServedPageFollowsTheFiles) {
   EXPECT_TRUE(
       until("document.documentElement.dataset.derived === 'specs/planar/rod_of_3.joint' && "
             "Math.abs(JSON.parse(document.documentElement.dataset.bodies)[1] + 3) < 1e-6"));
+}
+
+// Without WebAssembly the page asks the machine that serves it; a joint is typed, and moves.
+TEST_F(Playground, AServedPageNeedsNoWebAssembly) {
+  std::ofstream("scene.toml") << pendulum;
+  const Serving serving((folder_ / "scene.toml").string(), specs_, folder_ / "no_engine");
+  browser_.emplace(serving.address(), "", [](const std::string&) {});
+  EXPECT_TRUE(
+      until("document.documentElement.dataset.edition === '1' && +document.documentElement.dataset.time > 0.1"));
+  EXPECT_NEAR(from_origin(), 2, 1e-6);
+  EXPECT_TRUE(until("document.querySelector('#code [data-name=ra]')"));
+  write("spec", "joint distance planar\n  point pa on a\n  point pb on b\n  norm(pa - pb) = 2 [m]\n");
+  EXPECT_TRUE(until("document.documentElement.dataset.derived === 'specs/planar/my_distance.joint'"));
+  // An engine that ends is told, and begins anew.
+  value("mover.ask({do: 'step', time: 1e300}, 0.2)");
+  value("reload()");
+  EXPECT_TRUE(until("live && +document.documentElement.dataset.time > 0.1"));
 }
 
 // On a phone nothing is wider than the screen, and the mechanism comes first.
