@@ -31,6 +31,22 @@ void add_product(const typename System<S>::Product& product, const typename Syst
   }
 }
 
+// K = J weighted^T of one block, lower triangle. In float, kernels evaluate K by unit vectors that are not quite so:
+// that K and its products with other blocks belong to no J. Elimination magnifies their difference, 1e-7, by the ratio
+// r of masses, and pivots are 1 / r: from r = 4000 on they may be wrong or negative.
+template <class S>
+void multiply_own(const typename System<S>::Block& block, const typename System<S>::Real* J,
+                  const typename System<S>::Real* weighted, typename System<S>::Real* K) {
+  const int width = S::freedom * block.batch->ops->bodies;
+  for (int r = 0; r < block.rows; ++r)
+    for (int s = 0; s <= r; ++s) {
+      typename System<S>::Real sum = 0;
+      for (int c = 0; c < width; ++c) sum += J[r * width + c] * weighted[s * width + c];
+      K[r * block.own.stride + s] = sum;
+    }
+}
+constexpr double much_heavier = 1e3;
+
 template <class S>
 using AddProduct = decltype(System<S>::Product::add);
 
@@ -82,6 +98,7 @@ void System<S>::build(const std::vector<Segment<S>>& segments, const Bodies<S>& 
   for (auto* flags : {&fixed, &broken, &out_, &passing_}) flags->assign(n, 0);
   active_set_.assign(n, free);
   order_rows(bodies);
+  multiplies_own_ = std::is_same_v<T, float> && has_light_bodies(bodies);
   each_row([&](int row, const Batch<S>& batch, int) { passing_[row] = batch.law != nullptr; });
   list_products(bodies);
   slacken();
@@ -98,6 +115,17 @@ std::vector<int> System<S>::movable_bodies(const Block& block, const Bodies<S>& 
   }
   std::sort(movable.begin(), movable.end());
   return movable;
+}
+
+template <class S>
+bool System<S>::has_light_bodies(const Bodies<S>& bodies) const {
+  double lightest = 0, heaviest = std::numeric_limits<double>::infinity();  // [1/kg]
+  for (const Block& block : blocks)
+    for (const int body : movable_bodies(block, bodies)) {
+      const double inverse = double(bodies.inverse_mass[static_cast<size_t>(body)].m);
+      lightest = std::max(lightest, inverse), heaviest = std::min(heaviest, inverse);
+    }
+  return lightest > much_heavier * heaviest;
 }
 
 // Blocks over the same bodies (a joint, its limit, its motor) are eliminated as one group. Rows are numbered in the
@@ -167,9 +195,12 @@ template <class S>
 void System<S>::assemble(const Bodies<S>& bodies) {
   std::vector<Real>& K = ldlt_.values();
   std::fill(K.begin(), K.end(), 0.0);
-  for (const Block& block : blocks)
-    block.batch->ops->dense(*block.batch, block.slot, bodies, jacobian_.data() + block.jacobian,
-                            weighted_.data() + block.jacobian, K.data() + block.own.at, block.own.stride);
+  for (const Block& block : blocks) {
+    Real *const J = jacobian_.data() + block.jacobian, *const weighted = weighted_.data() + block.jacobian,
+                *const own = K.data() + block.own.at;
+    block.batch->ops->dense(*block.batch, block.slot, bodies, J, weighted, own, block.own.stride);
+    if (multiplies_own_) multiply_own<S>(block, J, weighted, own);
+  }
   assemble_tensions(bodies);
   for (const Product& product : products_) product.add(product, jacobian_.data(), weighted_.data(), K.data());
 }

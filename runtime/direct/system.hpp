@@ -170,6 +170,7 @@ class System {
   void assemble_tensions(const Bodies<S>& bodies);
   void order_rows(const Bodies<S>& bodies);
   void list_products(const Bodies<S>& bodies);
+  bool has_light_bodies(const Bodies<S>& bodies) const;
   std::vector<int> movable_bodies(const Block& block, const Bodies<S>& bodies) const;
   Real largest_b() const;
   char bound_for(int row, Real excess, Real tolerance) const;
@@ -196,6 +197,7 @@ class System {
   void expand(const std::vector<Real>& y, std::vector<Real>& to);
 
   bool built_ = false, shares_loads_ = false, lawful_ = false, taut_ = false, any_out_ = false, contradicted_ = false;
+  bool multiplies_own_ = false;          // blocks of K on its diagonal, rather than take those of the kernels
   bool yields_ = false, eased_ = false;  // within solve_bounded(): part_and_settle()
   Softened softened_ = Softened::no;
   int rows_ = 0, dependent_ = 0;

@@ -7,6 +7,7 @@
 #include <cdot/jacobian.hpp>
 
 #include "runtime/direct/ldlt.hpp"
+#include "runtime/tool/scene/scene.hpp"
 
 namespace cdot::torture {
 
@@ -36,6 +37,14 @@ double least_share_of_a_body(const BasicWorld<S>& world, const SystemMatrix& sys
     if (sum > 0) least = std::min(least, smallest / sum);
   }
   return least;
+}
+
+// D and K at the present poses in doubles: floats round J, so rows that depend on others look independent.
+template <class S>
+SystemMatrix exact_system_matrix(BasicWorld<S>& world, const Scene& scene) {
+  BasicWorld<typename S::Exact> exact = build_world_in<typename S::Exact>(scene);
+  for (int k = 0; k < static_cast<int>(scene.bodies.size()); ++k) exact.set_pose(k, world.place(k));
+  return system_matrix(exact);
 }
 
 // Steps that Runge-Kutta leaves to an implicit method may each take thousands of parts. Where the energy's balance has

@@ -185,7 +185,8 @@ const char* Trial<S>::excuse(BasicWorld<S>& world) const {
   if (laws_.may_contradict) return "a prescribed motion, or a rolling one, meets what may stop it";
   if (heaviest_over_lightest(*scene_) * told_apart < T >> 1)  // rows of effects as well
     return "masses further apart than pivots are told from round-off";
-  const SystemMatrix now = system_matrix(world);
+  const SystemMatrix now = system_matrix(world), exact = exact_system_matrix(world, *scene_);
+  if (rows_told_apart(exact, told_apart<T>) < exact.rank) return "rows that light bodies between heavy ones hide";
   if (least_share_of_a_body(world, now) < told_apart<T>) return "a body with less than a pivot's resolution of its row";
   if (independence(now, 8 * std::numeric_limits<double>::epsilon()) < std::sqrt(told_apart<T>))
     return "rows so near to dependent that pivots are not told from round-off";

@@ -38,6 +38,19 @@ Eigen::MatrixXd unit_rows(const SystemMatrix& system, double length) {
   return D;
 }
 
+// Of K with its diagonal scaled to 1.
+Eigen::VectorXd eigenvalues_of_unit_K(const SystemMatrix& system) {
+  const int n = system.rows;
+  const auto k = [&](int r, int c) { return system.K[static_cast<std::size_t>(r * n + c)]; };
+  Eigen::MatrixXd K(n, n);
+  for (int r = 0; r < n; ++r)
+    for (int c = 0; c < n; ++c) {
+      const double size = std::sqrt(k(r, r) * k(c, c));
+      K(r, c) = size > 0 ? k(r, c) / size : 0;
+    }
+  return K.selfadjointView<Eigen::Lower>().eigenvalues();
+}
+
 bool has_velocity_rows(const Scene& scene) {
   return std::any_of(scene.joints.begin(), scene.joints.end(), [&](const SceneJoint& joint) {
     const auto& kinds = find_joint_type(scene.dimension, joint.definition.type)->row_kinds;
@@ -49,19 +62,15 @@ bool has_velocity_rows(const Scene& scene) {
 
 double independence(const SystemMatrix& system, double round_off) {
   if (system.rows == 0 || system.columns == 0) return 1;
-  const int n = system.rows;
-  const auto k = [&](int r, int c) { return system.K[static_cast<std::size_t>(r * n + c)]; };
-  Eigen::MatrixXd K(n, n);
-  for (int r = 0; r < n; ++r)
-    for (int c = 0; c < n; ++c) {
-      const double size = std::sqrt(k(r, r) * k(c, c));
-      K(r, c) = size > 0 ? k(r, c) / size : 0;
-    }
-  const Eigen::VectorXd values = K.selfadjointView<Eigen::Lower>().eigenvalues();
   double least = 1;
-  for (const double value : values)
-    if (value > n * round_off) least = std::min(least, value);
+  for (const double value : eigenvalues_of_unit_K(system))
+    if (value > system.rows * round_off) least = std::min(least, value);
   return std::sqrt(least);
+}
+
+int rows_told_apart(const SystemMatrix& system, double told) {
+  if (system.rows == 0 || system.columns == 0) return 0;
+  return static_cast<int>((eigenvalues_of_unit_K(system).array() > told).count());
 }
 
 double speed_across(const SystemMatrix& system, const std::vector<double>& v, const std::vector<char>& counts) {

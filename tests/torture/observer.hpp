@@ -60,6 +60,8 @@ RowSizes row_sizes(BasicWorld<S>& world) {
 // A measure of the rows' independence in the metric of the masses: the root of the least eigenvalue above round-off of
 // K, with the diagonal of K scaled to 1. A small value means a pose near a singular one.
 double independence(const SystemMatrix& system, double round_off);
+// How many such eigenvalues are above `told`. D may have a larger rank: light bodies between heavy ones hide its rows.
+int rows_told_apart(const SystemMatrix& system, double told);
 // The largest change of a unit row between two matrices; 2 if a row reversed.
 double turned(const SystemMatrix& before, const SystemMatrix& after, double length);
 
