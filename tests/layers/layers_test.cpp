@@ -86,6 +86,7 @@ const std::vector<std::string> rooms = {
     "derive/compile/rows", // its rows and laws as programs
     "derive/compile",      // a scene to a header of its own
     "derive/play",         // the playground: its engine and its page
+    "derive/play/server",  // the program that serves or writes it
     "derive/python",       // `import cdot`
 };
 // One room in two folders, which may include each other.

@@ -14,7 +14,7 @@
 
 #include "derive/play/engine.hpp"
 #include "derive/play/page.hpp"
-#include "derive/play/serve.hpp"
+#include "derive/play/server/serve.hpp"
 #include "tests/derive/play/chromium.hpp"
 
 namespace cdot::test {

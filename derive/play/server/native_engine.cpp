@@ -1,4 +1,4 @@
-#include "derive/play/native_engine.hpp"
+#include "derive/play/server/native_engine.hpp"
 
 #include <algorithm>
 #include <csignal>

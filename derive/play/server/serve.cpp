@@ -1,4 +1,4 @@
-#include "derive/play/serve.hpp"
+#include "derive/play/server/serve.hpp"
 
 #include <chrono>
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "derive/play/native_engine.hpp"
+#include "derive/play/server/native_engine.hpp"
 #include "derive/play/page.hpp"
 
 namespace cdot::play {

@@ -9,9 +9,9 @@
 #include <thread>
 #include <unistd.h>
 
-#include "derive/play/native_engine.hpp"
+#include "derive/play/server/native_engine.hpp"
 #include "derive/play/page.hpp"
-#include "derive/play/serve.hpp"
+#include "derive/play/server/serve.hpp"
 #include "runtime/command_line/command_line.hpp"
 #include "runtime/command_line/installation.hpp"
 #include "runtime/command_line/waiting.hpp"
