@@ -171,8 +171,9 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
         std::upper_bound(next_diagnosis, options.diagnose_times.end(), after.time + same_time * scene.duration);
     if (due != next_diagnosis) look(scene, world, result);
     next_diagnosis = due;
-    result.stopped = (options.look && !options.look(after, world.step_counts())) ||
-                     static_cast<double>(world.step_counts().evaluations) > options.most_evaluations;
+    result.counts = world.step_counts();
+    result.stopped = (options.look && !options.look(after, result)) ||
+                     static_cast<double>(result.counts.evaluations) > options.most_evaluations;
     if (result.stopped && !options.diagnose_times.empty()) look(scene, world, result);
     if (Interrupt::asked() && options.save_at && result.state.empty()) result.state = world.snapshot();
     if (k == steps.count() || result.stopped || Interrupt::asked()) break;

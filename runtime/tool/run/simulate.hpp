@@ -20,6 +20,8 @@
 
 namespace cdot {
 
+struct RunResult;
+
 struct RunOptions {
   std::function<void(const Frame&)> row;  // called with every row of the trajectory
   std::vector<double> row_times;          // empty: after every step
@@ -28,8 +30,8 @@ struct RunOptions {
                                        // `look` ends the run
   bool progress = false;               // on stderr
   std::string doing;                   // before the progress: "dop853, local error 1e-06: "
-  // Called at the start and after every step with the work so far; false ends the run there.
-  std::function<bool(const Frame&, const StepCounts&)> look;
+  // Called at the start and after every step with the counts and the balance so far; false ends the run there.
+  std::function<bool(const Frame&, const RunResult&)> look;
   // Beyond so many the run is stopped; within a step, an implicit method finishes it then.
   double most_evaluations = std::numeric_limits<double>::infinity();
   double search_work =

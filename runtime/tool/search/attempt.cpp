@@ -7,10 +7,11 @@ namespace cdot {
 namespace {
 
 constexpr double round_off = 1e-15;  // of what is compared
+constexpr double far = 1;            // a size or a radian: larger distances say nothing about errors
 
 // Errors grow at least with time. From this share of the run on, the distance of two runs is taken to grow by the power
 // of time with which it grew over the second half up to then. The run that comes next expects a little more.
-constexpr double tells = 0.25, most_growth = 2, further_growth = 0.25;
+constexpr double tells = 0.25, most_growth = 2, further_growth = 0.5;
 
 std::size_t stride_of(const Attempt& coarse, const Attempt& fine) {
   return static_cast<std::size_t>(fine.knob.intervals / coarse.knob.intervals);
@@ -29,6 +30,13 @@ Distance distance(const Yardstick& yardstick, const Attempt& coarse, const Attem
   return distance;
 }
 
+double sure_gain(const Attempt& coarse, const Attempt& fine, double apart) {
+  if (fine.knob.adaptive() && apart > far) return 1;
+  const bool rescued = coarse.result.counts.rescued > 0 || fine.result.counts.rescued > 0;
+  const double of_energy = coarse.energy_share / std::max(round_off, fine.energy_share);
+  return sure_gain(fine.knob.row(), gain(coarse.knob, fine.knob, rescued), of_energy);
+}
+
 double foreseen_distance(const Yardstick& yardstick, double duration, const Attempt& coarse, const Attempt& fine) {
   const std::size_t stride = stride_of(coarse, fine), ends = (fine.frames.size() - 1) / stride;
   const double share = fine.frames.back().time / duration;
@@ -36,8 +44,8 @@ double foreseen_distance(const Yardstick& yardstick, double duration, const Atte
   const double now = distance(yardstick, coarse, fine, ends).largest;
   const double growth = std::log2(now / distance(yardstick, coarse, fine, ends / 2).largest);
   const auto at_end = [&](double power) { return now / std::pow(share, std::clamp(power, 1.0, most_growth)); };
-  const double allowed = yardstick.asked() * sure_gain(gain(coarse.knob, fine.knob, false), true);
-  return at_end(growth) > allowed ? at_end(growth + further_growth) : 0;
+  const double foreseen = at_end(growth), allowed = yardstick.asked() * sure_gain(coarse, fine, foreseen);
+  return foreseen > allowed ? at_end(growth + further_growth) : 0;
 }
 
 }  // namespace cdot

@@ -16,6 +16,7 @@ struct Attempt {
   RunResult result;
   std::vector<Frame> frames;  // at the ends of the intervals
   std::vector<Frame> rows;
+  double energy_share = 0;  // the largest error of the energy so far, see EnergyWatch
   double price = 0;
   bool full = false;                                          // it has the outputs asked for
   bool whole = false;                                         // it has ended in time and well
@@ -32,6 +33,8 @@ struct Distance {
 // At the first `ends` of the coarse run's intervals; all by default.
 Distance distance(const Yardstick& yardstick, const Attempt& coarse, const Attempt& fine,
                   std::size_t ends = std::numeric_limits<std::size_t>::max());
+// The factor by which the error of the fine run is surely smaller, if they are so far apart.
+double sure_gain(const Attempt& coarse, const Attempt& fine, double apart);
 // The distance at the end, foreseen from that up to now, if it shows that the two runs will not agree; else 0.
 double foreseen_distance(const Yardstick& yardstick, double duration, const Attempt& coarse, const Attempt& fine);
 

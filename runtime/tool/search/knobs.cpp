@@ -8,11 +8,17 @@ namespace cdot {
 namespace {
 
 // The first run is loose: its price is small, and its distance from the second tells how strict the third has to be, if
-// one is needed. Measured over all scenes: no other pair of numbers was cheaper by a tenth.
-constexpr double first_local_error = 10;  // in units of the accuracy, and
-constexpr double loosest_strict = 1e-11;  // at least, so that two more are possible
-constexpr double stricter = 1e-3;         // the next local error, as a share; at most a tenth. Of order 8
-constexpr int sparse = 4;                 // intervals of a look
+// one is needed. Local errors of the first two in units of the accuracy, measured over all scenes:
+constexpr double first_local_error = 10, looser_of_eighth_order = 10, second_of_eighth_order = 0.01;
+constexpr double strict_accuracy = 1e-6;                 // below it, there is no room for a looser one
+constexpr double loosest = 0.1, loosest_strict = 1e-11;  // of the first; two more have to be possible
+constexpr double stricter = 1e-3;  // the next local error, as a share; at most a tenth. Of order 8
+constexpr int sparse = 4;          // intervals of a look
+
+// The energy's error is a second witness of gains from `large_gain` on. It may show less than the local errors promise:
+// a run that needs a sure gain aims at `lacking` times as much.
+constexpr double large_gain = 300, power_of_large = 0.75, lacking = 2;
+
 // Intervals bound the steps: those of a method that took over, and those that no estimate bounds.
 constexpr int most_parts = 256;
 constexpr int most_fixed_parts = 1 << 14;
@@ -20,10 +26,18 @@ constexpr int most_fixed_parts = 1 << 14;
 }  // namespace
 
 Try first_try(Integrator integrator, double accuracy, bool sparsely) {
-  const bool adaptive = row_of(integrator).level == Level::acceleration;
-  return {integrator, adaptive ? std::max(loosest_strict, first_local_error * accuracy) : 0, 1,
-          intervals_of_own_steps / (sparsely ? sparse : 1)};
+  const IntegratorRow& row = row_of(integrator);
+  double local_error = 0;
+  if (row.level == Level::acceleration) {
+    local_error = first_local_error * accuracy;
+    if (is_eighth_order(row) && accuracy >= strict_accuracy)
+      local_error = std::max(local_error, std::min(loosest, looser_of_eighth_order * local_error));
+    local_error = std::max(local_error, loosest_strict);
+  }
+  return {integrator, local_error, 1, intervals_of_own_steps / (sparsely ? sparse : 1)};
 }
+
+bool is_eighth_order(const IntegratorRow& row) { return row.level == Level::acceleration && row.order == 8; }
 
 double stricter_for(const IntegratorRow& row) { return std::pow(stricter, row.order / 8.0); }
 
@@ -33,9 +47,23 @@ std::string name_of(const Try& knob) {
                          : fmt::format("{}, {} steps", name, knob.steps());
 }
 
-// The square root of what it should be. A tenth of a local error now and then gains less than that.
-double sure_gain(double gain, bool adaptive) { return std::pow(gain, adaptive && gain < 11 ? 0.25 : 0.5); }
-double gain_for(double sure) { return sure * sure; }
+double second_share(const Try& first, double accuracy) {
+  return is_eighth_order(first.row()) ? second_of_eighth_order * accuracy / first.local_error
+                                      : stricter_for(first.row());
+}
+
+// sqrt(g) of the gain g that it should be; a tenth of a local error now and then gains less than that. By order 8
+// min(g, e)^(3/4), if that is more, where the error of the energy falls by e.
+double sure_gain(const IntegratorRow& row, double gain, double of_energy) {
+  const double sure = std::pow(gain, row.level == Level::acceleration && gain < 11 ? 0.25 : 0.5);
+  if (!is_eighth_order(row) || gain < large_gain) return sure;
+  return std::max(sure, std::pow(std::min(gain, of_energy), power_of_large));
+}
+
+double gain_for(const IntegratorRow& row, double sure) {
+  const double large = std::pow(lacking * sure, 1 / power_of_large);
+  return is_eighth_order(row) && sure * sure > large_gain ? std::max(large_gain, large) : sure * sure;
+}
 
 double gain(const Try& coarse, const Try& fine, bool rescued) {
   const double shorter = static_cast<double>(fine.steps()) / coarse.steps();

@@ -28,17 +28,22 @@ std::string name_of(const Try& knob);
 // The first knob of a method. It only measures the second, so it may be looked at `sparsely`: at every fourth end of an
 // interval, since a look costs a state between steps.
 Try first_try(Integrator integrator, double accuracy, bool sparsely);
-// The share of the last local error that a second run takes: of order 8 a thousandth, of others at the same ratio of
+// One that chooses its steps, too.
+bool is_eighth_order(const IntegratorRow& row);
+// The share of the last local error that a further run takes: of order 8 a thousandth, of others at the same ratio of
 // prices.
 double stricter_for(const IntegratorRow& row);
+// The same for the second run.
+double second_share(const Try& first, double accuracy);
 
 // The factor by which the error should be smaller than that of a coarser knob; `rescued`: where another method took
 // over.
 double gain(const Try& coarse, const Try& fine, bool rescued);
-// The factor by which it is surely smaller, measured over all scenes.
-double sure_gain(double gain, bool adaptive);
+// The factor by which it is surely smaller, measured over all scenes, if the error of the energy is `of_energy` times
+// smaller.
+double sure_gain(const IntegratorRow& row, double gain, double of_energy);
 // The gain that is surely so large.
-double gain_for(double sure);
+double gain_for(const IntegratorRow& row, double sure);
 
 // The next knob, with an error of at most this share and shorter intervals; nothing if it is too fine.
 std::optional<Try> finer(Try knob, double share, int shorter);

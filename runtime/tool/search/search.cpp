@@ -25,7 +25,7 @@ constexpr double least_sure = 1e-12;  // below it, smaller steps gain nothing fo
 constexpr double local_errors = 10, unseen = 0.1;
 constexpr double aim = 0.5;  // share of the accuracy that a further run aims at
 constexpr int shorter_for_rescued = 4, shorter_for_others = 2;
-constexpr double long_step = 1.0 / 3;  // of the duration
+constexpr double long_step = 0.4;  // of the duration
 
 // --- After a run that ends early, since its distance from the run before will be too large, the next one aims at a
 // local error that is smaller by this factor at least, and by that of a second run at most. Where that is not enough,
@@ -34,7 +34,7 @@ constexpr double least_jump = 10;
 
 // --- Even motions: steps have grown without bound, in so few evaluations. They get explicit steps of equal length if
 // stable ones cost at most `slow`.
-constexpr double even = 150, slow = 60;
+constexpr double even = 150, slow = 150;
 constexpr double unlike = 2;  // the error in units of the distance of two methods of different kind
 
 // --- Fixed steps.
@@ -47,11 +47,11 @@ constexpr int most_idle = 3;       // refinements in a row without that
 constexpr double most_millisecond_runs = 20;
 // that is more than so many times the price of the first run that has ended with steps of its own: 1e-12 of its local
 // error costs 32 times as much.
-constexpr double most_first_runs = 40;
+constexpr double most_first_runs = 50;
 // A scene is surely stiff if an oscillation of tensions and springs at the start makes explicit steps `dear`. It may be
 // if a run has taken `suspicious` evaluations, is on the way to `dear`, and the fastest oscillation explains a share of
 // that price. Then methods for stiff scenes get such a share to be cheaper.
-constexpr double suspicious = 400, dear = 4000, share_of_stiff = 0.25, share_of_surely_stiff = 0.5;
+constexpr double suspicious = 600, dear = 4000, share_of_stiff = 0.33, share_of_surely_stiff = 0.5;
 
 // Two runs by the same steps agree, whatever their error.
 bool same_steps(const StepCounts& a, const StepCounts& b) {
@@ -134,13 +134,14 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt* judged_by) 
   options.doing = name_of(knob) + ": ";
   options.most_evaluations = std::min(left_for_all(), knob.adaptive() ? most : infinity);
   const double interval = solved.duration / knob.intervals;
-  options.look = [&](const Frame& frame, const StepCounts& counts) {
+  options.look = [&](const Frame& frame, const RunResult& so_far) {
     if (std::abs(frame.time - static_cast<double>(attempt.frames.size()) * interval) < 1e-6 * interval)
       attempt.frames.push_back(frame);
+    attempt.energy_share = so_far.balance.energy.share();
     if (!knob.adaptive()) return true;
     if (judged_by && (attempt.foreseen = foreseen_distance(yardstick_, solved.duration, *judged_by, attempt)) > 0)
       return false;
-    attempt.price = static_cast<double>(counts.evaluations);
+    attempt.price = static_cast<double>(so_far.counts.evaluations);
     const double foreseen = frame.time > 0 ? attempt.price * solved.duration / frame.time : 0;
     const double mechanisms = yardstick_.mechanisms();
     if (!may_be_dear_ || attempt.price < suspicious * mechanisms || foreseen < dear * mechanisms)
@@ -166,11 +167,9 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt* judged_by) 
 void Search::judge(const Attempt& coarse, Attempt& fine) const {
   const auto [apart, agree_until] = distance(yardstick_, coarse, fine);
   fine.holds_until = agree_until;
-  const bool rescued = coarse.result.counts.rescued > 0 || fine.result.counts.rescued > 0;
-  const double gained = gain(coarse.knob, fine.knob, rescued);
+  const double gained = sure_gain(coarse, fine, apart);
   const double between_looks = std::min(local_errors * fine.knob.local_error, unseen * yardstick_.asked());
-  fine.achieved =
-      std::max({std::min(apart, least_sure), apart / sure_gain(gained, fine.knob.adaptive()), between_looks});
+  fine.achieved = std::max({std::min(apart, least_sure), apart / gained, between_looks});
   const bool known = fine.knob.parts > coarse.knob.parts || !fine.knob.adaptive() ||
                      (fine.result.counts.rescued == 0 && !same_steps(coarse.result.counts, fine.result.counts));
   const bool seems_to_converge = fine.knob.adaptive() || fine.achieved < surely * yardstick_.asked() ||
@@ -196,7 +195,8 @@ std::optional<double> Search::next_share(const Attempt& last, const Attempt& now
   if (now.knob.adaptive() && !now.whole && failed_before && now.result.time <= last.result.time) return {};
   const double least = stricter_for(now.knob.row());
   if (!now.whole) return least;
-  if (!last.whole) return now.knob.adaptive() ? least : 0.5;
+  if (!last.whole && !now.knob.adaptive()) return 0.5;
+  if (!last.whole) return second_share(now.knob, yardstick_.asked());
   // Two runs agree on a motion whose energy balance fails: finer ones would agree with them.
   if (now.knob.adaptive() && now.achieved <= yardstick_.asked() && !balanced(now) && !balanced(last)) sensitive_ = true;
   sensitive_ |= now.knob.strictest() && now.result.counts.rescued == 0;
@@ -224,7 +224,8 @@ int Search::shorter_after(const Attempt& now) const {
 // The knob after a run that ended early by its distance from the run before.
 std::optional<Try> Search::after_early_end(const Attempt& last, const Attempt& now) const {
   const double before = last.knob.local_error / now.knob.local_error;
-  const double jump = std::max(least_jump, gain_for(now.foreseen / (aim * yardstick_.asked())) / before);
+  const double jump =
+      std::max(least_jump, gain_for(now.knob.row(), now.foreseen / (aim * yardstick_.asked())) / before);
   return finer(now.knob, 1 / (jump * stricter_for(now.knob.row()) > 1 ? least_jump : jump), shorter_after(now));
 }
 

@@ -37,7 +37,7 @@ Run run_of(const Scene& scene, const std::vector<double>& times, double most) {
   options.row_times = times;
   options.row = [&](const Frame& frame) { run.rows.push_back(frame); };
   const double began = cpu_now();
-  if (!chooses_method(scene)) options.look = [&](const Frame&, const StepCounts&) { return cpu_now() - began < most; };
+  if (!chooses_method(scene)) options.look = [&](const Frame&, const RunResult&) { return cpu_now() - began < most; };
   std::string warnings;
   run.result = simulate(scene, options, warnings);
   run.whole = !run.result.stopped && failure(scene, run.result).empty() && run.rows.size() == times.size();

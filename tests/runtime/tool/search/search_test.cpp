@@ -8,6 +8,7 @@
 #include <cdot/methods.hpp>
 
 #include "runtime/tool/run/trajectory.hpp"
+#include "runtime/tool/search/attempt.hpp"
 #include "runtime/tool/search/yardstick.hpp"
 #include "tests/runtime/tool/support.hpp"
 
@@ -232,15 +233,34 @@ TEST(SearchedAccuracy, RefinesWithoutRunningAnythingTwice) {
   EXPECT_EQ(result.choice->runs_before, 2);
 }
 
-// The second run of 20 s of swinging is a third of a run: then its distance from the first tells how strict the third
-// has to be.
+// The second run of a four-bar that passes its change points ends early: then its distance from the first tells how
+// strict the third has to be.
 TEST(SearchedAccuracy, EndsARunThatCannotAgree) {
-  const Scene scene = scene_named("simple_pendulum");
+  const Scene scene = scene_named("four_bar");
   std::string warnings;
   const RunResult result = simulate(scene, {}, warnings);
   EXPECT_TRUE(result.choice->reached);
   EXPECT_EQ(result.choice->runs_before, 2);
   EXPECT_LT(result.choice->evaluations_before, 0.8 * static_cast<double>(result.choice->evaluations));
+}
+
+// Two runs by dop853 whose local errors differ by a factor of 10^4. The distance of the second from the truth is sure
+// to be 100 times smaller than theirs; 1000 times where the energies say so, too; and unknown beyond a radian.
+TEST(SearchedAccuracy, TrustsLargeGainsWhereTheEnergyShowsThem) {
+  Attempt coarse, fine;
+  coarse.knob = {Integrator::dop853, 1e-2}, fine.knob = {Integrator::dop853, 1e-6};
+  coarse.energy_share = 1e-3;
+  const auto sure = [&](double energy_share, double apart) {
+    fine.energy_share = energy_share;
+    return sure_gain(coarse, fine, apart);
+  };
+  EXPECT_NEAR(sure(1e-3, 0.01), 100, 1e-6);
+  EXPECT_NEAR(sure(1e-7, 0.01), 1000, 1e-4);
+  EXPECT_NEAR(sure(1e-12, 0.01), 1000, 1e-4);  // no more than the local errors promise
+  EXPECT_NEAR(sure(1e-3 / 2401, 0.01), 343, 1e-6);
+  EXPECT_EQ(sure(1e-7, 1.01), 1);
+  coarse.knob.integrator = fine.knob.integrator = Integrator::rk4;
+  EXPECT_NEAR(sure(1e-7, 0.01), 100, 1e-6);
 }
 
 // Masses on a rope move along parabolas, which equal steps meet exactly. Three free bodies take long steps as well, but
