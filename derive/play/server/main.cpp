@@ -9,8 +9,8 @@
 #include <thread>
 #include <unistd.h>
 
-#include "derive/play/server/native_engine.hpp"
 #include "derive/play/page.hpp"
+#include "derive/play/server/native_engine.hpp"
 #include "derive/play/server/serve.hpp"
 #include "runtime/command_line/command_line.hpp"
 #include "runtime/command_line/installation.hpp"

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "derive/play/server/native_engine.hpp"
 #include "derive/play/page.hpp"
+#include "derive/play/server/native_engine.hpp"
 
 namespace cdot::play {
 

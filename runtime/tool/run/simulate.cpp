@@ -81,7 +81,9 @@ class Steps {
       if (std::abs(time(0) - start_) > same_time * scene.duration) ends_[static_cast<std::size_t>(first_)] = start_;
     } else {
       first_ = std::llround(start_ / step_);
-      if (std::abs(time(0) - start_) > 1e-6 * step_) first_ = 0, offset_ = start_;
+      // A World adds its steps up, each sum rounded.
+      const double summed = std::numeric_limits<double>::epsilon() * static_cast<double>(first_) * start_;
+      if (std::abs(time(0) - start_) > std::max(1e-6 * step_, summed)) first_ = 0, offset_ = start_;
       count_ = static_cast<long long>(std::ceil((scene.duration - time(0)) / step_ * (1 - 1e-12)));
     }
   }
