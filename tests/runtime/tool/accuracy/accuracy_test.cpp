@@ -264,7 +264,7 @@ TEST(Sweep, AStateOfSomethingElseIsRefused) {
   const auto refusal = [&](const Fingerprint& fingerprint) -> std::string {
     try {
       read_state(path, fingerprint);
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
       return error.what();
     }
     return "accepted";
