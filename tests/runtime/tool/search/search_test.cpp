@@ -331,8 +331,10 @@ TEST(SearchedAccuracy, IsMeasuredByOtherSteps) {
       const BodyState& arm = frame.bodies[0];
       worst = std::max(worst, std::abs(2 * std::atan2(arm.e2, arm.e0) - frame.time));
     }
-    fmt::print("  {:.0e}: claims {:.1e}, is off by {:.1e}\n", accuracy, result.choice->achieved, worst);
+    fmt::print("  {:.0e}: claims {:.1e}, is off by {:.1e}, by steps of at most {:.2g} s\n", accuracy,
+               result.choice->achieved, worst, result.counts.longest);
     EXPECT_LE(worst, 3 * result.choice->achieved) << accuracy;
+    EXPECT_LE(result.counts.longest, scene.duration / 2) << "steps that nothing bounds are halved";
   }
 }
 
