@@ -35,13 +35,12 @@ class MjcfReader : MjcfElements {
 
   Model read(const std::string& text) {
     Element& root = parse(text);
+    include_files(root, std::filesystem::path(file_).parent_path());
     const char* const name = root.Attribute("model");
     model_.name = name ? name : "MuJoCo model";
     for (Element& e : children(root)) {
       if (e.Name() == std::string_view("compiler")) read_compiler(e);
       if (e.Name() == std::string_view("default")) read_defaults(e);
-      if (e.Name() == std::string_view("include"))
-        fail(e.GetLineNum(), "another file is included. Likely fix: one file, as mj_saveLastXML() writes it");
     }
     model_.gravity = Vector3d(0, 0, -9.81);
     model_.links.push_back({"world", root.GetLineNum(), 0, {}, {}, "", {}});

@@ -31,7 +31,7 @@ struct Part {
 };
 
 // JSON's strings are TOML's.
-std::string quoted(const std::string& name) { return text::Json(name).dump(); }
+std::string in_quotes(const std::string& name) { return text::Json(name).dump(); }
 
 // A name may hold line ends.
 std::string comment(std::string line) {
@@ -79,10 +79,10 @@ class Writer {
     std::string couplings;
     for (const ModelCoupling& coupling : model_.couplings) couplings += text_of(coupling);
     std::string text = comment(fmt::format("Of the robot {} in {}, with every joint at 0 or at its nearest limit.",
-                                           quoted(model_.name), model_.file));
+                                           in_quotes(model_.name), model_.file));
     for (const std::string& thing : model_.left_out) text += comment("Left out: " + thing + ".");
     for (const std::string& thing : model_.changed) text += comment("Changed: " + thing + ".");
-    text += fmt::format("title     = {}\ndimension = 3\n", quoted(model_.name));
+    text += fmt::format("title     = {}\ndimension = 3\n", in_quotes(model_.name));
     if (model_.gravity) text += fmt::format("gravity   = {}\n", list(*model_.gravity));
     if (!model_.couplings.empty())
       text += "project   = true\n";  // a coordinate at its limit may not be where another wants
@@ -108,7 +108,7 @@ class Writer {
       const std::string base = name.empty() ? "unnamed" : name;
       name = base;
       for (int k = 2; !taken.insert(name).second; ++k) name = fmt::format("{}_{}", base, k);
-      if (name != one.name) model_.changed.push_back(fmt::format("the name {} is {}", quoted(one.name), name));
+      if (name != one.name) model_.changed.push_back(fmt::format("the name {} is {}", in_quotes(one.name), name));
       one.name = name;
     }
   }
@@ -169,7 +169,7 @@ class Writer {
   void tell_start(const ModelJoint& joint, const ModelCoordinate& c) {
     if (c.start() == 0) return;
     model_.changed.push_back(fmt::format("joint {} starts at {}, its limit, and its coordinate counts from there",
-                                         quoted(joint.name), number(c.start())));
+                                         in_quotes(joint.name), number(c.start())));
   }
 
   void gather_parts(bool floating) {
@@ -194,21 +194,21 @@ class Writer {
     Matrix3d& I = part.inertia;
     if (!(part.mass > 0))
       fail(part.line,
-           fmt::format("{} {} moves and has no mass. Likely fix: an <inertial>{}", model_.word, quoted(part.name),
+           fmt::format("{} {} moves and has no mass. Likely fix: an <inertial>{}", model_.word, in_quotes(part.name),
                        model_.grounded ? ", or a simple geom" : ", or a fixed joint above it"));
     if (I.isZero(0))
       fail(part.line, fmt::format("{} {} turns and has no inertia. Likely fix: an <inertia> in its <inertial>",
-                                  model_.word, quoted(part.name)));
+                                  model_.word, in_quotes(part.name)));
     const char* mistake = mistake_of(I);
     if (mistake && !balance)
       fail(part.line, fmt::format("{} {}: {}. Likely fix: its <inertia>, or --balance-inertias", model_.word,
-                                  quoted(part.name), mistake));
+                                  in_quotes(part.name), mistake));
     if (!mistake) return;
     const double mean = I.trace() / 3;
-    if (!(mean > 0)) fail(part.line, fmt::format("{} {}: {}", model_.word, quoted(part.name), mistake));
+    if (!(mean > 0)) fail(part.line, fmt::format("{} {}: {}", model_.word, in_quotes(part.name), mistake));
     I = mean * Matrix3d::Identity();
     model_.changed.push_back(fmt::format("the inertia of {} {}, which no rigid body has: it is {} about all axes",
-                                         model_.word, quoted(part.name), number(mean)));
+                                         model_.word, in_quotes(part.name), number(mean)));
   }
 
   // In a scene "world" never moves.
@@ -232,7 +232,7 @@ class Writer {
     const Eigen::Quaterniond q(part.axes);
     const Matrix3d turned = part.axes.transpose() * part.inertia * part.axes, I = (turned + turned.transpose()) / 2;
     std::string text =
-        fmt::format("\n[[body]]\nname        = {}\nmass        = {}\n", quoted(name_of_body(part)), part.mass);
+        fmt::format("\n[[body]]\nname        = {}\nmass        = {}\n", in_quotes(name_of_body(part)), part.mass);
     text += fmt::format("inertia     = {}\n", tensor(I));
     if (!part.shape.empty()) text += fmt::format("shape       = {}\n", part.shape);
     text += fmt::format("position    = {}\n", list(part.centre));
@@ -259,8 +259,8 @@ class Writer {
     }
   }
   std::string head_of(const std::string& name, const char* type, int a, int b, const Vector3d& at) const {
-    return fmt::format("\n[[joint]]\nname   = {}\ntype   = \"{}\"\nbodies = [{}, {}]\nat     = {}\n", quoted(name),
-                       type, quoted(body_of(a)), quoted(body_of(b)), list(at));
+    return fmt::format("\n[[joint]]\nname   = {}\ntype   = \"{}\"\nbodies = [{}, {}]\nat     = {}\n", in_quotes(name),
+                       type, in_quotes(body_of(a)), in_quotes(body_of(b)), list(at));
   }
 
   // fa.y is the first axis, fixed in the parent, and fb.z the second one, fixed in the child; both frames coincide
@@ -318,9 +318,9 @@ class Writer {
     const std::string type = stem_ + "_" + coupling.name;
     model_.specs.push_back({type + ".joint", coupling_spec(type, first, second, coupling.coefficients)});
     std::string names;
-    for (const std::string& body : bodies) names += (names.empty() ? "" : ", ") + quoted(body);
-    return fmt::format("\n[[joint]]\nname   = {}\ntype   = {}\nbodies = [{}]\n{}", quoted(coupling.name), quoted(type),
-                       names, parameters);
+    for (const std::string& body : bodies) names += (names.empty() ? "" : ", ") + in_quotes(body);
+    return fmt::format("\n[[joint]]\nname   = {}\ntype   = {}\nbodies = [{}]\n{}", in_quotes(coupling.name),
+                       in_quotes(type), names, parameters);
   }
 
   static const char* type_of(const ModelJoint& joint) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <locale>
 #include <sstream>
+#include <string_view>
 
 #include <cdot/settings.hpp>
 
@@ -18,7 +19,34 @@ XmlReader::Element& XmlReader::parse(const std::string& text) {
   return *document_.RootElement();
 }
 
+void XmlReader::include_files(Element& of, const std::filesystem::path& folder) {
+  for (Element* e = of.FirstChildElement(); e;) {
+    const bool includes = e->Name() == std::string_view("include");
+    if (includes) include(of, *e, folder);
+    else include_files(*e, folder);
+    Element* const next = e->NextSiblingElement();  // which a file has just brought, if e includes one
+    if (includes) of.DeleteChild(e);
+    e = next;
+  }
+}
+
+void XmlReader::include(Element& of, Element& include, const std::filesystem::path& folder) {
+  const std::string name = attribute(include, "file"), path = (folder / name).string();
+  if (!included_.insert(name).second) fail(include.GetLineNum(), fmt::format("{} is included twice", name));
+  tinyxml2::XMLDocument document;
+  const tinyxml2::XMLError error = document.LoadFile(path.c_str());
+  if (error == tinyxml2::XML_ERROR_FILE_NOT_FOUND || error == tinyxml2::XML_ERROR_FILE_COULD_NOT_BE_OPENED)
+    fail(include.GetLineNum(), fmt::format("there is no {} to include", path));
+  if (error != tinyxml2::XML_SUCCESS)
+    fail(include.GetLineNum(),
+         fmt::format("{}:{}: this is no XML ({})", path, document.ErrorLineNum(), document.ErrorName()));
+  tinyxml2::XMLNode* last = &include;
+  for (const auto* e = document.RootElement()->FirstChild(); e; e = e->NextSibling())
+    last = of.InsertAfterChild(last, e->DeepClone(&document_));
+}
+
 void XmlReader::fail(int line, const std::string& what) const {
+  if (line == 0 && !included_.empty()) throw Error(fmt::format("{}, in a file that it includes: {}", file_, what));
   throw Error(fmt::format("{}:{}: {}", file_, line, what));
 }
 

@@ -3,6 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <filesystem>
+#include <set>
 #include <string>
 #include <tinyxml2.h>
 #include <vector>
@@ -15,6 +17,9 @@ class XmlReader {
 
   // `text` stays with the reader. Returns the root.
   Element& parse(const std::string& text);
+  // Puts the elements of the files that <include file="..."/> names in its place, each file once. Their paths are seen
+  // from `folder`. Included elements have the line 0.
+  void include_files(Element& of, const std::filesystem::path& folder);
   [[noreturn]] void fail(int line, const std::string& what) const;
   std::string attribute(const Element& e, const char* key) const;  // which it needs
   std::vector<double> list(const Element& e,
@@ -28,7 +33,10 @@ class XmlReader {
   std::string file_;
 
  private:
+  void include(Element& of, Element& include, const std::filesystem::path& folder);
+
   tinyxml2::XMLDocument document_;
+  std::set<std::string> included_;
 };
 
 }  // namespace cdot

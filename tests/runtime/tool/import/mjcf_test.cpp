@@ -278,7 +278,7 @@ TEST(Mjcf, MistakesAreToldByFileAndLine) {
   };
   const std::pair<std::string, std::string> cases[] = {
       {"<mujoco/>", "model.xml:1: the model has no <body>"},
-      {"<mujoco><include file=\"x\"/></mujoco>", "model.xml:1: another file is included"},
+      {"<mujoco><include file=\"no_such.xml\"/></mujoco>", "model.xml:1: there is no no_such.xml to include"},
       {body("<joint/>", ""),
        "model.xml:3: body \"b\" moves and has no mass. Likely fix: an <inertial>, or a simple geom"},
       {body("<joint/>", "<geom type=\"mesh\"/>"), "model.xml:3: body \"b\" moves and has no mass"},
@@ -312,6 +312,39 @@ TEST(Mjcf, NamesBecomeValid) {
   for (const char* part : {"# Changed: the name \"arm/0\" is arm_0.", "# Changed: the name \"arm.0\" is arm_0_2.",
                            "bodies = [\"world\", \"arm_0_2\"]"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+}
+
+// Included files stand where they are named, also within bodies and in each other; their paths are those from the
+// model.
+TEST(Mjcf, FilesAreIncluded) {
+  const TemporaryFolder folder;
+  const auto write = [&](const char* name, const std::string& text) { std::ofstream(folder / name) << text; };
+  write("classes.xml", "<mujocoinclude><default><geom density=\"500\"/></default></mujocoinclude>");
+  write("arm.xml",
+        "<mujocoinclude><body name=\"arm\" pos=\"0 0 1\"><joint/><include file=\"shape.xml\"/></body></mujocoinclude>");
+  write("shape.xml", "<mujocoinclude><geom type=\"box\" size=\"0.5 0.5 0.5\"/></mujocoinclude>");
+  const auto read = [&](const std::string& text) {
+    Model model = read_model(text, (folder / "model.xml").string());
+    return scene_text(model, {});
+  };
+  const std::string text = read(model("<include file=\"arm.xml\"/>", "<include file=\"classes.xml\"/>"));
+  EXPECT_NE(text.find("name        = \"arm\"\nmass        = 500"), std::string::npos) << text;
+  const auto mistake = [&](const std::string& world) -> std::string {
+    try {
+      return read(model(world));
+    } catch (const Error& error) {
+      return error.what();
+    }
+  };
+  EXPECT_NE(mistake("<include file=\"arm.xml\"/><include file=\"arm.xml\"/>").find("arm.xml is included twice"),
+            std::string::npos);
+  write("broken.xml", "<mujocoinclude>\n<body>");
+  EXPECT_NE(mistake("<include file=\"broken.xml\"/>").find("broken.xml:2: this is no XML"), std::string::npos);
+  write("shape.xml", "<mujocoinclude><geom type=\"box\" size=\"1\"/></mujocoinclude>");
+  EXPECT_NE(mistake("<include file=\"arm.xml\"/>").find("model.xml, in a file that it includes: a box needs"),
+            std::string::npos);
+  write("endless.xml", "<mujocoinclude><include file=\"endless.xml\"/></mujocoinclude>");
+  EXPECT_NE(mistake("<include file=\"endless.xml\"/>").find("endless.xml is included twice"), std::string::npos);
 }
 
 // Coupled joints need a spec: it goes beside the scene, under the scene's name.
