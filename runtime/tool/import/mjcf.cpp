@@ -248,10 +248,12 @@ class MjcfReader : MjcfElements {
   static ModelLink light_link(const ModelLink& body, const std::string& name, const Vector3d& at) {
     ModelLink link;
     link.name = name, link.line = body.line, link.centre = at;
-    link.mass = light * body.mass;
-    link.inertia = light * std::max(body.inertia.trace() / 3, 1e-4 * body.mass) * Matrix3d::Identity();
+    const double mass = body.mass > 0 ? body.mass : 1;  // [kg]: then it is that of bodies fixed to it
+    link.mass = light * mass;
+    link.inertia = light * std::max(body.inertia.trace() / 3, 1e-4 * mass) * Matrix3d::Identity();
     return link;
   }
+
   // --- loops and actuators ---------------------------------------------------------------------
 
   void read_equality(Element& e) {

@@ -135,6 +135,13 @@ TEST(BesideMujoco, EachJoint) {
     expect_beside(name, model_of("<body name=\"b\" pos=\"0 0 1\" euler=\"10 20 30\">" + joint + box + "</body>"));
 }
 
+// The mass of the light body between the joints is a share of 1 kg then.
+TEST(BesideMujoco, JointsOfABodyWhoseMassIsInAFixedOne) {
+  expect_beside("mass in a fixed body",
+                model_of(R"(<body name="b" pos="0 0 1"><joint axis="1 0 0.2"/><joint axis="0 1 0.5"/>
+  <body pos="0.4 0 0"><geom size="0.2"/></body></body>)"));
+}
+
 // As the hip, the knee and the ankle of MuJoCo's humanoid: several skew hinges on one body, springs, dampers, and
 // masses by capsules; the trunk is free.
 TEST(BesideMujoco, ALegThatSwings) {
