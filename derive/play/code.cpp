@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "derive/explain/explain.hpp"
+#include "derive/explain/formats/mathml.hpp"
 #include "derive/kernel/generate.hpp"
 #include "derive/language/specs_folder.hpp"
 #include "derive/play/spec.hpp"
@@ -15,12 +16,6 @@ namespace {
 using namespace derive;
 
 bool is_of_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
-
-std::string escaped(std::string_view text) {
-  std::string html;
-  for (const char c : text) html += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return html;
-}
 
 // The names that a page of the derivation marks.
 std::set<std::string> names_in(const std::string& html) {
@@ -43,13 +38,13 @@ class Code {
       std::size_t end = 0;
       while (end < code.size() && is_of_name(code[end])) ++end;
       if (end == 0) {
-        out += escaped(code.substr(0, 1)), code.remove_prefix(1);
+        out += html_escaped(std::string(code.substr(0, 1))), code.remove_prefix(1);
         continue;
       }
       const std::string word(code.substr(0, end)), member = member_after(code.substr(end));
       const std::string name = name_of(word, member);
       const std::size_t length = end + (name.empty() || !is_of_body(word) ? 0 : member.size() + 1);
-      const std::string text = escaped(code.substr(0, length));
+      const std::string text = html_escaped(std::string(code.substr(0, length)));
       out += name.empty() ? text : fmt::format("<span data-name=\"{}\">{}</span>", name, text);
       code.remove_prefix(length);
     }

@@ -23,7 +23,7 @@ nlohmann::json check_spec(const std::string& path);
 nlohmann::json explain_spec(const std::string& path);
 // {html}: the kernel's C++ with the names of the derivation marked as there; or {problems}.
 nlohmann::json kernel_of_spec(const std::string& path);
-// What `answer` makes of the derivation, or {problems} if there is none.
+// The answer made of the derivation, or {problems} if there is none.
 nlohmann::json with_derivation(const std::string& path,
                                const std::function<nlohmann::json(const derive::Derivation&)>& answer);
 

@@ -227,7 +227,7 @@ Json bound_json(Infix& infix, const Joint& joint, const BoundedRow& row, const D
           {"until", infix.of_optional(row.until)}};
 }
 
-// What an effect adds to its rows: null without one.
+// The law and the bounds of an effect, beside its rows: null and none without them.
 void add_effect(Json& out, Infix& infix, const Derivation& derivation) {
   const Joint& joint = derivation.joint;
   out["law"] = derivation.law ? law_json(infix, joint, *derivation.law) : Json();

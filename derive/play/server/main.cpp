@@ -110,7 +110,7 @@ void add_options(Line& line, Options& options) {
 
 Run play_command(Line& line) { return command_line::with_options<Options>(line, add_options, run); }
 
-// What the page's requests begin; not for people.
+// Begun by the requests of a page; not for people.
 Run engine_command(Line& line) {
   line.retire();
   return [] { return answer_lines(); };
