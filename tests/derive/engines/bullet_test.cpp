@@ -10,6 +10,7 @@
 #include "bullet/gear.hpp"
 #include "bullet/hinge.hpp"
 #include "bullet/max_distance.hpp"
+#include "tests/derive/engines/bevel_gear.hpp"
 
 namespace {
 
@@ -218,13 +219,9 @@ TEST_F(BulletJoints, AGearCountsWholeTurns) {
   world_.setGravity({0, 0, 0});
   btRigidBody &a = body({0, 0, 0}), &b = body({0, 0, 0});
   bullet::gear_joint::Parameters p{};
-  for (double* frame : {&p.fa_x_x, &p.ga_x_x}) frame[0] = frame[4] = frame[8] = 1;
-  for (double* frame : {&p.fb_x_x, &p.gb_x_x}) frame[1] = frame[5] = frame[6] = 1;
-  p.ratio = 1.3;
+  cdot::test::make_bevel_gear(p);
   auto& gear = add<bullet::gear_joint>(a, b, p);
-  gear.by_default(spatial::gear::index_of_angle_a_turns);
-  gear.angle_a().speed = 12;
-  gear.angle_a().most = 1;
+  cdot::test::drive_bevel_gear(gear, spatial::gear::index_of_angle_a_turns);
   double worst = 0;
   for (int n = 0; n < 1200; ++n) {
     run(0.01, 0.01);

@@ -17,6 +17,7 @@
 #include "dart/max_distance.hpp"
 #include "dart/midpoint.hpp"
 #include "dart/spherical.hpp"
+#include "tests/derive/engines/bevel_gear.hpp"
 
 namespace {
 
@@ -255,13 +256,9 @@ TEST_F(DartJoints, AGearCountsWholeTurns) {
   world->setTimeStep(1e-2);
   BodyNode *const a = body({0, 0, 0}), *const b = body({0, 0, 0});
   joints::gear_joint::Parameters p{};
-  for (double* frame : {&p.fa_x_x, &p.ga_x_x}) frame[0] = frame[4] = frame[8] = 1;
-  for (double* frame : {&p.fb_x_x, &p.gb_x_x}) frame[1] = frame[5] = frame[6] = 1;
-  p.ratio = 1.3;
+  cdot::test::make_bevel_gear(p);
   auto& gear = add<joints::gear_joint>(p, a, b);
-  gear.by_default(spatial::gear::index_of_angle_a_turns);
-  gear.angle_a().speed = 12;
-  gear.angle_a().most = 1;
+  cdot::test::drive_bevel_gear(gear, spatial::gear::index_of_angle_a_turns);
   double worst = 0;
   for (int n = 0; n < 1200; ++n) {
     world->step();

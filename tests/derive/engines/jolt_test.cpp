@@ -17,6 +17,7 @@
 #include "jolt/distance.hpp"
 #include "jolt/gear.hpp"
 #include "jolt/hinge.hpp"
+#include "tests/derive/engines/bevel_gear.hpp"
 
 namespace {
 
@@ -175,13 +176,9 @@ TEST_F(JoltJoints, AGearCountsWholeTurns) {
   system_.SetGravity(Vec3::sZero());
   JPH::Body &a = body(Vec3::sZero()), &b = body(Vec3::sZero());
   jolt::gear_joint::Parameters p{};
-  for (float* frame : {&p.fa_x_x, &p.ga_x_x}) frame[0] = frame[4] = frame[8] = 1;
-  for (float* frame : {&p.fb_x_x, &p.gb_x_x}) frame[1] = frame[5] = frame[6] = 1;
-  p.ratio = 1.3f;
+  cdot::test::make_bevel_gear(p);
   auto& gear = add<jolt::gear_joint>(a, b, p);
-  gear.by_default(spatial::gear::index_of_angle_a_turns);
-  gear.angle_a().speed = 12;
-  gear.angle_a().most = 1;
+  cdot::test::drive_bevel_gear(gear, spatial::gear::index_of_angle_a_turns);
   float worst = 0;
   for (int n = 0; n < 2400; ++n) {
     run(1.0f / 240);

@@ -10,6 +10,7 @@
 #include "ode/hinge.hpp"
 #include "ode/max_distance.hpp"
 #include "ode/spherical.hpp"
+#include "tests/derive/engines/bevel_gear.hpp"
 
 namespace {
 
@@ -219,13 +220,9 @@ TEST_P(OdeJoints, AGearCountsWholeTurns) {
   dWorldSetGravity(world, 0, 0, 0);
   const dBodyID a = body({0, 0, 0}), b = body({0, 0, 0});
   ode::gear_joint::Parameters p{};
-  for (double* frame : {&p.fa_x_x, &p.ga_x_x}) frame[0] = frame[4] = frame[8] = 1;
-  for (double* frame : {&p.fb_x_x, &p.gb_x_x}) frame[1] = frame[5] = frame[6] = 1;
-  p.ratio = 1.3;
+  cdot::test::make_bevel_gear(p);
   auto& gear = *new ode::gear_joint(world, a, b, p);
-  gear.by_default(spatial::gear::index_of_angle_a_turns);
-  gear.angle_a().speed = 12;
-  gear.angle_a().most = 1;
+  cdot::test::drive_bevel_gear(gear, spatial::gear::index_of_angle_a_turns);
   double worst = 0;
   for (int n = 0; n < 1200; ++n) {
     step(0.01);

@@ -12,6 +12,7 @@
 #include "plain/hinge.hpp"
 #include "plain/revolute.hpp"
 #include "plain/rope.hpp"
+#include "tests/derive/engines/bevel_gear.hpp"
 #include "tests/derive/engines/generated_hinge.hpp"
 
 namespace {
@@ -141,9 +142,7 @@ TEST(PlainJoints, AGearOfThreeBodiesKeepsItsRatio) {
 TEST(PlainJoints, AGearInSpaceCountsWholeTurns) {
   plain::gear_joint<double> gear;
   auto& p = gear.parameters;
-  for (double* frame : {&p.fa_x_x, &p.ga_x_x}) frame[0] = frame[4] = frame[8] = 1;
-  for (double* frame : {&p.fb_x_x, &p.gb_x_x}) frame[1] = frame[5] = frame[6] = 1;
-  p.ratio = 1.3;
+  cdot::test::make_bevel_gear(p);
   spatial::Pose<double> q[2] = {plain::pose(0., 0., 0., 1., 0., 0., 0.), plain::pose(0., 0., 0., 1., 0., 0., 0.)};
   const spatial::InverseMass<double> m[2] = {{1, 2, 2, 2, 0, 0, 0}, {1, 3, 3, 3, 0, 0, 0}};
   spatial::Velocity<double> v[2] = {{0, 0, 0, 9, 0, 0}, {}};

@@ -351,13 +351,13 @@ TEST_F(Playground, AServedPageNeedsNoWebAssembly) {
   EXPECT_TRUE(
       until("document.documentElement.dataset.edition === '1' && +document.documentElement.dataset.time > 0.1"));
   EXPECT_NEAR(from_origin(), 2, 1e-6);
-  EXPECT_TRUE(until("document.querySelector('#code [data-name=ra]')"));
+  ASSERT_TRUE(until("document.querySelector('#code [data-name=ra]')"));
   write("spec", "joint distance planar\n  point pa on a\n  point pb on b\n  norm(pa - pb) = 2 [m]\n");
-  EXPECT_TRUE(until("document.documentElement.dataset.derived === 'specs/planar/my_distance.joint'"));
+  ASSERT_TRUE(until("document.documentElement.dataset.derived === 'specs/planar/my_distance.joint'"));
   // An engine that ends is told, and begins anew.
   value("mover.ask({do: 'step', time: 1e300}, 0.2)");
   value("reload()");
-  EXPECT_TRUE(until("live && +document.documentElement.dataset.time > 0.1"));
+  ASSERT_TRUE(until("live && +document.documentElement.dataset.time > 0.1"));
 }
 
 // On a phone nothing is wider than the screen, and the mechanism comes first.

@@ -298,18 +298,6 @@ TEST(Command, AnInterruptedRunKeepsWhatItComputed) {
   EXPECT_EQ(csv(further).back(), csv(whole).back()) << "an interruption changes bits";
 }
 
-// After 400,000 steps the World's time, a sum, is off by 2.5e-9 s; a run that goes on from there keeps the steps' ends.
-TEST(Command, ALongRunGoesOnWithItsBits) {
-  const TemporaryFolder folder;
-  const std::string state = folder / "run.state", further = folder / "further.csv", whole = folder / "whole.csv";
-  const std::string run =
-      fmt::format("simulate {} --integrator euler --step 0.001 --every 0.5", scene("simple_pendulum"));
-  ASSERT_EQ(cdot_run(fmt::format("{} --until 400 --save-state '{}'", run, state)).status, 0);
-  EXPECT_EQ(cdot_run(fmt::format("{} --until 400.5 --from-state '{}' -o '{}'", run, state, further)).status, 0);
-  EXPECT_EQ(cdot_run(fmt::format("{} --until 400.5 -o '{}'", run, whole)).status, 0);
-  EXPECT_EQ(csv(further).back(), csv(whole).back());
-}
-
 // Numbers of all rows except the header.
 std::vector<double> numbers_of(const std::filesystem::path& path) {
   std::vector<double> numbers;
