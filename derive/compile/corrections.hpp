@@ -3,15 +3,9 @@
 
 #include <string>
 
-namespace cdot::compile {
+#include "derive/compile/methods/contents.hpp"
 
-// The parts of a mechanism: rows of joints, effects by forces, rows with bounds, and among these some with ends; bodies
-// in space, and among these some whose inertia turns with them.
-struct Contents {
-  bool rows = false, effects = false, bounded = false, ends = false;
-  bool spatial = false, gyroscopes = false, angles = false;  // angles: that count whole turns
-  bool closes() const { return rows || ends; }
-};
+namespace cdot::compile {
 
 // close() and project(); `renew`: lines that set inertias in the lanes of `renews`.
 std::string corrections_of(double tolerance, const Contents& has, const std::string& renew);
