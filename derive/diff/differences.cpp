@@ -123,7 +123,7 @@ Differences merged(Differences entries, const Sides& sides, const Group& rows, c
 
 std::string without_component(const std::string& text, std::size_t i) {
   const std::string axis = std::string(".") + "xyz"[i];
-  if (text.find("world" + axis) != text.npos) return text;
+  if (text.find(axis) == text.npos || text.find("world" + axis) != text.npos) return text;
   return std::regex_replace(text, std::regex("\\" + axis + "\\b"), "");
 }
 

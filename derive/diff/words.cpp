@@ -213,6 +213,7 @@ std::string in_names_of_spec(std::string text, const Joint& joint) {
   }
   for (const std::string& body : joint.bodies) frames.push_back("axis_" + body);
   for (const std::string& frame : frames) {
+    if (text.find(frame + "_") == text.npos) continue;  // to make a regex takes longer
     const std::string name = frame.starts_with("axis_") ? frame.substr(5) : frame;
     text = std::regex_replace(text, std::regex("\\b" + frame + "_([xyz])\\b"), name + ".$1");
   }

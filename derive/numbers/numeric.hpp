@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -102,6 +103,10 @@ class Evaluation {
 
   std::size_t place_of(Expr e) {
     if (const auto known = places_.find(&*e); known != places_.end()) return known->second;
+    if (const std::optional<Expr> others = by_others(e)) {
+      const std::size_t place = place_of(*others);
+      return places_.emplace(&*e, place).first->second;
+    }
     Step step{e, {}};
     for (const Expr arg : e->args) {
       const bool tensor = arg->kind == Kind::symbol && is_tensor(arg);  // read by its components
@@ -112,6 +117,13 @@ class Evaluation {
     values_.push_back(value);
     places_.emplace(&*e, steps_.size() - 1);
     return steps_.size() - 1;
+  }
+
+  // The same in what the arithmetic has.
+  std::optional<Expr> by_others(Expr e) const {
+    if (e->kind == Kind::twist) return twist_as_atan2(e);
+    if (e->kind != Kind::function || arithmetic_.has(e->fn)) return std::nullopt;
+    return function_of(e->fn).by_others(e->args[0]);
   }
 
   const T& s(const Step& step, std::size_t i) const { return values_[step.operands[i]][0]; }
@@ -134,11 +146,9 @@ class Evaluation {
       case Kind::product: return product_rule(step);
       case Kind::dot: return inner_product(v(step, 0), v(step, 1));
       case Kind::cross: return v(step, 0)[0] * v(step, 1)[1] - v(step, 0)[1] * v(step, 1)[0];
-      case Kind::twist: return scalar(twist_as_atan2(e));
       case Kind::norm: return arithmetic_.length(v(step, 0));
       default: break;
     }
-    if (!arithmetic_.has(e->fn)) return scalar(function_of(e->fn).by_others(e->args[0]));
     std::vector<T> args;
     for (std::size_t i = 0; i < e->args.size(); ++i) args.push_back(s(step, i));
     return arithmetic_.call(e->fn, args);

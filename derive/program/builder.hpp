@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <span>
-#include <unordered_map>
+#include <utility>
 
 #include "derive/program/program.hpp"
 
@@ -27,9 +27,9 @@ class Builder {
   virtual ~Builder() = default;
   int number(Rational value);
   // Numeric coefficients of operands move into sums and out of products; nothing is flattened.
-  int sum(Summands terms, std::string name = {});
-  int product(std::vector<int> args, std::vector<int> exponents, std::string name = {});
-  int function(Fn fn, std::vector<int> args, std::string name = {});
+  int sum(Summands terms, SharedText name = {});
+  int product(std::vector<int> args, std::vector<int> exponents, SharedText name = {});
+  int function(Fn fn, std::vector<int> args, SharedText name = {});
   int leaf(const Operation& op);  // an input or a factor
   // The same operation with other operands.
   int rebuild(const Operation& op, std::vector<int> args);
@@ -41,13 +41,14 @@ class Builder {
   virtual int intern(Operation op) = 0;
 
  private:
+  Summands ordered(Summands terms, std::size_t n) const;
   // Takes the numeric factor out of an operand: a sum with one term, or a number.
   Rational pull_coefficient(int& arg) const;
 };
 
 class ProgramBuilder final : public Builder {
  public:
-  explicit ProgramBuilder(std::size_t expected = 0) { program_.ops.reserve(expected), by_hash_.reserve(expected); }
+  explicit ProgramBuilder(std::size_t expected = 0);
 
   const Operation& at(int op) const override { return program_.at(op); }
   int size() const { return static_cast<int>(program_.ops.size()); }
@@ -56,9 +57,11 @@ class ProgramBuilder final : public Builder {
 
  private:
   int intern(Operation op) override;
+  void enter(int op);
 
   Program program_;
-  std::unordered_multimap<std::size_t, int> by_hash_;
+  std::vector<std::size_t> hash_;  // by operation
+  std::vector<int> slots_;         // hash table with open addresses: operations, or -1; at most half are taken
 };
 
 // The same for a sum and its negative.

@@ -58,7 +58,7 @@ int Graph::intern(Operation op) {
   int sign = 0;
   const int other = known(op, hash, sign);
   if (other < 0) return store(std::move(op), hash);
-  std::string& name = ops_[index(other)].name;
+  SharedText& name = ops_[index(other)].name;
   if (is_placed(other)) {
     if (sign < 0) return sum({{other}, {Rational(-1)}});
     if (name.empty()) name = std::move(op.name);
@@ -141,7 +141,7 @@ void Graph::rewrite(const std::vector<int>& ops, const Rewrite& rewrite) {
     if (state_[index(op)] == State::gone) continue;
     if (is_placed(op)) {  // moved to the front
       const auto late = late_names_.find(op);
-      std::string& name = ops_[index(op)].name;
+      SharedText& name = ops_[index(op)].name;
       if (late != late_names_.end() && name.empty()) name = late->second;
     } else if (state_[index(op)] == State::settled) {
       append(op);
@@ -224,6 +224,7 @@ void Graph::drop_unneeded() {
 
 Program Graph::program() const {
   Program program;
+  program.ops.reserve(order_.size());
   std::vector<int> to(ops_.size(), -1);
   for (const int op : order_) {
     if (state_[index(op)] != State::settled) continue;

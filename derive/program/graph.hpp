@@ -79,8 +79,8 @@ class Graph final : public Builder {
   std::vector<std::vector<int>> users_;
   std::vector<int> slots_;  // hash table: the first operation in each slot, or -1
   std::vector<int> order_;
-  std::map<int, std::string> late_names_;  // of operations that moved to the front: given at their old place
-  std::vector<int> without_use_;           // candidates
+  std::map<int, SharedText> late_names_;  // of operations that moved to the front: given at their old place
+  std::vector<int> without_use_;          // candidates
   Changes changes_;
 };
 

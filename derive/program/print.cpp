@@ -175,7 +175,7 @@ class StatementPrinter {
       case OpKind::factor: return number(o.value);
       case OpKind::input: {
         const auto found = printing_.inputs.find(o.input);
-        return found == printing_.inputs.end() ? o.input : found->second;
+        return found == printing_.inputs.end() ? o.input.text() : found->second;
       }
       case OpKind::sum: return sum_text(o, level);
       case OpKind::product: return parenthesised(product_text(o), level >= in_power);
@@ -250,7 +250,7 @@ std::set<std::string> inputs_read(const Program& program, const Printing& printi
     const Operation& op = program.ops[i];
     if (uses[i] == 0 || op.kind != OpKind::input) continue;
     const auto found = printing.inputs.find(op.input);
-    read.insert(found == printing.inputs.end() ? op.input : found->second);
+    read.insert(found == printing.inputs.end() ? op.input.text() : found->second);
   }
   return read;
 }

@@ -2,6 +2,7 @@
 #include "derive/program/program.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <fmt/format.h>
 
@@ -34,7 +35,7 @@ void add_cost(const Program& program, const Operation& op, Count& count) {
 }  // namespace
 
 std::size_t hash_of(const Operation& op) {
-  std::uint64_t hash = op.kind == OpKind::input ? std::hash<std::string>()(op.input) : 0;
+  std::uint64_t hash = op.kind == OpKind::input ? std::hash<std::string>()(op.input.text()) : 0;
   const auto add = [&](std::int64_t n) {
     hash = (hash ^ static_cast<std::uint64_t>(n)) * 0x9E3779B97F4A7C15u;
     hash ^= hash >> 32;
@@ -67,20 +68,36 @@ Lead lead_of(const Program& program, const Operation& sum) {
   return {0, true};
 }
 
+ProgramBuilder::ProgramBuilder(std::size_t expected) : slots_(std::bit_ceil(2 * expected + 64), -1) {
+  program_.ops.reserve(expected), hash_.reserve(expected);
+}
+
+void ProgramBuilder::enter(int op) {
+  std::size_t slot = hash_[static_cast<std::size_t>(op)];
+  while (slots_[slot & (slots_.size() - 1)] >= 0) ++slot;
+  slots_[slot & (slots_.size() - 1)] = op;
+}
+
 int ProgramBuilder::intern(Operation op) {
   const std::size_t hash = hash_of(op);
-  const auto [first, last] = by_hash_.equal_range(hash);
-  for (auto found = first; found != last; ++found) {  // none but one fits, whatever their order
-    Operation& known = program_.ops[static_cast<std::size_t>(found->second)];
-    const int sign = sign_between(op, known);
-    if (sign < 0) return sum({{found->second}, {Rational(-1)}});  // it exists already and is not computed again
+  for (std::size_t slot = hash; slots_[slot & (slots_.size() - 1)] >= 0; ++slot) {
+    const int other = slots_[slot & (slots_.size() - 1)];
+    if (hash_[static_cast<std::size_t>(other)] != hash) continue;
+    Operation& known = program_.ops[static_cast<std::size_t>(other)];
+    const int sign = sign_between(op, known);             // none but one fits, whatever their order
+    if (sign < 0) return sum({{other}, {Rational(-1)}});  // it exists already and is not computed again
     if (sign == 0) continue;
     if (known.name.empty()) known.name = std::move(op.name);
-    return found->second;
+    return other;
   }
-  program_.ops.push_back(std::move(op));
-  by_hash_.emplace(hash, size() - 1);
-  return size() - 1;
+  const int made = size();
+  program_.ops.push_back(std::move(op)), hash_.push_back(hash);
+  if (2 * hash_.size() > slots_.size()) {
+    slots_.assign(2 * slots_.size(), -1);
+    for (int i = 0; i < made; ++i) enter(i);
+  }
+  enter(made);
+  return made;
 }
 
 int Builder::number(Rational value) {
@@ -98,7 +115,23 @@ Rational Builder::pull_coefficient(int& arg) const {
   return op.coefs[0];
 }
 
-int Builder::sum(Summands terms, std::string name) {
+// The sum of the first n terms, which differ. Sums are taken from the left: x_a - x_b + r keeps the digits of r far
+// from the origin, r + x_a - x_b does not.
+Summands Builder::ordered(Summands terms, std::size_t n) const {
+  auto& [args, coefs] = terms;
+  args.resize(n), coefs.resize(n);
+  const auto is_late = [&](int arg) { return !at(arg).is_position; };
+  const bool none_is_zero = std::ranges::none_of(coefs, &Rational::is_zero);
+  if (none_is_zero && std::ranges::is_sorted(args, {}, is_late)) return terms;
+  Summands sorted;
+  sorted.args.reserve(n), sorted.coefs.reserve(n);
+  for (const bool late : {false, true})
+    for (std::size_t i = 0; i < n; ++i)
+      if (is_late(args[i]) == late && !coefs[i].is_zero()) sorted.add(coefs[i], args[i]);
+  return sorted;
+}
+
+int Builder::sum(Summands terms, SharedText name) {
   auto& [args, coefs] = terms;
   std::size_t n = 0;  // terms so far
   for (std::size_t i = 0; i < args.size(); ++i) {
@@ -108,26 +141,19 @@ int Builder::sum(Summands terms, std::string name) {
     coefs[same] = same < n ? coefs[same] + coef : coef;
     if (same == n) args[n++] = arg;
   }
+  terms = ordered(std::move(terms), n);
+  if (args.empty()) return number(0);
+  const bool single = args.size() == 1;
+  if (single && at(args[0]).kind == OpKind::number) return number(coefs[0] * at(args[0]).value);
+  if (single && coefs[0] == Rational(1)) return args[0];
   Operation op;
   op.kind = OpKind::sum;
-  op.args.reserve(n), op.coefs.reserve(n);
-  // Sums are taken from the left: x_a - x_b + r keeps the digits of r far from the origin, r + x_a - x_b does not.
-  for (const bool position : {true, false}) {
-    for (std::size_t i = 0; i < n; ++i) {
-      if (at(args[i]).is_position != position || coefs[i].is_zero()) continue;
-      op.args.push_back(args[i]);
-      op.coefs.push_back(coefs[i]);
-    }
-  }
-  if (op.args.empty()) return number(0);
-  const bool single = op.args.size() == 1;
-  if (single && at(op.args[0]).kind == OpKind::number) return number(op.coefs[0] * at(op.args[0]).value);
-  if (single && op.coefs[0] == Rational(1)) return op.args[0];
+  op.args = std::move(args), op.coefs = std::move(coefs);
   op.name = std::move(name);
   return intern(std::move(op));
 }
 
-int Builder::product(std::vector<int> args, std::vector<int> exponents, std::string name) {
+int Builder::product(std::vector<int> args, std::vector<int> exponents, SharedText name) {
   Rational coef(1);
   std::size_t n = 0;  // factors so far
   for (std::size_t i = 0; i < args.size(); ++i) {
@@ -155,7 +181,7 @@ int Builder::product(std::vector<int> args, std::vector<int> exponents, std::str
   return coef == Rational(1) ? core : sum({{core}, {coef}}, std::move(name));
 }
 
-int Builder::function(Fn fn, std::vector<int> args, std::string name) {
+int Builder::function(Fn fn, std::vector<int> args, SharedText name) {
   Operation op;
   op.kind = OpKind::function;
   op.fn = fn;

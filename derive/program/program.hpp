@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,17 +19,38 @@ enum class OpKind {
   function
 };
 
+// A text that the copies of an operation share: passes copy programs thousands of times.
+class SharedText {
+ public:
+  SharedText() = default;
+  SharedText(const std::string& text) : text_(text.empty() ? nullptr : std::make_shared<const std::string>(text)) {}
+  SharedText(const char* text) : SharedText(std::string(text)) {}
+
+  bool empty() const { return !text_; }
+  const std::string& text() const {
+    static const std::string none;
+    return text_ ? *text_ : none;
+  }
+  operator const std::string&() const { return text(); }
+  friend bool operator==(const SharedText& a, const SharedText& b) {
+    return a.text_ == b.text_ || a.text() == b.text();
+  }
+
+ private:
+  std::shared_ptr<const std::string> text_;
+};
+
 // Operands come before their users. Sums and products have any number of operands.
 struct Operation {
   OpKind kind = OpKind::number;
   Rational value;            // number, factor
-  std::string input;         // input: the symbol's name
+  SharedText input;          // input: the symbol's name
   bool is_position = false;  // input: a coordinate of a centre of mass (large, so differences come first)
   Fn fn{};                   // function
   std::vector<int> args;
   std::vector<Rational> coefs;  // sum
   std::vector<int> exponents;   // product, positive
-  std::string name;             // from the spec, or empty
+  SharedText name;              // from the spec, or empty
   friend bool operator==(const Operation&, const Operation&) = default;
 };
 

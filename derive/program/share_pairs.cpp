@@ -41,7 +41,7 @@ std::vector<int> users_of(const Graph& graph, const Pair& pair, Places (*find)(c
 }
 
 // The name of x + ratio y in the spec, of several the first; empty if it has none.
-std::string name_of(const Graph& graph, const Pair& pair) {
+SharedText name_of(const Graph& graph, const Pair& pair) {
   int named = -1;
   for (const int user : graph.users(pair.x)) {
     const Operation& op = graph.at(user);
@@ -50,7 +50,7 @@ std::string name_of(const Graph& graph, const Pair& pair) {
     if (op.args[y] != pair.y || op.coefs[x] != Rational(1) || op.coefs[y] != pair.ratio) continue;
     if (named < 0 || graph.place(user) < graph.place(named)) named = user;
   }
-  return named < 0 ? "" : graph.at(named).name;
+  return named < 0 ? SharedText() : graph.at(named).name;
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ Program share_terms(const Program& program, Effort& effort) {
   Graph graph(program, effort);
   PairTable pairs(graph, OpKind::sum, effort);
   for (std::optional<Pair> pair; !effort.spent() && (pair = pairs.most_frequent()); pairs.follow()) {
-    const std::string name = name_of(graph, *pair);
+    const SharedText name = name_of(graph, *pair);
     graph.rewrite(users_of(graph, *pair, terms_in), [&](Graph& builder, const Operation& op) -> Made {
       const auto [x, y] = *terms_in(op, *pair);
       const auto mapped = [&](std::size_t i) { return builder.now(op.args[i]); };

@@ -10,15 +10,24 @@
 namespace cdot::derive {
 namespace {
 
+// Programs of builders are in normal form: where all is needed and a pass finds nothing, a copy would be the same.
+bool all_needed(const std::vector<int>& uses) { return std::ranges::find(uses, 0) == uses.end(); }
+
+// The factor that all terms of a sum have in common, with the sign that makes one of them positive. Sums with a name of
+// the spec keep their terms.
+Rational coefficient_of(const Operation& op) {
+  if (op.kind != OpKind::sum || op.args.size() < 2 || !op.name.empty()) return Rational(1);
+  const bool alike = std::ranges::all_of(op.coefs, [&](Rational c) { return abs(c) == abs(op.coefs[0]); });
+  const bool negative = std::ranges::all_of(op.coefs, [](Rational c) { return c.sign() < 0; });
+  return (negative ? Rational(-1) : Rational(1)) * (alike ? abs(op.coefs[0]) : Rational(1));
+}
+
 // -x - y = -(x + y) and 2 x - 2 y = 2 (x - y): one factor for the sum, not one per term.
-Program take_out_coefficients(const Program& program) {
+Program take_out_coefficients(Program program) {
+  const auto has_none = [](const Operation& op) { return coefficient_of(op) == Rational(1); };
+  if (std::ranges::all_of(program.ops, has_none) && all_needed(use_counts(program))) return program;
   return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
-    // Names of the spec survive.
-    if (op.kind != OpKind::sum || op.args.size() < 2 || !op.name.empty()) return std::nullopt;
-    const bool alike =
-        std::all_of(op.coefs.begin(), op.coefs.end(), [&](Rational c) { return abs(c) == abs(op.coefs[0]); });
-    const bool negative = std::all_of(op.coefs.begin(), op.coefs.end(), [](Rational c) { return c.sign() < 0; });
-    const Rational factor = (negative ? Rational(-1) : Rational(1)) * (alike ? abs(op.coefs[0]) : Rational(1));
+    const Rational factor = coefficient_of(op);
     if (factor == Rational(1)) return std::nullopt;
     Summands terms;
     for (std::size_t i = 0; i < op.args.size(); ++i) terms.add(op.coefs[i] / factor, at(op.args[i]));
@@ -35,17 +44,20 @@ bool flattens(const Operation& outer, Rational coef, const Operation& inner, int
   return inner.name.empty() || (opens_with_minus && has_minus);
 }
 
-Program flatten_sums(const Program& program) {
+Program flatten_sums(Program program) {
   const std::vector<int> uses = use_counts(program);
   std::vector<bool> absorbed(program.ops.size());
+  bool any = !all_needed(uses);
   for (std::size_t i = 0; i < program.ops.size(); ++i) {
     if (uses[i] == 0 || program.ops[i].kind != OpKind::sum) continue;
     const Operation& outer = program.ops[i];
     for (std::size_t k = 0; k < outer.args.size(); ++k) {
       const auto a = static_cast<std::size_t>(outer.args[k]);
       absorbed[a] = flattens(outer, outer.coefs[k], program.ops[a], uses[a]);
+      any = any || absorbed[a];
     }
   }
+  if (!any) return program;
   return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int index, const Moved& at) -> Made {
     if (absorbed[static_cast<std::size_t>(index)]) return builder.number(0);  // never read
     if (op.kind != OpKind::sum) return std::nullopt;
@@ -64,15 +76,22 @@ Program flatten_sums(const Program& program) {
 }
 
 // k (x y) = k x y, where the inner product has no other user: any two of the factors may then be shared.
-Program flatten_products(const Program& program) {
+Program flatten_products(Program program) {
   const std::vector<int> uses = use_counts(program);
   const auto absorbed = [&](int arg, int exponent) {
     const Operation& inner = program.at(arg);
     return inner.kind == OpKind::product && exponent == 1 && inner.name.empty() &&
            uses[static_cast<std::size_t>(arg)] == 1;
   };
+  const auto absorbs = [&](const Operation& op) {
+    if (op.kind != OpKind::product) return false;
+    for (std::size_t i = 0; i < op.args.size(); ++i)
+      if (absorbed(op.args[i], op.exponents[i])) return true;
+    return false;
+  };
+  if (std::ranges::none_of(program.ops, absorbs) && all_needed(uses)) return program;
   return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
-    if (op.kind != OpKind::product) return std::nullopt;
+    if (!absorbs(op)) return std::nullopt;
     std::vector<int> args, exponents;
     const auto add = [&](auto&& self, const Operation& product) -> void {
       for (std::size_t i = 0; i < product.args.size(); ++i) {
@@ -136,16 +155,16 @@ using Pass = Program (*)(const Program&, Effort&);
 
 // Orders of passes begin alike, and a search often repeats an earlier one: each step is made once.
 struct Step {
-  Program from;
+  const Program* from;
   Pass pass;
   Program to;
 };
 const Program& after(const Program& from, Pass pass, std::deque<Step>& made, Effort& effort) {
   effort.spend(8 * from.ops.size());
   for (const Step& step : made) {
-    if (step.pass == pass && step.from == from) return step.to;
+    if (step.pass == pass && (step.from == &from || *step.from == from)) return step.to;
   }
-  return made.emplace_back(Step{from, pass, flatten_sums(pass(from, effort))}).to;
+  return made.emplace_back(Step{&from, pass, flatten_sums(pass(from, effort))}).to;
 }
 
 // Cost in units of an addition; a division or root weighs as on current processors.
@@ -159,16 +178,18 @@ Program searched(const Program& program, Effort& effort) {
                                        {share_terms, share_factors, take_out_factors},
                                        {take_out_factors, share_terms, share_factors}};
   std::deque<Step> steps;
+  std::deque<Program> starts;  // of this turn and of those before, from which steps are known
   Program best = program;
   for (bool improved = true; improved && !effort.spent();) {
     improved = false;
     const auto tidied = [](const Program& p, bool coefficients_out) {
       return flatten_sums(flatten_products(coefficients_out ? take_out_coefficients(p) : p));
     };
-    const Program starts[] = {tidied(best, false), tidied(best, true)};
+    const Program* const start[] = {&starts.emplace_back(tidied(best, false)),
+                                    &starts.emplace_back(tidied(best, true))};
     for (const auto& order : orders) {
       for (const bool coefficients_out : {false, true}) {
-        const Program* last = &starts[coefficients_out];
+        const Program* last = start[coefficients_out];
         for (const Pass pass : order) last = &after(*last, pass, steps, effort);
         Program candidate = tidied(*last, coefficients_out);
         if (weight(count(candidate)) >= weight(count(best))) continue;

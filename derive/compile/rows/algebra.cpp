@@ -142,7 +142,7 @@ std::map<std::string, int> Algebra::inlined(const Program& program, const std::f
     const Operation& op = program.ops[i];
     std::vector<int> args;
     for (const int arg : op.args) args.push_back(to[static_cast<std::size_t>(arg)]);
-    const std::string name = op.name.empty() ? "" : prefix + "_" + op.name;
+    const std::string name = op.name.empty() ? "" : prefix + "_" + op.name.text();
     switch (op.kind) {
       case OpKind::number:
       case OpKind::factor: to[i] = builder_.number(op.value); break;

@@ -51,24 +51,26 @@ Subject subject_of(const std::string& name) {
   return s;
 }
 
+// Replaces whole words; `after` is the rest of the expression behind a word. Most words are not there at all, and to
+// make a regex takes long.
+void replace(std::string& s, const std::string& word, const std::string& by, const std::string& after = "") {
+  if (s.find(word) != s.npos) s = std::regex_replace(s, std::regex("\\b" + word + after + "\\b"), by);
+}
+
 // An expression in the language of .hand files.
 std::string in_hand(Expr e, const Joint& joint) {
   std::string s = " " + text_unnamed(e) + " ";
   for (const std::string& body : joint.bodies) {
-    const auto replace = [&](const std::string& what, const std::string& by) {
-      s = std::regex_replace(s, std::regex("\\b" + what + "\\b"), by);
-    };
-    replace("inv_m_" + body, "(1/m(" + body + "))");
-    replace("inv_I_" + body, joint.dimension == 2 ? "(1/I(" + body + "))" : "(I(" + body + ")^-1)");
-    for (const char* stem : {"x", "v", "w"}) replace(std::string(stem) + "_" + body, fmt::format("{}({})", stem, body));
-    replace("theta_" + body, "angle(" + body + ")");
-    s = std::regex_replace(s, std::regex("\\baxis_" + body + "_([xyz])\\b"), body + ".$1");
+    replace(s, "inv_m_" + body, "(1/m(" + body + "))");
+    replace(s, "inv_I_" + body, joint.dimension == 2 ? "(1/I(" + body + "))" : "(I(" + body + ")^-1)");
+    for (const char* stem : {"x", "v", "w"})
+      replace(s, std::string(stem) + "_" + body, fmt::format("{}({})", stem, body));
+    replace(s, "theta_" + body, "angle(" + body + ")");
+    replace(s, "axis_" + body, body + ".$1", "_([xyz])");
   }
   for (const Parameter& p : joint.parameters) {
-    if (p.kind == ParameterKind::frame)
-      s = std::regex_replace(s, std::regex("\\b" + p.name + "_([xyz])\\b"), p.name + ".$1");
-    if (p.kind == ParameterKind::point && p.body >= 0)
-      s = std::regex_replace(s, std::regex("\\b" + p.symbol->symbol + "\\b"), "arm(" + p.name + ")");
+    if (p.kind == ParameterKind::frame) replace(s, p.name, p.name + ".$1", "_([xyz])");
+    if (p.kind == ParameterKind::point && p.body >= 0) replace(s, p.symbol->symbol, "arm(" + p.name + ")");
   }
   return s;
 }

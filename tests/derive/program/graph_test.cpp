@@ -31,7 +31,8 @@ std::string described(const Program& program) {
   std::string s;
   for (std::size_t i = 0; i < program.ops.size(); ++i) {
     const Operation& op = program.ops[i];
-    s += std::to_string(i) + ": " + std::to_string(static_cast<int>(op.kind)) + " " + op.input + " '" + op.name + "'";
+    s += std::to_string(i) + ": " + std::to_string(static_cast<int>(op.kind)) + " " + op.input.text() + " '" +
+         op.name.text() + "'";
     for (std::size_t k = 0; k < op.args.size(); ++k) {
       s += " " + (op.coefs.empty() ? "" : op.coefs[k].text() + "*") + std::to_string(op.args[k]);
       if (!op.exponents.empty()) s += "^" + std::to_string(op.exponents[k]);
