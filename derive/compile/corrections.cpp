@@ -304,7 +304,9 @@ std::string bounded_of(const std::string& is_rate, const Contents& has) {
   std::string text;
   if (has.closes() || has.bounded) text += largest_row;
   if (!has.bounded) return text;
-  return text + fmt::format(bounded_type, when(has.rows, "    T l[bounded][rows];\n"), is_rate) + solves_bounded;
+  const std::string impulses = when(has.rows, "    T l[bounded][rows];\n") +
+                               when(has.rattle, "    Velocity p[bounded][bodies], u[bounded][bodies];\n");
+  return text + fmt::format(bounded_type, impulses, is_rate) + solves_bounded;
 }
 
 }  // namespace cdot::compile

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "derive/compile/rows/bounds.hpp"
+#include "derive/compile/rows/dampers.hpp"
 #include "derive/compile/rows/joint_rows.hpp"
 #include "derive/compile/rows/kick.hpp"
 #include "derive/compile/rows/motion.hpp"
@@ -40,6 +41,7 @@ class EquationWriter {
       out_.kick = kick_of(blocks_, joints_, out_.constants);
     if (!mechanism_.effects.empty() || !mechanism_.bounded.empty())
       out_.potential = potential_of(blocks_, out_.constants);
+    if (mechanism_.method == Method::rattle) write_finish();
     if (mechanism_.angles > 0) out_.angles = angles_of(blocks_, out_.constants);
     write_bounded();
     drop_unread();
@@ -79,6 +81,17 @@ class EquationWriter {
     for (auto row = order.rbegin(); row != order.rend(); ++row) algebra.output(element("lambda", *row), lambda[*row]);
     system().write_changes(algebra, lambda, [&](std::size_t k) { return joints_.inputs(algebra, k); });
     out_.solve = algebra.finish();
+  }
+
+  void write_finish() {
+    const Dampers dampers(blocks_, out_.constants);
+    out_.finishes = !dampers.empty() || !mechanism_.bounded.empty();
+    if (!dampers.empty()) out_.dampen = dampers.dampen();
+    out_.effect_of = dampers.effect_of(), out_.triangle = dampers.triangle();
+    if (!out_.effect_of.empty()) out_.notice = dampers.notice(), out_.look = dampers.look();
+    if (out_.finishes) out_.finish = dampers.finish(joints_);
+    for (std::size_t b = 0; b < mechanism_.bounded.size(); ++b) out_.exerts |= prescribes_rate(blocks_, b);
+    if (out_.exerts) out_.exert = exert_of(blocks_, joints_, out_.constants);
   }
 
   void check_inputs() const {
@@ -126,8 +139,8 @@ class EquationWriter {
 }  // namespace
 
 std::vector<const Program*> programs_of_equations(const Equations& e) {
-  return {&e.evaluate, &e.errors,    &e.rates, &e.accelerate, &e.solve, &e.fall,
-          &e.kick,     &e.potential, &e.reach, &e.past,       &e.along, &e.angles};
+  return {&e.evaluate, &e.errors, &e.rates,  &e.accelerate, &e.solve,  &e.fall, &e.kick,   &e.potential, &e.reach,
+          &e.past,     &e.along,  &e.angles, &e.dampen,     &e.notice, &e.look, &e.finish, &e.exert};
 }
 
 Equations equations_of(const Mechanism& mechanism, const Names& names, const derive::SpecsFolder& specs) {

@@ -9,6 +9,7 @@
 #include "derive/compile/equations.hpp"
 #include "derive/compile/gyroscopes.hpp"
 #include "derive/compile/identifiers.hpp"
+#include "derive/compile/methods/rattle.hpp"
 #include "derive/compile/space.hpp"
 #include "derive/compile/steps.hpp"
 #include "derive/compile/texts.hpp"
@@ -51,8 +52,18 @@ class HeaderWriter {
   bool on_accelerations() const { return mechanism_.on_accelerations(); }
   bool by_rattle() const { return mechanism_.method == Method::rattle; }
   Contents has() const {
-    return {!equations_.rows.empty(), !mechanism_.effects.empty(), !mechanism_.bounded.empty(), equations_.has_ends,
-            mechanism_.spatial(),     has_gyroscopes(mechanism_),  mechanism_.angles > 0};
+    return {.rows = !equations_.rows.empty(),
+            .effects = !mechanism_.effects.empty(),
+            .bounded = !mechanism_.bounded.empty(),
+            .ends = equations_.has_ends,
+            .spatial = mechanism_.spatial(),
+            .gyroscopes = has_gyroscopes(mechanism_),
+            .angles = mechanism_.angles > 0,
+            .rattle = by_rattle(),
+            .dampens = !equations_.dampen.outputs.empty(),
+            .looks = !equations_.effect_of.empty(),
+            .finishes = equations_.finishes,
+            .exerts = equations_.exerts};
   }
   bool has_rows() const { return has().rows; }
   bool has_effects() const { return has().effects || has().bounded; }
@@ -89,12 +100,13 @@ class HeaderWriter {
     return of(calls.evaluate, equations_.evaluate) + of(calls.errors, equations_.errors) +
            of(calls.rates, equations_.rates) + of(calls.accelerate, equations_.accelerate) +
            of(calls.solve, equations_.solve) + of(calls.fall, equations_.fall) + of(calls.kick, equations_.kick) +
-           of(calls.past, equations_.past) + of(1, equations_.angles);
+           of(calls.past, equations_.past) + of(1, equations_.angles) + of(calls.dampen, equations_.dampen) +
+           of(calls.notice, equations_.notice) + of(calls.look, equations_.look) + of(calls.finish, equations_.finish);
   }
 
   long state_bytes() const {
     long of_bodies = 0;
-    for (const Body& body : mechanism_.bodies) of_bodies += numbers_of(mechanism_, body);
+    for (const Body& body : mechanism_.bodies) of_bodies += numbers_of(mechanism_, body, has().pulls());
     const long of_rows = long(equations_.rows.size()) + long(equations_.stored.size()) + (has().closes() ? 1 : 0);
     return long{sizeof(double)} * (1 + of_bodies + of_rows + long(mechanism_.bounded.size()) +
                                    long(equations_.constants.inputs.size()) + 2 * mechanism_.angles);
@@ -117,6 +129,7 @@ class HeaderWriter {
         "// the bits that it has alone if the compiler contracts nothing: -ffp-contract=off, and "
         "-fno-tree-slp-vectorize");
     line("// where GCC 12 may use fused operations. No heap, no exceptions.");
+    for (const std::string& note : mechanism_.notes) line("// " + note);
     line("#pragma once");
     line();
     if (calls_functions() || mechanism_.spatial()) line("#include <cmath>"), line();
@@ -168,7 +181,7 @@ class HeaderWriter {
     if (has().gyroscopes && !on_accelerations())
       line(fmt::format("    Gyroscope g[{}];", std::ranges::count_if(mechanism_.bodies, &Body::inertia_turns)));
     if (on_accelerations()) line("    Velocity a[bodies];");
-    if (by_rattle() && has_rows()) line("    Velocity pull[bodies];  // accelerations by the joints");
+    if (has().pulls()) line("    Velocity pull[bodies];  // accelerations by the joints and motors");
     if (has_rows())
       line(fmt::format("    T lambda[rows];  // {} of the joints",
                        mechanism_.method == Method::euler ? "impulses before the correction" : "forces"));
@@ -228,12 +241,18 @@ class HeaderWriter {
     for (const std::string& statement : lines) line(statement);
     if (has_inputs() && head.find("$d") != std::string::npos) line("    (void)p;");
     if (has().angles && head.find("$d") != std::string::npos) line("    (void)angles;");
-    for (const char* argument : {"q", "v", "time", "J", "b", "h"}) {
-      const bool takes = arguments.find(fmt::format(" {}", argument)) != std::string::npos ||
-                         arguments.find(fmt::format("(&{})", argument)) != std::string::npos;
-      if (takes) line(fmt::format("    (void){};", argument));
-    }
+    for (const std::string argument : {"q", "v", "time", "J", "b", "h", "C", "rate", "K", "guess", "given", "end"})
+      if (reads(arguments, argument)) line(fmt::format("    (void){};", argument));
     line("  }");
+  }
+
+  // True if a function has the argument, as a constant if it is an array: "const T (&C)[rows]", "const T& h".
+  static bool reads(const std::string& arguments, const std::string& argument) {
+    const std::size_t array = arguments.find("(&" + argument + ")");
+    if (array == std::string::npos)
+      return arguments.find("& " + argument + ",") != std::string::npos || arguments.ends_with("& " + argument + ")");
+    const std::string before = arguments.substr(0, array);
+    return before.find("const", before.rfind(',') + 1) != std::string::npos;
   }
 
   bool calls_functions() const {
@@ -259,6 +278,8 @@ class HeaderWriter {
     const std::string at = "$dconst Pose (&q)[bodies], const T& time", moving = "const Velocity (&v)[bodies]";
     text_ += guards;
     text_ += bounded_of(equations_.is_rate, has());
+    if (has().looks)
+      text_ += damping_of(equations_.effect_of.size(), equations_.effect_of.back() + 1, equations_.triangle);
     if (has_rows()) {
       write_function("J, and the factor of K", "evaluate(" + at + ", Jacobian& J)", equations_.evaluate);
       write_function("C", "errors(" + at + ", T (&C)[rows])", equations_.errors);
@@ -269,9 +290,7 @@ class HeaderWriter {
     }
     if (has_effects())
       write_function("Potential energy of the effects", "potential(" + at + ", T& E)", equations_.potential);
-    if (by_rattle())
-      write_function("Accelerations without joints", "fall(" + at + ", " + moving + ", Velocity (&a)[bodies])",
-                     equations_.fall);
+    if (by_rattle()) write_rattle(at, moving);
     else if (on_accelerations()) write_accelerations(at, moving);
     else if (has_effects())
       write_function("Velocities after h with the effects, implicit as far as their slopes say",
@@ -284,6 +303,39 @@ class HeaderWriter {
       write_function("Angles with their whole turns",
                      fmt::format("count({}, T (&angle)[{}], T (&turns)[{}])", at, mechanism_.angles, mechanism_.angles),
                      equations_.angles);
+  }
+
+  void write_rattle(const std::string& at, const std::string& moving) {
+    const std::string J = has_rows() ? ", const Jacobian& J" : "", lambda = has_rows() ? ", T (&lambda)[rows]" : "";
+    const std::string B = has().bounded ? ", Bounded& B" : "";
+    write_function("Accelerations without joints", "fall(" + at + ", " + moving + ", Velocity (&a)[bodies])",
+                   equations_.fall);
+    if (has().dampens)
+      write_function("Velocities after the effects at the start of a step of h that change with their rates",
+                     "dampen(" + at + ", " + moving + ", const T& h, Velocity (&next)[bodies])", equations_.dampen);
+    if (has().looks) {
+      write_function("C, rates and K of such effects",
+                     "notice(" + at + ", " + moving + ", T (&C)[damped], T (&rate)[damped], T (&K)[triangles])",
+                     equations_.notice);
+      write_function(
+          "Such effects alone, at guessed rates: a step of Newton's method, impulses given - end rate, and errors",
+          "look($dconst T (&C)[damped], const T (&rate)[damped], const T (&K)[triangles], const T (&guess)[damped], "
+          "const T& time, const T& h, T (&step)[damped], "
+          "T (&given)[damped], T (&end)[damped], T (&miss)[dampers], T (&size)[dampers])",
+          equations_.look);
+      text_ += find_rates_of(equations_.effect_of);
+    }
+    if (has().finishes)
+      write_function("The end of a step of h: J v = -dC/dt, with the effects",
+                     "finish(" + at + ", " + moving + J + ", const T& h" +
+                         (has().looks ? ", const T (&given)[damped], const T (&end)[damped]" : "") +
+                         ", Velocity (&next)[bodies]" + lambda + ", Velocity (&pull)[bodies]" + B + ")",
+                     equations_.finish);
+    if (has().exerts)
+      write_function(
+          "Forces at the start of a run, with motors that reach their rates in h/2",
+          "exert(" + at + ", " + moving + J + ", const T& h" + lambda + ", Velocity (&pull)[bodies]" + B + ")",
+          equations_.exert);
   }
 
   void write_ends(const std::string& at, const std::string& moving) {

@@ -41,6 +41,7 @@ std::string compiled(const Options& options) {
   const command_line::Waiting waiting("cdot compile " + std::filesystem::path(options.scene).filename().string());
   const text::Stage reading("reading the scene");
   const Mechanism mechanism = read_mechanism(options.scene, options.wishes);
+  for (const std::string& note : mechanism.notes) fmt::print(stderr, "note: {}\n", note);
   const derive::SpecsFolder specs(options.specs);
   if (options.bill) {
     const text::Stage counting("counting what each part costs");

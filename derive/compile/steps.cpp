@@ -142,7 +142,8 @@ Calls calls_of(Method method, const Contents& has) {
   Calls calls{.evaluate = 1, .errors = 2, .rates = 1, .solve = 2};  // the corrections
   if (has.ends) calls.past = 2;
   if (method == Method::rattle) {
-    calls.fall = 2;
+    calls.fall = 2, calls.dampen = has.dampens, calls.notice = has.looks, calls.look = has.looks ? 2 : 0;
+    if (has.finishes) calls.finish = 1, --calls.rates, --calls.solve;
     return calls;
   }
   if (method == Method::euler) {
@@ -170,8 +171,7 @@ std::string begin_of(Method method, const Contents& has) {
   if (has.closes() && has.gyroscopes) text += accelerates ? "$W" : follows;
   if (has.rows) text += evaluates;
   if (accelerates && has.rows) text += "    project(s);\n    accelerate($ss.q, s.time, s.v, s.J, s.lambda, s.a);\n";
-  else if (method == Method::rattle && has.rows)
-    text += "    project(s);\n    for (Velocity& of_body : s.pull) of_body = still();\n";
+  else if (method == Method::rattle) text += (has.rows ? "    project(s);\n" : "") + exertion(has);
   else if (accelerates) text += "    fall($ss.q, s.time, s.v, s.a);\n";
   return text + "  }\n";
 }

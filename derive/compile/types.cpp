@@ -132,12 +132,12 @@ std::string types_of(const Mechanism& mechanism) {
   return text;
 }
 
-long numbers_of(const Mechanism& mechanism, const Body& body) {
+long numbers_of(const Mechanism& mechanism, const Body& body, bool pulls) {
   if (!body.moves) return 0;
   const bool accelerates = mechanism.on_accelerations();
   const long columns = static_cast<long>(mechanism.columns());
   const long pose = mechanism.spatial() ? 16 + (has_gyroscopes(mechanism) ? 6 : 0) : 5;
-  return pose + columns * (mechanism.method == Method::euler ? 1 : 2) + (body.inertia_turns && !accelerates ? 12 : 0);
+  return pose + columns * (accelerates || pulls ? 2 : 1) + (body.inertia_turns && !accelerates ? 12 : 0);
 }
 
 }  // namespace cdot::compile

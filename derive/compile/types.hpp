@@ -10,7 +10,8 @@ namespace cdot::compile {
 // Pose, Velocity and Rate, that of a pose; choose(), moved(), rate_of().
 std::string types_of(const Mechanism& mechanism);
 
-// Numbers of a State for each body that moves: with its accelerations or, of a step at velocities, its momentum.
-long numbers_of(const Mechanism& mechanism, const Body& body);
+// Numbers of a State for each body that moves: with its accelerations or, of a step at velocities, its momentum; pulls:
+// the accelerations are those by joints.
+long numbers_of(const Mechanism& mechanism, const Body& body, bool pulls);
 
 }  // namespace cdot::compile

@@ -10,7 +10,11 @@ namespace cdot::compile {
 struct Contents {
   bool rows = false, effects = false, bounded = false, ends = false;
   bool spatial = false, gyroscopes = false, angles = false;  // angles: that count whole turns
+  // By RATTLE: effects act by their rates at the start; rates at the end are looked for; the end solves for more than
+  // the joints, and so does the start of a run.
+  bool rattle = false, dampens = false, looks = false, finishes = false, exerts = false;
   bool closes() const { return rows || ends; }
+  bool pulls() const { return rattle && (rows || bounded); }  // a State has its joints' accelerations
 };
 
 inline constexpr const char* evaluates = "    evaluate($ss.q, s.time, s.J);\n";

@@ -6,61 +6,113 @@ namespace cdot::compile {
 namespace {
 
 // As the World does it: runtime/step/rattle.cpp.
-constexpr const char* rattle_begins = R"(
+constexpr const char* begins = R"(
   // RATTLE: half a kick with forces along J of the start such that C = 0 after the drift, the drift, and half a kick
   // along J of the end such that J v = -dC/dt there.
   static T step(State& s, T h = T(default_step)) {
     const T half = T(0.5) * h;
     Velocity before[bodies], a[bodies];
-    for (int i = 0; i < bodies; ++i) before[i] = s.v[i];
-    fall($ss.q, s.time, s.v, a);
 )";
 
-constexpr const char* rattle_closes =
-    R"(    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + half * (a[i] + s.pull[i]);
-    Evaluated at;
+// Effects act by their rates at both ends of the step.
+constexpr const char* dampens = R"(    dampen($ss.q, s.time, s.v, h, before);
+    for (int i = 0; i < bodies; ++i) s.v[i] = before[i];
+)";
+
+constexpr const char* notes_velocities = "    for (int i = 0; i < bodies; ++i) before[i] = s.v[i];\n";
+
+constexpr const char* first_kick = R"(    fall($ss.q, s.time, s.v, a);
+    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + half * {};
+)";
+
+constexpr const char* closing_begins = R"(    Evaluated at;
     at.time = s.time, s.time = s.time + h;
     for (int i = 0; i < bodies; ++i) at.q[i] = s.q[i];
     const T left = s.residual;
     T least = T(1e30), vain = T(0);
-    auto goes_on = T(0) < T(1);
-    for (int round = 0; round < 100; ++round) {{
+    auto goes_on = T(0) < T(1), astray = T(1) < T(0);
+)";
+
+constexpr const char* ends_begin = R"(    Bounded reached;
+    bool reaches = false;
+)";
+
+constexpr const char* round_begins = R"(    for (int round = 0; round < 100; ++round) {
       for (int i = 0; i < bodies; ++i) s.q[i] = at.q[i];
-  {0}      T C[rows], unused[rows];
+)";
+
+constexpr const char* joint_errors = R"(      T C[rows], unused[rows];
       errors($ss.q, s.time, C);
-      const T worst = largest(C);
-      s.residual = select(goes_on, worst, s.residual);
+)";
+constexpr const char* end_errors = R"(      T over[bounded];
+      past($ss.q, s.time, over);
+)";
+
+constexpr const char* judges = R"(      s.residual = select(goes_on, worst, s.residual);
       if (round == 0) goes_on = goes_on && !(magnitude(worst - left) <= T(single ? -1 : 1e-9) * worst);
       const auto shrinks = worst < T(0.7) * least;
       vain = select(shrinks, T(0), vain + T(1)), least = select(shrinks, worst, least);
-      const auto is_fine = worst <= T(single ? 1e6 * {1} : 0.01 * {1});
-      const auto is_small = worst <= T(single ? 1e7 * {1} : {1});
+      const auto is_fine = worst <= T(single ? 1e6 * {0} : 0.01 * {0});
+      const auto is_small = worst <= T(single ? 1e7 * {0} : {0});
       goes_on = goes_on && !is_fine && (shrinks || (!is_small && vain <= T(4)));
+      astray = astray || (goes_on && vain > T(0));
       if (!any(goes_on)) break;
-      for (T& of_row : C) of_row = select(goes_on, -of_row / h, T(0));
+)";
+
+constexpr const char* joint_changes = R"(      for (T& of_row : C) of_row = select(goes_on, -of_row / h, T(0));
       Velocity d[bodies];
       solve($qs.J, C, unused, d);
-      for (int i = 0; i < bodies; ++i) s.v[i] = choose(goes_on, s.v[i] + d[i], s.v[i]);
+)";
+constexpr const char* no_changes = R"(      Velocity d[bodies];
+      for (Velocity& of_body : d) of_body = still();
+)";
+
+// Ends that are passed take part in the round.
+constexpr const char* end_changes = R"(      Mask passed[bounded];
+      auto some = T(1) < T(0);
+      for (int i = 0; i < bounded; ++i) passed[i] = goes_on && magnitude(over[i]) > T(0), some = some || passed[i];
+      if (any(some)) {{
+        if (!reaches) reach($sat.q, at.time, {}reached);
+        reaches = true;
+        T along_ends[bounded], c[bounded], mu[bounded];
+        along($sat.q, at.time, d, along_ends);
+        for (int i = 0; i < bounded; ++i) c[i] = -over[i] / h - along_ends[i], mu[i] = T(0);
+        divide(reached.S, passed, c, mu);
+        for (int e = 0; e < bounded; ++e)
+          for (int i = 0; i < bodies; ++i) d[i] = d[i] + mu[e] * reached.g[e][i];
+      }}
+)";
+
+// Where that fails, or reverses the velocities, the step starts again, with renewed directions.
+constexpr const char* round_ends =
+    R"(      for (int i = 0; i < bodies; ++i) s.v[i] = choose(goes_on, s.v[i] + d[i], s.v[i]);
     }}
-    if (any(s.residual > T(single ? 1e8 * {1} : 10 * {1}))) {{  // with renewed directions
+    Velocity change[bodies];
+    for (int i = 0; i < bodies; ++i) change[i] = s.v[i] - before[i];
+    const auto reverses = astray && T(4) * weighed(s.q, change) > weighed(s.q, before);
+    const auto fails = reverses || s.residual > T(single ? 1e8 * {0} : 10 * {0});
+    if (any(fails)) {{
+      Pose next[bodies];
+      for (int i = 0; i < bodies; ++i) {{
+        s.v[i] = choose(fails, before[i] + half * {1}, s.v[i]);
+        next[i] = s.q[i], s.q[i] = choose(fails, at.q[i], s.q[i]);
+      }}
+  {2}      for (int i = 0; i < bodies; ++i) s.q[i] = choose(fails, s.q[i], next[i]);
+      s.residual = select(fails, left, s.residual);
       Velocity moves[bodies];
       close(s, at, T(0.2), moves);
-      const auto keep = T(4) * weighed(s.q, moves) <= h * h * weighed(s.q, s.v);
+      const auto keep = fails && T(4) * weighed(s.q, moves) <= h * h * weighed(s.q, s.v);
       for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + select(keep, T(1) / h, T(0)) * moves[i];
     }}
 )";
 
-constexpr const char* rattle_drifts = R"(    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + half * a[i];
-{0}    s.time = s.time + h;
-)";
-
 // Forces of the second kick are those at the end's velocity, to second order: 2 v_half - v_start.
-constexpr const char* rattle_kicks = R"(    for (int i = 0; i < bodies; ++i) before[i] = T(2) * s.v[i] - before[i];
+constexpr const char* second_kick = R"(    for (int i = 0; i < bodies; ++i) before[i] = T(2) * s.v[i] - before[i];
     fall($ss.q, s.time, before, a);
-    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + half * a[i];
+{}    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + half * a[i];
 )";
 
-constexpr const char* rattle_ends = R"(    T b[rows];
+constexpr const char* joints_end = R"(    T b[rows];
     rates(s.J, s.v, b);
     for (T& of_row : b) of_row = -of_row;
     Velocity d[bodies];
@@ -69,16 +121,127 @@ constexpr const char* rattle_ends = R"(    T b[rows];
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + d[i], s.pull[i] = (T(1) / half) * d[i];
 )";
 
+constexpr const char* looks = R"(    T C_now[damped], rate_now[damped], K_now[triangles], given[damped], end[damped];
+    notice($ss.q, s.time, before, C_now, rate_now, K_now);
+    find_rates($sC_now, rate_now, K_now, s.time, h, given, end);
+)";
+
+constexpr const char* sums_pulls = R"(    for (int e = 0; e < bounded; ++e) {{
+      const T again = select(magnitude(B.low[e] * B.high[e]) > T(0), mu[e], T(0));
+      for (int i = 0; i < bodies; ++i) {0}s.pull[i] = s.pull[i] + mu[e] * B.p[e][i] + again * B.u[e][i];
+{1}    }}
+)";
+constexpr const char* sums_lambda =
+    "      for (int i = 0; i < rows; ++i) s.lambda[i] = s.lambda[i] + mu[e] * B.l[e][i];\n";
+
+constexpr const char* damping = R"(
+  // Rows of effects whose forces change with their rates, these effects, and numbers of K = J M^-1 J^T.
+  static constexpr int damped = {}, dampers = {}, triangles = {};
+)";
+
+constexpr const char* finds_rates = R"(
+  // The rates of such effects at the end, were each alone, by Newton: a step that brings them no nearer is halved. A lane
+  // that is done waits for the others unchanged.
+  static void find_rates($dconst T (&C)[damped], const T (&rate)[damped], const T (&K)[triangles], const T& time,
+                         const T& h, T (&given)[damped], T (&end)[damped]) {{
+    constexpr int effect[damped] = {{{0}}};
+    T guess[damped], step[damped], miss[dampers], size[dampers];
+    Mask busy[dampers], now[dampers];
+    for (int i = 0; i < damped; ++i) guess[i] = rate[i];
+    look($pC, rate, K, guess, time, h, step, given, end, miss, size);
+    for (Mask& of_effect : busy) of_effect = T(0) < T(1);
+    for (int round = 0; round < 30; ++round) {{
+      T from[damped], way[damped], before[dampers];
+      bool goes_on = false;
+      for (int e = 0; e < dampers; ++e) {{
+        busy[e] = busy[e] && miss[e] > T(single ? 1e-4 : 1e-6) * size[e];
+        before[e] = miss[e], goes_on = goes_on || any(busy[e]);
+      }}
+      if (!goes_on) return;
+      for (int i = 0; i < damped; ++i) from[i] = guess[i], way[i] = step[i];
+      T share = T(1);
+      for (int halvings = 0; halvings < 20; ++halvings, share = T(0.5) * share) {{
+        bool tries = false;
+        for (int e = 0; e < dampers; ++e) {{
+          now[e] = halvings == 0 ? busy[e] : busy[e] && !(miss[e] < before[e]);
+          tries = tries || any(now[e]);
+        }}
+        if (!tries) break;
+        for (int i = 0; i < damped; ++i) guess[i] = select(now[effect[i]], from[i] + share * way[i], guess[i]);
+        look($pC, rate, K, guess, time, h, step, given, end, miss, size);
+      }}
+      bool back = false;
+      for (int e = 0; e < dampers; ++e) {{
+        now[e] = busy[e] && !(miss[e] < before[e]);
+        busy[e] = busy[e] && !now[e], back = back || any(now[e]);
+      }}
+      for (int i = 0; i < damped; ++i) guess[i] = select(now[effect[i]], from[i], guess[i]);
+      if (back) look($pC, rate, K, guess, time, h, step, given, end, miss, size);
+    }}
+  }}
+)";
+
+// Newton on the velocities of the drift, with J of its start.
+std::string closing(double tolerance, const Contents& has) {
+  std::string text = closing_begins;
+  if (has.ends) text += ends_begin;
+  text += round_begins + ("  " + drifts(has));
+  if (has.rows) text += joint_errors;
+  if (has.ends) text += end_errors;
+  text += has.rows ? "      T worst = largest(C);\n" : "      T worst = largest(over);\n";
+  if (has.rows && has.ends) text += "      worst = select(largest(over) > worst, largest(over), worst);\n";
+  text += fmt::format(judges, tolerance);
+  text += has.rows ? joint_changes : no_changes;
+  if (has.ends) text += fmt::format(end_changes, has.rows ? "s.J, " : "");
+  return text + fmt::format(round_ends, tolerance, has.pulls() ? "(a[i] + s.pull[i])" : "a[i]", drifts(has));
+}
+
+// The end's impulses of joints, effects and rows with bounds together.
+std::string finishing(const Contents& has) {
+  std::string text = "    Velocity next[bodies];\n";
+  if (!has.pulls()) text += "    Velocity pull[bodies];\n";
+  if (has.bounded) text += "    Bounded B;\n    T mu[bounded];\n";
+  text += fmt::format("    finish($ss.q, s.time, s.v, {}h, {}next, {}{}{});\n", has.rows ? "s.J, " : "",
+                      has.looks ? "given, end, " : "", has.rows ? "s.lambda, " : "", has.pulls() ? "s.pull" : "pull",
+                      has.bounded ? ", B" : "");
+  if (has.bounded) {
+    text += "    settle(B, s.hold, mu);\n";
+    text += fmt::format(sums_pulls, "next[i] = next[i] + mu[e] * B.g[e][i], ", has.rows ? sums_lambda : "");
+  }
+  if (has.rows) text += "    for (T& of_row : s.lambda) of_row = of_row / half;\n";
+  text += "    for (int i = 0; i < bodies; ++i) s.v[i] = next[i]";
+  return text + (has.pulls() ? ", s.pull[i] = (T(1) / half) * s.pull[i];\n" : ";\n");
+}
+
 }  // namespace
 
+std::string damping_of(std::size_t rows, int effects, std::size_t triangle) {
+  return fmt::format(damping, rows, effects, triangle);
+}
+
+std::string find_rates_of(const std::vector<int>& effect_of) {
+  return fmt::format(finds_rates, fmt::join(effect_of, ", "));
+}
+
+std::string exertion(const Contents& has) {
+  if (!has.exerts) return has.pulls() ? "    for (Velocity& of_body : s.pull) of_body = still();\n" : "";
+  return fmt::format(
+             "    Bounded B;\n    T mu[bounded];\n    exert($ss.q, s.time, s.v, {}T(default_step), {}s.pull, B);\n",
+             has.rows ? "s.J, " : "", has.rows ? "s.lambda, " : "") +
+         "    settle(B, s.hold, mu);\n" + fmt::format(sums_pulls, "", has.rows ? sums_lambda : "");
+}
+
 std::string rattle(double tolerance, const Contents& has) {
-  std::string text = rattle_begins;
-  text += has.rows ? fmt::format(rattle_closes, drifts(has), tolerance) : fmt::format(rattle_drifts, drifts(has));
+  std::string text = begins;
+  text += has.dampens ? dampens : notes_velocities;
+  text += fmt::format(first_kick, has.pulls() ? "(a[i] + s.pull[i])" : "a[i]");
+  text += has.closes() ? closing(tolerance, has) : drifts(has) + "    s.time = s.time + h;\n";
   if (has.gyroscopes) text += follows;
+  text += "$C";
   if (has.rows) text += evaluates;
-  text += rattle_kicks;
-  if (has.rows) text += rattle_ends;
-  return text + fmt::format("    return {};\n  }}\n", has.rows ? "s.residual" : "T(0)");
+  text += fmt::format(second_kick, has.looks ? looks : "");
+  text += has.finishes ? finishing(has) : has.rows ? joints_end : "";
+  return text + fmt::format("    return {};\n  }}\n", has.closes() ? "s.residual" : "T(0)");
 }
 
 }  // namespace cdot::compile

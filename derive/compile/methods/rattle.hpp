@@ -1,7 +1,8 @@
-// step() of RATTLE as text.
+// step() of RATTLE as text, and what its effects need.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "derive/compile/methods/contents.hpp"
 
@@ -9,5 +10,10 @@ namespace cdot::compile {
 
 // tolerance: of C.
 std::string rattle(double tolerance, const Contents& has);
+// The part of begin(): the joints' and motors' forces at the start of a run.
+std::string exertion(const Contents& has);
+// The numbers of rows, and find_rates(); effect_of: the effect of each row.
+std::string damping_of(std::size_t rows, int effects, std::size_t triangle);
+std::string find_rates_of(const std::vector<int>& effect_of);
 
 }  // namespace cdot::compile

@@ -14,6 +14,8 @@ class BoundWriter {
   // J v of these velocities alone, by the names of components.
   int along(const Values& velocities) const;
   int drift() const { return law_.drift()[0]; }  // dC/dt
+  int rate() const { return law_.rate()[0]; }    // J v + dC/dt
+  int gamma() const { return blocks_.call(algebra_, block_, "gamma", in_).at("g[0]"); }
   // J v' + dC/dt + bias + softness lambda = 0 at the end of a step, lambda within [low, high].
   struct Kick {
     int bias, softness, low, high;

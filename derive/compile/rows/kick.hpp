@@ -2,15 +2,36 @@
 #pragma once
 
 #include "derive/compile/rows/joint_rows.hpp"
+#include "derive/compile/rows/laws.hpp"
 
 namespace cdot::compile {
 
 // q, v, time, J -> a and lambda: M a = f + J^T lambda with J a = gamma.
 Program accelerations_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
 
+// The impulse of an effect in a kick, by row: given - share^2 (J v' + dC/dt), v' the velocities after the kick.
+struct EffectRows {
+  std::vector<int> given, share;
+};
+
+// The effects that act in a kick, and how.
+struct KickPlan {
+  std::vector<std::size_t> effects;
+  std::function<EffectRows(Algebra& algebra, std::size_t effect, const LawWriter& law, const Values& in)> rows_of;
+};
+
 // q, v, time, J, h -> next: v after an Euler step of h with effects, and lambda of the joints. With rows that have
 // bounds, these are without their impulses, and B holds the system that gives them.
 Program kick_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
+
+// The same at the end of a step of RATTLE, from velocities that forces have changed: such that J v' = -dC/dt. Also
+// pull: what the joints' impulses change; of rows with bounds B.p, and B.u of those that repeat theirs in the next
+// step.
+Program finish_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants, const KickPlan& plan);
+
+// q, v, time, J, h -> lambda, pull and B at the start of a run by RATTLE: forces by which rows that prescribe a rate
+// reach it in h/2.
+Program exert_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
 
 // q, time, J -> B.g and B.S for rows with ends, without effects: their part in a projection.
 Program reach_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);

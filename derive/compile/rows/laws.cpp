@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "derive/kernel/factor.hpp"
+#include "derive/program/print.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -41,6 +42,14 @@ LawWriter::LawWriter(const RowBlocks& rows, Algebra& algebra, const Effect& effe
   for (std::size_t r = 0; r < count; ++r) rate_[r] = algebra.sum({{rate_[r], drift_[r]}, {1, 1}});
 }
 
+LawWriter LawWriter::at(std::vector<int> C, std::vector<int> rate) const {
+  LawWriter there = *this;
+  there.C_ = std::move(C), there.rate_ = std::move(rate);
+  return there;
+}
+
+LawWriter LawWriter::at_rest() const { return at(C_, std::vector<int>(C_.size(), algebra_.value(0))); }
+
 // Leaves of a law are C, rates, its parameters and the time.
 Values LawWriter::call(const Program& function) const {
   const SpecPrograms& law = spec();
@@ -74,7 +83,7 @@ std::vector<int> LawWriter::force_without_limits() const {
 
 std::vector<int> LawWriter::force() const {
   std::vector<int> F = force_without_limits();
-  if (effect_.law_type.empty() || !spec().rows.has("limits")) return F;
+  if (!has_limits()) return F;
   const Values limits = call(spec().rows.function("limits"));
   for (std::size_t r = 0; r < F.size(); ++r) {
     const auto lower = limits.find(derive::element("lower", r)), upper = limits.find(derive::element("upper", r));
@@ -122,6 +131,32 @@ LawWriter::Slopes LawWriter::slopes() const {
   }
   const Values slopes = call(spec().rows.function("slopes"));
   return {bound(slopes, "k"), bound(slopes, "d")};
+}
+
+LawWriter::Slopes LawWriter::slopes_within_limits() const {
+  Slopes all = slopes();
+  if (!has_limits()) return all;
+  const std::vector<int> F = force_without_limits();
+  const Values limits = call(spec().rows.function("limits"));
+  const int zero = algebra_.value(0);
+  for (std::size_t r = 0; r < F.size(); ++r) {
+    const auto lower = limits.find(derive::element("lower", r)), upper = limits.find(derive::element("upper", r));
+    if (lower == limits.end()) continue;
+    const int above = algebra_.sum({{F[r], lower->second}, {1, -1}});
+    const int below = algebra_.sum({{upper->second, F[r]}, {1, -1}});
+    for (int* slope : {&all.k[r], &all.d[r]})
+      *slope = algebra_.function(Fn::select, {above, algebra_.function(Fn::select, {below, *slope, zero}), zero});
+  }
+  return all;
+}
+
+bool LawWriter::reads_rates() const {
+  if (effect_.law == Effect::load) return false;
+  if (effect_.law == Effect::spring)
+    return !std::ranges::all_of(spring_slopes().d, [&](int d) { return algebra_.is_zero(d); });
+  const std::set<std::string> read = derive::inputs_read(spec().rows.function("force"), {});
+  return std::ranges::any_of(
+      spec().leaves, [&](const auto& leaf) { return leaf.second.starts_with("rate") && read.contains(leaf.first); });
 }
 
 // False for a row that only tells where a direction points.

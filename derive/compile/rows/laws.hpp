@@ -18,6 +18,10 @@ class LawWriter {
  public:
   LawWriter(const RowBlocks& rows, Algebra& algebra, const Effect& effect, const RowBlock& block, const Values& in);
 
+  // The same law at other values and rates.
+  LawWriter at(std::vector<int> C, std::vector<int> rate) const;
+  LawWriter at_rest() const;
+
   const std::vector<int>& C() const { return C_; }
 
   const std::vector<int>& drift() const { return drift_; }  // dC/dt
@@ -37,11 +41,16 @@ class LawWriter {
     std::vector<int> k, d;
   };
   Slopes slopes() const;
+  // The same, but a force at one of its limits has no slope.
+  Slopes slopes_within_limits() const;
+  // False if the force is the same at all rates.
+  bool reads_rates() const;
   // 0 for a law that stores none.
   int energy() const;
 
  private:
   std::vector<int> spring_force() const;
+  bool has_limits() const { return !effect_.law_type.empty() && spec().rows.has("limits"); }
   Slopes spring_slopes() const;
   std::vector<int> bound(const Values& slopes, const std::string& letter) const;
   bool acts(std::size_t row) const;

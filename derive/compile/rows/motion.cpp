@@ -19,13 +19,13 @@ int gyroscopic_rate(const RowBlocks& blocks, Algebra& algebra, const Component& 
 
 }  // namespace
 
-Values free_accelerations(const RowBlocks& blocks, Algebra& algebra) {
+Values free_accelerations(const RowBlocks& blocks, Algebra& algebra, bool at_rest) {
   Forces forces;
   for (std::size_t e = 0; e < blocks.mechanism().effects.size(); ++e) {
     const RowBlock& block = blocks.effect(e);
     const Values in = blocks.inputs_with_jacobian(algebra, block);
     const LawWriter law(blocks, algebra, blocks.mechanism().effects[e], block, in);
-    blocks.add_forces(algebra, block, in, law.force(), forces);
+    blocks.add_forces(algebra, block, in, at_rest ? law.at_rest().force() : law.force(), forces);
   }
   blocks.add_torques(algebra, forces);
   Values accelerations;
@@ -40,7 +40,7 @@ Values free_accelerations(const RowBlocks& blocks, Algebra& algebra) {
 
 Program fall_of(const RowBlocks& blocks, Constants& constants) {
   Algebra algebra(constants);
-  const Values accelerations = free_accelerations(blocks, algebra);
+  const Values accelerations = free_accelerations(blocks, algebra, blocks.mechanism().method == Method::rattle);
   each_component(blocks, [&](const Component& component, double, double) {
     algebra.output(component.in("a"), accelerations.at(component.name));
   });

@@ -5,10 +5,10 @@
 
 namespace cdot::compile {
 
-// Accelerations without joints, by the names of components.
-Values free_accelerations(const RowBlocks& blocks, Algebra& algebra);
+// Accelerations without joints, by the names of components. `at_rest`: of effects the forces at rates of 0.
+Values free_accelerations(const RowBlocks& blocks, Algebra& algebra, bool at_rest = false);
 
-// q, v, time -> a: these.
+// q, v, time -> a: these. Steps of RATTLE take effects at rest; their dampers act at its ends.
 Program fall_of(const RowBlocks& blocks, Constants& constants);
 
 // q, time -> E: potential energy of the effects.

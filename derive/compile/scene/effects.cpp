@@ -80,7 +80,7 @@ class EffectReader {
     if (law.cone_rows > 0) refuse_(source, fmt::format("{}: one force along several coordinates", effect.name));
     else if (law.by_load) refuse_(source, fmt::format("{}: bounds that grow with a load", effect.name));
     else if (law.distance) refuse_(source, fmt::format("{}: events", effect.name));
-    else if (mechanism_.method == Method::euler) mechanism_.bounded.push_back(effect);
+    else if (!mechanism_.on_accelerations()) mechanism_.bounded.push_back(effect);
     else
       refuse_(source, fmt::format("{} by {}, which has to find when it begins to slip, to hold or to touch",
                                   effect.name, mechanism_.method_name));

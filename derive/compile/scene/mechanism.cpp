@@ -66,7 +66,6 @@ void refuse_parts(const Scene& scene) {
   refuse(s.drift != Drift::projection, "a compiled step projects its end", "write drift = \"projection\"");
   refuse(s.local_error > 0, "a compiled step has a fixed length", "give --step in place of local_error");
   refuse(s.substeps != 1, "a compiled step is one step", "divide the step by substeps");
-  refuse(s.sleep_after > 0, "compiled bodies do not sleep", "leave out sleep_after");
   refusals.throw_any();
 }
 
@@ -167,31 +166,15 @@ double tolerance_of(const Scene& scene) {
   return converged<double> * scale;
 }
 
-// The joint that has the effect: "hinge", or "hinge.angle.servo" on its coordinate.
-Span place_of(const Scene& scene, const Effect& effect) {
-  for (const SceneJoint& joint : scene.joints)
-    if (effect.name == joint.name || effect.name.starts_with(joint.name + ".")) return joint.where;
-  return {};
-}
-
-void refuse_all_effects(const Scene& scene, const Mechanism& mechanism, Refusals& refusals) {
-  for (const auto* list : {&mechanism.effects, &mechanism.bounded})
-    for (const Effect& effect : *list)
-      refusals.add(place_of(scene, effect),
-                   fmt::format("{}: cdot compile knows no effects by {}", effect.name, mechanism.method_name),
-                   "give --integrator euler or rk4, or leave it to cdot-run");
-}
-
 template <class S>
 void add_effects(const Scene& scene, BasicWorld<S>& world, Mechanism& mechanism) {
   Refusals refusals(scene);
   const auto refuse = [&](const SceneJoint& joint, const std::string& what) {
     refusals.add(joint.where, fmt::format("{}: cdot compile does not know {}", joint.name, what),
-                 mechanism.method == Method::euler ? "leave it to cdot-run"
-                                                   : "give --integrator euler, or leave it to cdot-run");
+                 mechanism.on_accelerations() ? "give --integrator euler or rattle, or leave it to cdot-run"
+                                              : "leave it to cdot-run");
   };
   read_effects(scene, world, refuse, mechanism);
-  if (mechanism.method == Method::rattle) refuse_all_effects(scene, mechanism, refusals);
   refusals.throw_any();
 }
 
@@ -250,6 +233,8 @@ Mechanism read_mechanism(const std::string& file, const Wishes& wishes) {
   mechanism.method = method_of(scene);
   mechanism.step = scene.step;
   mechanism.tolerance = tolerance_of(scene);
+  if (scene.settings.sleep_after > 0)
+    mechanism.notes.emplace_back("Compiled bodies do not sleep: sleep_after is left out.");
   mechanism.inputs = wishes.inputs;
   for (std::string& name : mechanism.inputs) std::ranges::replace(name, '.', '_');
   mechanism.gravity = {scene.settings.gravity_x, scene.settings.gravity_y, scene.settings.gravity_z};

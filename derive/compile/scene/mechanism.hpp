@@ -74,6 +74,7 @@ struct Mechanism {
   std::vector<Effect> bounded;                   // rows with bounds
   std::map<std::string, std::string> own_specs;  // files beside the scene, by type
   int angles = 0;                                // that count whole turns
+  std::vector<std::string> notes;                // parts of the scene that are left out
 
   bool spatial() const { return dimension == 3; }
   // True for a Runge-Kutta method; the others step velocities by impulses.

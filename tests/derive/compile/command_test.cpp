@@ -38,6 +38,14 @@ TEST(CompileCommand, RefusesPartsThatItDoesNotKnowWithTheirLines) {
   EXPECT_NE(implicit.text.find("no integrator implicit"), std::string::npos) << implicit.text;
 }
 
+TEST(CompileCommand, LeavesSleepOutWithANote) {
+  const Outcome awakened = compile("tests/hard_cases/awakened/planar.toml --integrator euler");
+  EXPECT_EQ(awakened.status, 0);
+  EXPECT_TRUE(awakened.text.starts_with("note: Compiled bodies do not sleep: sleep_after is left out.\n"));
+  EXPECT_NE(awakened.text.find("// Compiled bodies do not sleep: sleep_after is left out.\n#pragma once"),
+            std::string::npos);
+}
+
 TEST(CompileCommand, ReportsWrongUsage) {
   EXPECT_EQ(compile("").status, 2);
   EXPECT_EQ(compile("nowhere.toml").status, 2);

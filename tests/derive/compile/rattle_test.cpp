@@ -21,7 +21,6 @@
 #include "torque_free_body_space_rattle.hpp"
 // clang-format on
 #include "tests/derive/compile/beside_world.hpp"
-#include "tests/derive/compile/command.hpp"
 
 namespace {
 
@@ -49,13 +48,6 @@ TEST(CompiledRattle, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<chain_10_rattle, float>();
   cdot::lanes_are_as_alone<gyroscope_space_rattle>();
   cdot::lanes_are_as_alone<three_bodies_space_rattle>();
-}
-
-TEST(CompiledRattle, EffectsAreRefusedWithTheirLines) {
-  const cdot::Outcome gate = cdot::compile("specs/scenes/tailgate.toml --integrator rattle");
-  EXPECT_EQ(gate.status, 2);
-  EXPECT_NE(gate.text.find("error: strut: cdot compile knows no effects by rattle"), std::string::npos) << gate.text;
-  EXPECT_NE(gate.text.find("tailgate.toml:"), std::string::npos) << gate.text;
 }
 
 }  // namespace
