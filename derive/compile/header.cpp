@@ -43,6 +43,7 @@ class HeaderWriter {
     text_ += bodies.weighed() + bodies.energy(has_effects());
     write_equations();
     write_corrections();
+    if (has().exerts) text_ += start_of(has());
     text_ += step_of(mechanism_, has());
     text_ += "};\n\n}  // namespace cdot::scenes\n";
     return {with_arguments(std::move(text_)), name_, operations(), state_bytes()};
@@ -107,7 +108,8 @@ class HeaderWriter {
   long state_bytes() const {
     long of_bodies = 0;
     for (const Body& body : mechanism_.bodies) of_bodies += numbers_of(mechanism_, body, has().pulls());
-    const long of_rows = long(equations_.rows.size()) + long(equations_.stored.size()) + (has().closes() ? 1 : 0);
+    const long of_rows = long(equations_.rows.size()) + long(equations_.stored.size()) + (has().closes() ? 1 : 0) +
+                         (has().exerts ? 1 : 0);
     return long{sizeof(double)} * (1 + of_bodies + of_rows + long(mechanism_.bounded.size()) +
                                    long(equations_.constants.inputs.size()) + 2 * mechanism_.angles);
   }
@@ -189,6 +191,7 @@ class HeaderWriter {
       line("    T hold[bounded];  // of the rows with bounds: -1 at the lower one, 1 at the upper one, 0 between");
     if (has_inputs()) line("    Inputs p;");
     if (has().angles) line("    Angles angles;");
+    if (has().exerts) line("    T begins;        // 1 before the first step");
     if (has().closes()) line("    T residual;      // the largest |C| [m], [rad]");
     if (has_rows()) line("    Jacobian J;      // of the poses q");
     line("  };");

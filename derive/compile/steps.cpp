@@ -171,8 +171,10 @@ std::string begin_of(Method method, const Contents& has) {
   if (has.closes() && has.gyroscopes) text += accelerates ? "$W" : follows;
   if (has.rows) text += evaluates;
   if (accelerates && has.rows) text += "    project(s);\n    accelerate($ss.q, s.time, s.v, s.J, s.lambda, s.a);\n";
-  else if (method == Method::rattle) text += (has.rows ? "    project(s);\n" : "") + exertion(has);
+  else if (method == Method::rattle && has.rows) text += "    project(s);\n";
   else if (accelerates) text += "    fall($ss.q, s.time, s.v, s.a);\n";
+  if (has.pulls()) text += "    for (Velocity& of_body : s.pull) of_body = still();\n";
+  if (has.exerts) text += "    s.begins = T(1);\n";
   return text + "  }\n";
 }
 

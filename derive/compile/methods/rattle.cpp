@@ -9,8 +9,8 @@ namespace {
 constexpr const char* begins = R"(
   // RATTLE: half a kick with forces along J of the start such that C = 0 after the drift, the drift, and half a kick
   // along J of the end such that J v = -dC/dt there.
-  static T step(State& s, T h = T(default_step)) {
-    const T half = T(0.5) * h;
+  static T step(State& s, T h = T(default_step)) {{
+{}    const T half = T(0.5) * h;
     Velocity before[bodies], a[bodies];
 )";
 
@@ -128,11 +128,33 @@ constexpr const char* looks = R"(    T C_now[damped], rate_now[damped], K_now[tr
 
 constexpr const char* sums_pulls = R"(    for (int e = 0; e < bounded; ++e) {{
       const T again = select(magnitude(B.low[e] * B.high[e]) > T(0), mu[e], T(0));
-      for (int i = 0; i < bodies; ++i) {0}s.pull[i] = s.pull[i] + mu[e] * B.p[e][i] + again * B.u[e][i];
+      for (int i = 0; i < bodies; ++i) {0}{2}pull[i] = {2}pull[i] + mu[e] * B.p[e][i] + again * B.u[e][i];
 {1}    }}
 )";
 constexpr const char* sums_lambda =
-    "      for (int i = 0; i < rows; ++i) s.lambda[i] = s.lambda[i] + mu[e] * B.l[e][i];\n";
+    "      for (int i = 0; i < rows; ++i) {0}lambda[i] = {0}lambda[i] + mu[e] * B.l[e][i];\n";
+
+// The first step does not repeat what ended another one.
+constexpr const char* start_begins = R"(
+  // Forces of joints and motors at the start of a run, in lanes that begin.
+  static void start(State& s, const T& h) {{
+    const auto begins = s.begins > T(0);
+    if (!any(begins)) return;
+    Bounded B;
+    T mu[bounded], hold[bounded];
+    Velocity pull[bodies];
+{0}    exert($ss.q, s.time, s.v, {1}pull, B);
+    for (int i = 0; i < bounded; ++i) hold[i] = s.hold[i];
+    settle(B, hold, mu);
+)";
+constexpr const char* start_ends =
+    R"(    for (int i = 0; i < bounded; ++i) s.hold[i] = select(begins, hold[i], s.hold[i]);
+    for (int i = 0; i < bodies; ++i) s.pull[i] = choose(begins, pull[i], s.pull[i]);
+{}    s.begins = T(0);
+  }}
+)";
+constexpr const char* start_lambda =
+    "    for (int i = 0; i < rows; ++i) s.lambda[i] = select(begins, lambda[i], s.lambda[i]);\n";
 
 constexpr const char* damping = R"(
   // Rows of effects whose forces change with their rates, these effects, and numbers of K = J M^-1 J^T.
@@ -206,7 +228,8 @@ std::string finishing(const Contents& has) {
                       has.bounded ? ", B" : "");
   if (has.bounded) {
     text += "    settle(B, s.hold, mu);\n";
-    text += fmt::format(sums_pulls, "next[i] = next[i] + mu[e] * B.g[e][i], ", has.rows ? sums_lambda : "");
+    text += fmt::format(sums_pulls, "next[i] = next[i] + mu[e] * B.g[e][i], ",
+                        has.rows ? fmt::format(sums_lambda, "s.") : "", "s.");
   }
   if (has.rows) text += "    for (T& of_row : s.lambda) of_row = of_row / half;\n";
   text += "    for (int i = 0; i < bodies; ++i) s.v[i] = next[i]";
@@ -223,16 +246,14 @@ std::string find_rates_of(const std::vector<int>& effect_of) {
   return fmt::format(finds_rates, fmt::join(effect_of, ", "));
 }
 
-std::string exertion(const Contents& has) {
-  if (!has.exerts) return has.pulls() ? "    for (Velocity& of_body : s.pull) of_body = still();\n" : "";
-  return fmt::format(
-             "    Bounded B;\n    T mu[bounded];\n    exert($ss.q, s.time, s.v, {}T(default_step), {}s.pull, B);\n",
-             has.rows ? "s.J, " : "", has.rows ? "s.lambda, " : "") +
-         "    settle(B, s.hold, mu);\n" + fmt::format(sums_pulls, "", has.rows ? sums_lambda : "");
+std::string start_of(const Contents& has) {
+  return fmt::format(start_begins, has.rows ? "    T lambda[rows];\n" : "", has.rows ? "s.J, h, lambda, " : "h, ") +
+         fmt::format(sums_pulls, "", has.rows ? fmt::format(sums_lambda, "") : "", "") +
+         fmt::format(start_ends, has.rows ? start_lambda : "");
 }
 
 std::string rattle(double tolerance, const Contents& has) {
-  std::string text = begins;
+  std::string text = fmt::format(begins, has.exerts ? "    start(s, h);\n" : "");
   text += has.dampens ? dampens : notes_velocities;
   text += fmt::format(first_kick, has.pulls() ? "(a[i] + s.pull[i])" : "a[i]");
   text += has.closes() ? closing(tolerance, has) : drifts(has) + "    s.time = s.time + h;\n";

@@ -10,8 +10,8 @@ namespace cdot::compile {
 
 // tolerance: of C.
 std::string rattle(double tolerance, const Contents& has);
-// The part of begin(): the joints' and motors' forces at the start of a run.
-std::string exertion(const Contents& has);
+// start(), if `exerts`.
+std::string start_of(const Contents& has);
 // The numbers of rows, and find_rates(); effect_of: the effect of each row.
 std::string damping_of(std::size_t rows, int effects, std::size_t triangle);
 std::string find_rates_of(const std::vector<int>& effect_of);

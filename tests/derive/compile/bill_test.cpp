@@ -9,11 +9,13 @@
 #include <sstream>
 
 #include "bounds_euler.hpp"
+#include "bounds_rattle.hpp"
 #include "chain_10_euler.hpp"
 #include "chain_10_rk4.hpp"
 #include "effects_euler.hpp"
 #include "effects_rk4.hpp"
 #include "tests/derive/compile/command.hpp"
+#include "thrown_rattle.hpp"
 #include "thrown_rk4.hpp"
 
 namespace {
@@ -57,7 +59,7 @@ std::string without_block(const std::string& scene, const std::string& block) {
 TEST(Bill, AnEffectNotCalledForCostsNoInstructionAndNoByte) {
   const std::string scene = "tests/derive/compile/scenes/thrown.toml";
   const std::string copy = without_block(scene, "[[joint]]\nname   = \"air\"");
-  for (const std::string method : {"euler", "rk4"}) {
+  for (const std::string method : {"euler", "rattle", "rk4"}) {
     const cdot::Outcome with = cdot::compile("--bill " + scene + " --integrator " + method);
     const cdot::Outcome never = cdot::compile("--bill " + copy + " --integrator " + method);
     ASSERT_EQ(with.status, 0) << with.text;
@@ -86,6 +88,8 @@ TEST(Bill, BytesOfStateAreThoseOfTheStruct) {
   EXPECT_EQ(bytes(effects, "euler"), long{sizeof(effects_euler<double>::State)});
   EXPECT_EQ(bytes(effects, "rk4"), long{sizeof(effects_rk4<double>::State)});
   EXPECT_EQ(bytes("tests/derive/compile/scenes/bounds.toml", "euler"), long{sizeof(bounds_euler<double>::State)});
+  EXPECT_EQ(bytes("tests/derive/compile/scenes/bounds.toml", "rattle"), long{sizeof(bounds_rattle<double>::State)});
+  EXPECT_EQ(bytes("tests/derive/compile/scenes/thrown.toml", "rattle"), long{sizeof(thrown_rattle<double>::State)});
   EXPECT_EQ(bytes("tests/derive/compile/scenes/thrown.toml", "rk4"), long{sizeof(thrown_rk4<double>::State)});
 }
 
