@@ -6,6 +6,7 @@
 #include "derive/check/parts.hpp"
 #include "derive/explain/formats/mathml.hpp"
 #include "derive/picture/picture.hpp"
+#include "runtime/text/html.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -36,11 +37,11 @@ std::string why_none(const CheckReport& report) {
 
 std::string figure(const Joint& joint, const PoseToDraw& pose, const std::string& picture) {
   std::string numbers;
-  for (const std::string& line : numbers_of(joint, pose.pose)) numbers += html_escaped(line) + "\n";
+  for (const std::string& line : numbers_of(joint, pose.pose)) numbers += text::html_escaped(line) + "\n";
   return fmt::format(
       "<figure>\n{}<figcaption>{}<details><summary>Its "
       "numbers</summary><pre>{}</pre></details></figcaption></figure>\n",
-      picture, html_escaped(sentence(pose.words)), numbers);
+      picture, text::html_escaped(sentence(pose.words)), numbers);
 }
 
 std::string figures(const Joint& joint, const std::vector<PoseToDraw>& to_draw) {
@@ -56,9 +57,11 @@ std::string figures(const Joint& joint, const std::vector<PoseToDraw>& to_draw) 
 
 std::string pictures_html(const ReadResult& read, const CheckReport& report) {
   const std::string name = read.joint ? read.joint->name : read.file->path;
-  std::string out = fmt::format("<section><h2>{}</h2>\n", html_escaped(name));
-  if (read.joint && !read.joint->title.empty()) out += fmt::format("<p>{}</p>\n", html_escaped(read.joint->title));
-  if (!any_to_show(report.poses)) return out + fmt::format("<p>{}</p>\n</section>\n", html_escaped(why_none(report)));
+  std::string out = fmt::format("<section><h2>{}</h2>\n", text::html_escaped(name));
+  if (read.joint && !read.joint->title.empty())
+    out += fmt::format("<p>{}</p>\n", text::html_escaped(read.joint->title));
+  if (!any_to_show(report.poses))
+    return out + fmt::format("<p>{}</p>\n</section>\n", text::html_escaped(why_none(report)));
   return out + figures(*read.joint, report.poses) + "</section>\n";
 }
 

@@ -9,10 +9,9 @@
 #include "derive/compile/header.hpp"
 #include "runtime/command_line/command_line.hpp"
 #include "runtime/command_line/waiting.hpp"
-#include "runtime/text/colour.hpp"
 #include "runtime/text/stage.hpp"
+#include "runtime/tool/failure.hpp"
 #include "runtime/tool/run/output.hpp"
-#include "runtime/tool/scene/scene.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -92,11 +91,7 @@ constexpr command_line::Program program = {
 int main(int argc, char** argv) {
   try {
     return run(cdot::compile::program, cdot::compile::commands, argc, argv);
-  } catch (const cdot::SceneError& error) {
-    cdot::text::print_messages(stderr, error.what());
-    fmt::print(stderr, "{} mistake{}\n", error.mistakes, error.mistakes == 1 ? "" : "s");
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "cdot compile: {}\n", error.what());
+  } catch (const std::exception&) {
+    return cdot::report_failure("cdot compile");
   }
-  return cdot::command_line::wrong_usage;
 }

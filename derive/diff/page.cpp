@@ -6,6 +6,7 @@
 
 #include "derive/diff/diff.hpp"
 #include "derive/explain/formats/mathml.hpp"
+#include "runtime/text/html.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -97,7 +98,7 @@ std::string figure(const char* caption, const std::string& table) {
 
 std::string html_of(const Sheet& sheet) {
   const bool claim = sheet.what.starts_with("claim");
-  std::string out = fmt::format("<h4>{}</h4>\n<div class=\"pair\">\n", html_escaped(sheet.what));
+  std::string out = fmt::format("<h4>{}</h4>\n<div class=\"pair\">\n", text::html_escaped(sheet.what));
   if (sheet.published == sheet.generated) return out + figure("published and generated", sheet.published) + "</div>\n";
   out += figure(claim ? "published, left side" : "published", sheet.published);
   if (!sheet.generated.empty()) out += figure(claim ? "right side" : "generated", sheet.generated);
@@ -105,13 +106,13 @@ std::string html_of(const Sheet& sheet) {
 }
 
 std::string html_of(const Difference& d) {
-  std::string out = fmt::format("<li><b>{}</b>: {}", html_escaped(d.kind), html_prose(d.sentence));
+  std::string out = fmt::format("<li><b>{}</b>: {}", text::html_escaped(d.kind), html_prose(d.sentence));
   if (!d.confirmed.empty()) out += fmt::format("<br /><span class=\"numbers\">{}</span>", html_prose(d.confirmed));
   return out + "</li>\n";
 }
 
 std::string html_of(const Judgement& j, const SourceFile& file) {
-  std::string out = fmt::format("<p class=\"source\">{}</p>\n", html_escaped(j.source));
+  std::string out = fmt::format("<p class=\"source\">{}</p>\n", text::html_escaped(j.source));
   if (!j.condition.empty())
     out +=
         fmt::format("<p>{} {}</p>\n",
@@ -124,7 +125,8 @@ std::string html_of(const Judgement& j, const SourceFile& file) {
   if (!j.differences.empty()) out += "</ul>\n";
   for (const std::string& remark : j.remarks) out += fmt::format("<p>Note: {}</p>\n", html_prose(remark));
   return out + fmt::format("<details><summary>as it stands in {}.hand, line {}</summary><pre>{}</pre></details>\n",
-                           html_escaped(place_of(file)), file.line(j.where.begin), html_escaped(lines_of(file, j)));
+                           text::html_escaped(place_of(file)), file.line(j.where.begin),
+                           text::html_escaped(lines_of(file, j)));
 }
 
 // LIN-4, or ANG-8-planar-angle where several joints have an entry of this name.
@@ -137,7 +139,7 @@ std::vector<std::string> anchors_of(const std::vector<Exhibit>& exhibits) {
     std::string anchor = times[e.id] > 1 ? e.id + "-" + e.joint : e.id;
     for (char& c : anchor) c = c == '/' || c == ' ' ? '-' : c;
     const int same = ++taken[anchor];
-    anchors.push_back(html_escaped(same > 1 ? fmt::format("{}-{}", anchor, same) : anchor));
+    anchors.push_back(text::html_escaped(same > 1 ? fmt::format("{}-{}", anchor, same) : anchor));
   }
   return anchors;
 }
@@ -168,7 +170,7 @@ std::string page_of(const std::vector<Exhibit>& exhibits) {
   std::string index, articles, joint;
   for (std::size_t i = 0; i < exhibits.size(); ++i) {
     const Exhibit& e = exhibits[i];
-    const std::string name = html_escaped(e.joint), title = html_escaped(e.title);
+    const std::string name = text::html_escaped(e.joint), title = text::html_escaped(e.title);
     if (joint != e.joint) {
       index += fmt::format("{}<section class=\"ids\"><a href=\"#{}\"><b>{}</b></a> ",
                            index.empty() ? "" : "</section>\n", name, name);
@@ -176,11 +178,11 @@ std::string page_of(const std::vector<Exhibit>& exhibits) {
       joint = e.joint;
     }
     index += fmt::format("<a class=\"entry {}\" href=\"#{}\" title=\"{}\">{}</a> ", name_of(e.agreement), anchors[i],
-                         title, html_escaped(e.id));
+                         title, text::html_escaped(e.id));
     articles += fmt::format(
         "<article id=\"{0}\" class=\"entry {1}\">\n<h3><a href=\"#{0}\">{2}</a> {3} "
         "<span class=\"verdict\">{4}</span></h3>\n{5}</article>\n",
-        anchors[i], name_of(e.agreement), html_escaped(e.id), title, spoken(e.agreement), e.html);
+        anchors[i], name_of(e.agreement), text::html_escaped(e.id), title, spoken(e.agreement), e.html);
   }
   const std::string end = exhibits.empty() ? "" : "</section>\n";
   std::string out = html_head("A museum of mistakes", museum_style);

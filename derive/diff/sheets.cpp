@@ -5,6 +5,7 @@
 #include "derive/diff/entry.hpp"
 #include "derive/diff/terms.hpp"
 #include "derive/explain/formats/mathml.hpp"
+#include "runtime/text/html.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -80,7 +81,7 @@ class Typesetter {
   std::string html(const Formula& f, Expr otherwise) {
     if (leaves_in(f) > most_leaves)
       return fmt::format("<code>{}</code>",
-                         html_escaped(in_names_of_spec(brief_text(otherwise, entry_.joint), entry_.joint)));
+                         text::html_escaped(in_names_of_spec(brief_text(otherwise, entry_.joint), entry_.joint)));
     name_all(f);
     return in_mathml(f, entry_.joint.bodies);
   }
@@ -134,7 +135,7 @@ class Table {
     std::string out = has_row_names() ? "<tr><th></th>" : "<tr>";
     const bool velocities = sides_.what == "J" || sides_.what == "update";
     for (const Group& g : columns_) {
-      const std::string name = velocities ? in_mathml(leaf({}, g.name), {}) : html_escaped(g.name);
+      const std::string name = velocities ? in_mathml(leaf({}, g.name), {}) : text::html_escaped(g.name);
       out += fmt::format("<th scope=\"col\"{}>{}</th>", span(g.count), name);
     }
     return out + "</tr>\n";
@@ -143,8 +144,9 @@ class Table {
   std::string row(const Group& rows, int r) const {
     std::string out = "<tr>";
     if (has_row_names() && r == rows.first)
-      out += fmt::format("<th scope=\"row\"{}>{}</th>",
-                         rows.count > 1 ? fmt::format(" rowspan=\"{}\"", rows.count) : "", html_escaped(rows.name));
+      out +=
+          fmt::format("<th scope=\"row\"{}>{}</th>", rows.count > 1 ? fmt::format(" rowspan=\"{}\"", rows.count) : "",
+                      text::html_escaped(rows.name));
     for (const Group& columns : columns_) out += cells(r, columns);
     return out + "</tr>\n";
   }
@@ -203,8 +205,8 @@ void show_apart(Entry& entry, const std::string& what, const HandItem& item, con
                 const Matrix* generated) {
   if (!entry.with_sheets) return;
   Typesetter typesetter(entry);
-  const std::string as_written =
-      "<table class=\"sheet\"><tr><td class=\"wrong\"><code>" + html_escaped(item.text) + "</code></td></tr></table>";
+  const std::string as_written = "<table class=\"sheet\"><tr><td class=\"wrong\"><code>" +
+                                 text::html_escaped(item.text) + "</code></td></tr></table>";
   entry.verdict.sheets.push_back({what, published ? plain_table(typesetter, *published, true) : as_written,
                                   generated ? plain_table(typesetter, *generated, false) : ""});
 }

@@ -9,6 +9,7 @@
 #include "derive/kernel/generate.hpp"
 #include "derive/language/specs_folder.hpp"
 #include "derive/play/spec.hpp"
+#include "runtime/text/html.hpp"
 
 namespace cdot::play {
 namespace {
@@ -38,13 +39,13 @@ class Code {
       std::size_t end = 0;
       while (end < code.size() && is_of_name(code[end])) ++end;
       if (end == 0) {
-        out += html_escaped(std::string(code.substr(0, 1))), code.remove_prefix(1);
+        out += text::html_escaped(std::string(code.substr(0, 1))), code.remove_prefix(1);
         continue;
       }
       const std::string word(code.substr(0, end)), member = member_after(code.substr(end));
       const std::string name = name_of(word, member);
       const std::size_t length = end + (name.empty() || !is_of_body(word) ? 0 : member.size() + 1);
-      const std::string text = html_escaped(std::string(code.substr(0, length)));
+      const std::string text = text::html_escaped(std::string(code.substr(0, length)));
       out += name.empty() ? text : fmt::format("<span data-name=\"{}\">{}</span>", name, text);
       code.remove_prefix(length);
     }

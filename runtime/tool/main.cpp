@@ -1,9 +1,8 @@
 // cdot-run: the commands, each a file in tool/commands/.
-#include <fmt/format.h>
+#include <exception>
 
-#include "runtime/text/colour.hpp"
 #include "runtime/tool/commands/command.hpp"
-#include "runtime/tool/scene/scene.hpp"
+#include "runtime/tool/failure.hpp"
 
 namespace {
 
@@ -47,11 +46,7 @@ specs/scenes/README.md describes the format of scenes.)"};
 int main(int argc, char** argv) {
   try {
     return run(program, commands, argc, argv);
-  } catch (const cdot::SceneError& error) {
-    cdot::text::print_messages(stderr, error.what());
-    fmt::print(stderr, "{} mistake{}\n", error.mistakes, error.mistakes == 1 ? "" : "s");
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "cdot-run: {}\n", error.what());
+  } catch (const std::exception&) {
+    return cdot::report_failure("cdot-run");
   }
-  return cdot::bad_input;
 }

@@ -1,5 +1,7 @@
 // The derivation as one page that needs nothing else: MathML, which browsers set themselves, and a
 // style sheet for light and dark.
+#include "runtime/text/html.hpp"
+
 #include <map>
 #include <utility>
 
@@ -8,24 +10,10 @@
 
 namespace cdot::derive {
 
-std::string html_escaped(const std::string& s) {
-  std::string out;
-  for (const char c : s) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
-    }
-  }
-  return out;
-}
-
 std::string html_prose(const std::string& s) {
   std::string out;
   bool code = false;
-  for (const char c : html_escaped(s)) {
+  for (const char c : text::html_escaped(s)) {
     if (c != '`') {
       out += c;
       continue;
@@ -50,13 +38,13 @@ std::string name(const Formula& leaf, const std::vector<std::string>& bodies) {
   const SpelledName s = spell(leaf.name, bodies);
   const bool vector = leaf.leaf && leaf.leaf->vector;
   std::string base = filled(vector ? "<mi mathvariant=\"normal\" class=\"vector\">#1</mi>" : "<mi>#1</mi>",
-                            html_escaped(greek(s.letter)));
+                            text::html_escaped(greek(s.letter)));
   if (s.dots > 0) base = filled("<mover accent=\"true\">#1<mo>#2</mo></mover>", base, s.dots == 1 ? "˙" : "¨");
-  const std::string index = "<mtext>" + html_escaped(s.index) + "</mtext>";
+  const std::string index = "<mtext>" + text::html_escaped(s.index) + "</mtext>";
   if (s.inverse) base = filled("<msubsup>#1#2<mrow><mo>−</mo><mn>1</mn></mrow></msubsup>", base, index);
   else if (!s.index.empty()) base = filled("<msub>#1#2</msub>", base, index);
   // For scripts: the name as the spec has it.
-  return base.insert(base.find_first_of(" >"), " data-name=\"" + html_escaped(leaf.name) + "\"");
+  return base.insert(base.find_first_of(" >"), " data-name=\"" + text::html_escaped(leaf.name) + "\"");
 }
 
 #define FENCE(sign) "<mo stretchy=\"true\" fence=\"true\">" sign "</mo>"
@@ -146,7 +134,7 @@ std::string chain(const Chain& chain, const FormulaWriter& formula) {
   for (const Link& link : chain.links) {
     out += "<tr><td class=\"left\">" + std::exchange(left, "") + "</td><td>" +
            filled(math, "<mo>=</mo>" + formula.write(link.formula)) + "</td><td class=\"rule\">" +
-           html_escaped(link.rule) + "</td></tr>\n";
+           text::html_escaped(link.rule) + "</td></tr>\n";
   }
   return out + "</table></div>\n";
 }
@@ -156,7 +144,7 @@ std::string head(const std::string& title) { return html_head(title); }
 }  // namespace
 
 std::string html_head(const std::string& plain_title, std::string_view more_style) {
-  const std::string title = html_escaped(plain_title);
+  const std::string title = text::html_escaped(plain_title);
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\" />\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n<title>" +
          title + "</title>\n<style>\n@font-face { font-family: \"Cdot Math\"; src: url(data:font/woff2;base64," +
@@ -168,8 +156,8 @@ std::string in_mathml(const Formula& formula, const std::vector<std::string>& bo
 }
 
 std::string explanation_html(const Explanation& explanation) {
-  return written(explanation, {mathml, head, html_foot, "<h2>#1. #2</h2>\n", "<ul>\n", "</ul>\n", math, html_escaped,
-                               html_prose, item, chain});
+  return written(explanation, {mathml, head, html_foot, "<h2>#1. #2</h2>\n", "<ul>\n", "</ul>\n", math,
+                               text::html_escaped, html_prose, item, chain});
 }
 
 }  // namespace cdot::derive

@@ -10,7 +10,6 @@
 
 namespace cdot::derive {
 
-std::string html_escaped(const std::string& text);
 std::string html_prose(const std::string& words);  // with `code` between backticks
 std::string in_mathml(const Formula& formula, const std::vector<std::string>& bodies);
 

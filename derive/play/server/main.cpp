@@ -15,8 +15,8 @@
 #include "runtime/command_line/command_line.hpp"
 #include "runtime/command_line/installation.hpp"
 #include "runtime/command_line/waiting.hpp"
-#include "runtime/text/colour.hpp"
 #include "runtime/text/stage.hpp"
+#include "runtime/tool/failure.hpp"
 #include "runtime/tool/run/output.hpp"
 #include "runtime/tool/scene/scene.hpp"
 
@@ -129,10 +129,7 @@ constexpr command_line::Program program = {
 int main(int argc, char** argv) {
   try {
     return run(cdot::play::program, cdot::play::commands, argc, argv);
-  } catch (const cdot::SceneError& error) {
-    cdot::text::print_messages(stderr, error.what());
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "cdot play: {}\n", error.what());
+  } catch (const std::exception&) {
+    return cdot::report_failure("cdot play");
   }
-  return cdot::command_line::wrong_usage;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "runtime/text/html.hpp"
 #include "runtime/tool/viewer/picture.hpp"
 
 namespace cdot {
@@ -84,7 +85,7 @@ std::string ring(const Spot& at) {
 }
 
 std::string mark(const DiagramSeries& series, const Spot& at, const std::string& note) {
-  const std::string title = note.empty() ? "" : fmt::format("<title>{}</title>", escaped(note));
+  const std::string title = note.empty() ? "" : fmt::format("<title>{}</title>", text::html_escaped(note));
   return fmt::format("<path d=\"{}\" transform=\"translate({:.1f} {:.1f})\" stroke=\"{}\" fill=\"{}\">{}</path>\n",
                      markers[static_cast<std::size_t>(series.marker) % std::size(markers)], at.x, at.y, series.colour,
                      series.hollow ? "var(--paper)" : series.colour, title);
@@ -110,7 +111,8 @@ class Drawing {
                "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" viewBox=\"0 0 {0:.0f} {1:.0f}\">\n{2}"
                "<text class=\"title\" x=\"{3}\" y=\"30\">{4}</text>\n<text class=\"small\" x=\"{3}\" "
                "y=\"54\">{5}</text>\n",
-               width_, height_, style, left, escaped(diagram_.title), escaped(diagram_.subtitle)) +
+               width_, height_, style, left, text::html_escaped(diagram_.title),
+               text::html_escaped(diagram_.subtitle)) +
            grid() + resolution() + frontier() + curves() + names() + "</svg>\n";
   }
 
@@ -132,7 +134,8 @@ class Drawing {
                "<text x=\"{:.0f}\" y=\"{:.0f}\" text-anchor=\"middle\">{}: more accurate to the right</text>\n"
                "<text transform=\"translate(26 {:.0f}) rotate(-90)\" text-anchor=\"middle\">CPU time per simulated "
                "second [us]</text>\n",
-               left + plot_width / 2, top + plot_height + 48, escaped(diagram_.error_label), top + plot_height / 2);
+               left + plot_width / 2, top + plot_height + 48, text::html_escaped(diagram_.error_label),
+               top + plot_height / 2);
   }
 
   std::string resolution() const {
@@ -188,7 +191,8 @@ class Drawing {
       svg +=
           fmt::format("<path class=\"curve\" d=\"M{:.0f} {:.1f}h24\" stroke=\"{}\"/>\n", x, y, all[k].series->colour);
       svg += mark(*all[k].series, {x + 12, y}, "");
-      svg += fmt::format("<text x=\"{:.0f}\" y=\"{:.1f}\">{}</text>\n", x + 34, y + 5, escaped(all[k].series->name));
+      svg += fmt::format("<text x=\"{:.0f}\" y=\"{:.1f}\">{}</text>\n", x + 34, y + 5,
+                         text::html_escaped(all[k].series->name));
       above = y;
     }
     return svg + name_of_frontier(x, above + 1.5 * row_height);

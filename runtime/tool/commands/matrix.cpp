@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <numbers>
 
+#include "runtime/text/html.hpp"
 #include "runtime/text/json.hpp"
 #include "runtime/tool/viewer/picture.hpp"
 
@@ -165,7 +166,7 @@ constexpr const char* palette[] = {"#3b82f6", "#f59e0b", "#10b981", "#ef4444",
 const char* colour(const ConflictGraph& graph, std::size_t joint) { return palette[graph.colour[joint] % 8]; }
 
 std::string name_of(const Scene& scene, const SystemMatrix& system, std::size_t joint) {
-  return escaped(source_of(scene, system.joints[joint]).name);
+  return text::html_escaped(source_of(scene, system.joints[joint]).name);
 }
 
 // A square per entry that is not 0, the diagonal block of each joint in its colour, lines between joints.

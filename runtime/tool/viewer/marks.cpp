@@ -8,6 +8,8 @@
 #include <map>
 #include <numbers>
 
+#include "runtime/text/html.hpp"
+
 namespace cdot {
 
 namespace {
@@ -97,7 +99,7 @@ class Painter {
       const SceneBody& body = scene_.bodies[k];
       const std::string kind = body.is_static ? "still" : fmt::format("c{}", colours_.of(body.name));
       drawing_.bodies.push_back({static_cast<int>(k), fmt::format(R"(<g class="body {}"><title>{}</title>{}</g>)", kind,
-                                                                  escaped(body.name), body_svg(k))});
+                                                                  text::html_escaped(body.name), body_svg(k))});
     }
   }
 

@@ -5,6 +5,7 @@
 
 #include <cdot/methods.hpp>
 
+#include "runtime/text/html.hpp"
 #include "runtime/text/json.hpp"
 #include "runtime/tool/viewer/assets.hpp"
 #include "runtime/tool/viewer/marks.hpp"
@@ -234,7 +235,7 @@ std::string html_page(const Scene& scene, const std::vector<Frame>& film, const 
     run = spatial_run(scene, drawing, film);
     script += viewer_space_js;
   }
-  const std::string title = escaped(scene.title.empty() ? scene.file : scene.title);
+  const std::string title = text::html_escaped(scene.title.empty() ? scene.file : scene.title);
   const Settings& method = scene.settings;
   const std::string steps = method.local_error > 0 ? fmt::format("local error {:.1e}", method.local_error)
                                                    : fmt::format("step {:.4g} s", scene.step);
@@ -243,7 +244,7 @@ std::string html_page(const Scene& scene, const std::vector<Frame>& film, const 
   return filled(viewer_html, {{"title", title},
                               {"style", std::string(viewer_marks_css) + std::string(viewer_css)},
                               {"facts", facts},
-                              {"report", escaped(report)},
+                              {"report", text::html_escaped(report)},
                               {"stage", stage},
                               {"run", in_a_script(run)},
                               {"script", script + std::string(viewer_js)}});

@@ -10,8 +10,6 @@
 
 namespace cdot {
 
-std::string escaped(std::string_view text);
-
 // "M1.0 2.0L3.0 4.0", of points with x and y.
 template <class Points>
 std::string path_through(const Points& points) {

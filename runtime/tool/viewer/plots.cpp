@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/text/html.hpp"
 #include "runtime/tool/viewer/picture.hpp"
 
 namespace cdot {
@@ -91,7 +92,7 @@ std::string axes_svg(const LinearAxis& x, const LinearAxis& y, const std::string
                    "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">time [s]</text>\n"
                    "<text transform=\"translate(18 {:.1f}) rotate(-90)\" text-anchor=\"middle\">[{}]</text>\n",
                    x.from, y.to, plot_width, plot_height, (x.from + x.to) / 2, y.from + 36, (y.from + y.to) / 2,
-                   escaped(unit));
+                   text::html_escaped(unit));
 }
 
 std::string curves_svg(const Panel& panel, const Scene& scene, const std::vector<Frame>& film, const LinearAxis& x,
@@ -103,7 +104,7 @@ std::string curves_svg(const Panel& panel, const Scene& scene, const std::vector
   for (std::size_t i = 0; i < panel.sensors.size(); ++i) {
     std::vector<Spot> spots;
     for (const Frame& frame : film) spots.push_back({x.at(frame.time), y.at(frame.sensors[panel.sensors[i]])});
-    const std::string name = escaped(scene.sensors[panel.sensors[i]].name);
+    const std::string name = text::html_escaped(scene.sensors[panel.sensors[i]].name);
     const double at = y.to + 12 + row * static_cast<double>(i);
     svg += fmt::format(
         "<path class=\"curve\" stroke=\"{0}\" stroke-dasharray=\"{1}\" d=\"{2}\"><title>{3}</title></path>\n"
@@ -127,7 +128,7 @@ std::string plots_svg(const Scene& scene, const std::vector<Frame>& film) {
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" viewBox=\"0 0 {0:.0f} "
       "{1:.0f}\">\n{2}<text class=\"title\" x=\"{3}\" y=\"32\">{4}</text>\n",
-      width, height, plot_style, left, escaped(scene.title));
+      width, height, plot_style, left, text::html_escaped(scene.title));
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const LinearAxis y = axis_of(panels[i], film, top + (plot_height + gap) * static_cast<double>(i));
     svg += axes_svg(x, y, panels[i].unit) + curves_svg(panels[i], scene, film, x, y);

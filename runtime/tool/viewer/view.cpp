@@ -102,17 +102,4 @@ std::string link_transform(const Link& link, const std::vector<Place>& places) {
   return fmt::format("{} scale({:.3f} 1)", transform(place), std::hypot(dx, dy));
 }
 
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '<': result += "&lt;"; break;
-      case '&': result += "&amp;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += c;
-    }
-  }
-  return result;
-}
-
 }  // namespace cdot

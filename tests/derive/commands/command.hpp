@@ -1,15 +1,15 @@
 // A temporary folder with specs, in which `cdot` runs.
 #pragma once
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <map>
 #include <sstream>
 #include <string>
-#include <sys/wait.h>
 #include <unistd.h>
+
+#include "tests/shell.hpp"
 
 namespace fs = std::filesystem;
 
@@ -20,10 +20,7 @@ inline std::string content_of(const fs::path& path) {
   return all.str();
 }
 
-struct Result {
-  int status;
-  std::string said;
-};
+using cdot::test::ShellResult;
 
 class Derive : public testing::Test {
  protected:
@@ -40,16 +37,10 @@ class Derive : public testing::Test {
     fs::copy(fs::path(CDOT_SOURCE_DIR "/specs") / spec, place_ / "specs" / spec);
   }
 
-  Result run(const std::string& command) const {
-    const std::string whole = "cd '" + place_.string() + "' && " + command + " 2>&1";
-    FILE* pipe = popen(whole.c_str(), "r");
-    Result result{-1, ""};
-    char buffer[4096];
-    while (const std::size_t n = fread(buffer, 1, sizeof buffer, pipe)) result.said.append(buffer, n);
-    result.status = WEXITSTATUS(pclose(pipe));
-    return result;
+  ShellResult run(const std::string& command) const {
+    return cdot::test::shell("cd '" + place_.string() + "' && " + command + " 2>&1");
   }
-  Result cdot(const std::string& arguments) const { return run(CDOT " " + arguments); }
+  ShellResult cdot(const std::string& arguments) const { return run(CDOT " " + arguments); }
 
   void write(const std::string& name, const std::string& text) const {
     fs::create_directories((place_ / name).parent_path());

@@ -20,18 +20,18 @@ const char* const pin =
 
 // Errors about operators refer to this help.
 TEST_F(Derive, TheOperatorsAreInTheHelpOfCheck) {
-  const Result help = cdot("check --help");
+  const ShellResult help = cdot("check --help");
   EXPECT_EQ(help.status, 0);
   for (const ::cdot::derive::Operator& o : ::cdot::derive::operators()) {
-    const std::size_t at = help.said.find("  " + std::string(o.signature) + "  ");
+    const std::size_t at = help.text.find("  " + std::string(o.signature) + "  ");
     EXPECT_NE(at, std::string::npos) << o.signature;
-    EXPECT_NE(help.said.find(o.help, at), std::string::npos) << o.help;
+    EXPECT_NE(help.text.find(o.help, at), std::string::npos) << o.help;
   }
 }
 
 TEST_F(Derive, WritesKernelsRegistriesAndTheLedger) {
-  const Result derived = cdot("derive");
-  EXPECT_EQ(derived.status, 0) << derived.said;
+  const ShellResult derived = cdot("derive");
+  EXPECT_EQ(derived.status, 0) << derived.text;
   std::string names;
   for (const auto& [name, content] : files("generated")) names += name + "\n";
   EXPECT_EQ(names,
@@ -50,7 +50,7 @@ TEST_F(Derive, WritesElsewhereIfAsked) {
 TEST_F(Derive, TouchesNothingThatIsRight) {
   ASSERT_EQ(cdot("derive").status, 0);
   const auto time = fs::last_write_time(place_ / "generated/planar/line.hpp");
-  EXPECT_NE(cdot("derive").said.find("0 written, 0 removed"), std::string::npos);
+  EXPECT_NE(cdot("derive").text.find("0 written, 0 removed"), std::string::npos);
   EXPECT_EQ(fs::last_write_time(place_ / "generated/planar/line.hpp"), time);
 }
 
@@ -63,13 +63,13 @@ TEST_F(Derive, CheckNamesTheOneCommandThatMends) {
     write(folder + "/planar/line.hpp", "changed by hand\n");
     write(folder + "/planar/stale.hpp", "no spec makes it\n");
     fs::remove(place_ / folder / "ledger.csv");
-    const Result check = cdot("derive --check" + options);
+    const ShellResult check = cdot("derive --check" + options);
     EXPECT_EQ(check.status, 1);
     for (const char* words : {"line.hpp: differs", "- changed by hand", "stale.hpp: no spec generates it",
                               "ledger.csv: missing", "Fix: cdot derive"}) {
-      EXPECT_NE(check.said.find(words), std::string::npos) << words << "\n" << check.said;
+      EXPECT_NE(check.text.find(words), std::string::npos) << words << "\n" << check.text;
     }
-    const std::string mend = check.said.substr(check.said.rfind("Fix: cdot ") + 10);
+    const std::string mend = check.text.substr(check.text.rfind("Fix: cdot ") + 10);
     EXPECT_EQ(cdot(mend.substr(0, mend.find('\n'))).status, 0) << mend;
     EXPECT_EQ(files(folder), right);
     EXPECT_EQ(cdot("derive --check" + options).status, 0);
@@ -83,18 +83,18 @@ TEST_F(Derive, WritesNothingFromABrokenSpec) {
     write("specs/planar/bad.joint", text);
     write("specs/planar/line.joint", pin);  // changes generated files
     for (const char* const command : {"derive", "derive --check"}) {
-      const Result result = cdot(command);
-      EXPECT_EQ(result.status, 2) << result.said;
-      EXPECT_NE(result.said.find("bad.joint:"), std::string::npos) << result.said;
+      const ShellResult result = cdot(command);
+      EXPECT_EQ(result.status, 2) << result.text;
+      EXPECT_NE(result.text.find("bad.joint:"), std::string::npos) << result.text;
       EXPECT_EQ(files("generated"), before);
     }
   }
 }
 
 TEST_F(Derive, SaysWhichSpecIsMissing) {
-  const Result result = cdot("derive lin");
+  const ShellResult result = cdot("derive lin");
   EXPECT_EQ(result.status, 2);
-  EXPECT_NE(result.said.find("did you mean `line`"), std::string::npos) << result.said;
+  EXPECT_NE(result.text.find("did you mean `line`"), std::string::npos) << result.text;
   EXPECT_TRUE(files("generated").empty());
   EXPECT_EQ(run("mkdir away && cd away && " CDOT " derive").status, 2);
   EXPECT_EQ(cdot("derive --such").status, 2);
@@ -104,8 +104,8 @@ TEST_F(Derive, TakesUpANewJointThatIncludesAnother) {
   ASSERT_EQ(cdot("derive").status, 0);
   write("specs/planar/pin_on_line.joint", pin);
   EXPECT_EQ(cdot("derive --check").status, 1);
-  const Result derived = cdot("derive");
-  EXPECT_EQ(derived.status, 0) << derived.said;
+  const ShellResult derived = cdot("derive");
+  EXPECT_EQ(derived.status, 0) << derived.text;
   EXPECT_NE(read("generated/planar/registry.hpp").find("pin_on_line"), std::string::npos);
   EXPECT_NE(read("generated/planar/pin_on_line.hpp").find("struct pin_on_line"), std::string::npos);
   fs::remove(place_ / "specs/planar/pin_on_line.joint");
@@ -148,15 +148,15 @@ TEST_F(Derive, NeverShowsHalfAFile) {
 }
 
 TEST_F(Derive, AHyphenIsStandardInputAndOutput) {
-  const Result checked = run("cat specs/planar/line.joint | " CDOT " check -");
+  const ShellResult checked = run("cat specs/planar/line.joint | " CDOT " check -");
   EXPECT_EQ(checked.status, 0);
-  EXPECT_NE(checked.said.find("<stdin>: clean"), std::string::npos) << checked.said;
+  EXPECT_NE(checked.text.find("<stdin>: clean"), std::string::npos) << checked.text;
   write("typo.joint", broken);
-  const Result wrong = run("cat typo.joint | " CDOT " check -");
+  const ShellResult wrong = run("cat typo.joint | " CDOT " check -");
   EXPECT_EQ(wrong.status, 2);
-  EXPECT_NE(wrong.said.find("<stdin>:4:8: error: "), std::string::npos) << wrong.said;
-  EXPECT_EQ(cdot("explain line -o -").said, cdot("explain line").said);
-  EXPECT_NE(run(CDOT " check line --html - 2>/dev/null").said.find("</html>"), std::string::npos);
+  EXPECT_NE(wrong.text.find("<stdin>:4:8: error: "), std::string::npos) << wrong.text;
+  EXPECT_EQ(cdot("explain line -o -").text, cdot("explain line").text);
+  EXPECT_NE(run(CDOT " check line --html - 2>/dev/null").text.find("</html>"), std::string::npos);
   EXPECT_FALSE(fs::exists(place_ / "-"));
 }
 
@@ -165,7 +165,7 @@ TEST_F(Derive, MisspeltWordsAreUnderstood) {
            {"explian line", "cdot: no command is called `explian`; did you mean `explain`?\n"},
            {"diff --ful", "cdot: diff has no option `--ful`; did you mean `--full`?\n"},
            {"--version", "cdot 0."}})
-    EXPECT_EQ(cdot(typed).said.substr(0, said.size()), said);
+    EXPECT_EQ(cdot(typed).text.substr(0, said.size()), said);
 }
 
 // `compile` and `play` are programs of their own, which know their options.
@@ -174,18 +174,18 @@ TEST_F(Derive, OptionsOfProgramsBesideAreCompleted) {
   write("bash", path +
                     "source <(cdot completion bash); COMP_WORDS=(cdot compile --in); COMP_CWORD=2; _cdot; "
                     "echo ${COMPREPLY[@]}; COMP_WORDS=(cdot play --po); _cdot; echo ${COMPREPLY[@]}\n");
-  EXPECT_EQ(run("bash bash").said, "--integrator --input\n--port\n");
+  EXPECT_EQ(run("bash bash").text, "--integrator --input\n--port\n");
   write("zsh", path +
                    "_arguments() { print -rl -- \"$@\" }; words=(cdot compile \"\"); CURRENT=3; "
                    "source <(cdot completion zsh)\n");
-  EXPECT_NE(run("zsh -f zsh").said.find("--bill:value:_files\n--json"), std::string::npos);
+  EXPECT_NE(run("zsh -f zsh").text.find("--bill:value:_files\n--json"), std::string::npos);
 }
 
 // The catalogue of an installation must not be written into the folder where somebody happens to be.
 TEST_F(Derive, WithoutASpecsFolderNothingIsDerived) {
   fs::remove_all(place_ / "specs");
-  const Result derived = cdot("derive");
+  const ShellResult derived = cdot("derive");
   EXPECT_EQ(derived.status, 2);
-  EXPECT_NE(derived.said.find("no folder specs: run from the folder that holds it"), std::string::npos) << derived.said;
+  EXPECT_NE(derived.text.find("no folder specs: run from the folder that holds it"), std::string::npos) << derived.text;
   EXPECT_FALSE(fs::exists(place_ / "generated"));
 }

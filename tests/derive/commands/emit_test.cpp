@@ -5,11 +5,13 @@ namespace {
 
 class Emit : public Derive {
  protected:
-  bool has(const Result& result, const std::string& text) const { return result.said.find(text) != std::string::npos; }
+  bool has(const ShellResult& result, const std::string& text) const {
+    return result.text.find(text) != std::string::npos;
+  }
 };
 
 TEST_F(Emit, WritesOneFileOrTwo) {
-  const Result printed = cdot("emit line --for plain");
+  const ShellResult printed = cdot("emit line --for plain");
   EXPECT_EQ(printed.status, 0);
   EXPECT_TRUE(has(printed, "struct line {") &&
               has(printed, "class line_joint : public plain::Joint<T, planar::line, "));
@@ -22,16 +24,16 @@ TEST_F(Emit, WritesOneFileOrTwo) {
   EXPECT_NE(read("own/cdot_plain.hpp").find("class Rows"), std::string::npos);
   ASSERT_EQ(cdot("emit line --for plain --single-header -o one/line.hpp").status, 0);
   EXPECT_EQ(files("one").size(), 1u);
-  EXPECT_EQ(read("one/line.hpp"), printed.said);
+  EXPECT_EQ(read("one/line.hpp"), printed.text);
 }
 
 // Two bodies are as many as Box2D's joints take, and each coordinate has a drive of its own.
 TEST_F(Emit, EachCoordinateHasItsDrive) {
   take("planar/wheel.joint");
-  const Result wheel = cdot("emit wheel --for box2d");
-  EXPECT_EQ(wheel.status, 0) << wheel.said;
-  EXPECT_TRUE(has(wheel, "auto& slide() { return this->drives[0]; }")) << wheel.said;
-  EXPECT_TRUE(has(wheel, "auto& angle() { return this->drives[1]; }")) << wheel.said;
+  const ShellResult wheel = cdot("emit wheel --for box2d");
+  EXPECT_EQ(wheel.status, 0) << wheel.text;
+  EXPECT_TRUE(has(wheel, "auto& slide() { return this->drives[0]; }")) << wheel.text;
+  EXPECT_TRUE(has(wheel, "auto& angle() { return this->drives[1]; }")) << wheel.text;
 }
 
 TEST_F(Emit, SaysWhyItCannot) {
@@ -50,17 +52,17 @@ TEST_F(Emit, SaysWhyItCannot) {
       {"lime --for plain", "lime"},
   };
   for (const auto& [arguments, said] : cases) {
-    const Result result = cdot(std::string("emit ") + arguments);
+    const ShellResult result = cdot(std::string("emit ") + arguments);
     EXPECT_EQ(result.status, 2) << arguments;
-    EXPECT_TRUE(has(result, said)) << arguments << ": " << result.said;
+    EXPECT_TRUE(has(result, said)) << arguments << ": " << result.text;
   }
 }
 
 TEST_F(Emit, TakesOnlyWhatIsProved) {
   write("wrong.joint", "joint wrong planar\n  \"x\"\n  angle(a) + angle(b) = 0\n");
-  const Result result = cdot("emit wrong.joint --for plain -o wrong.hpp");
+  const ShellResult result = cdot("emit wrong.joint --for plain -o wrong.hpp");
   EXPECT_EQ(result.status, 2);
-  EXPECT_TRUE(has(result, "wrong.joint:3:3: error: momentum")) << result.said;
+  EXPECT_TRUE(has(result, "wrong.joint:3:3: error: momentum")) << result.text;
   EXPECT_FALSE(fs::exists(place_ / "wrong.hpp"));
 }
 

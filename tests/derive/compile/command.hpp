@@ -1,26 +1,16 @@
 // Runs `cdot compile` as a command.
 #pragma once
 
-#include <cstdio>
 #include <fmt/format.h>
 #include <string>
-#include <sys/wait.h>
+
+#include "tests/shell.hpp"
 
 namespace cdot {
 
-struct Outcome {
-  int status = 0;
-  std::string text;  // of both streams
-};
+using Outcome = test::ShellResult;
 
-inline Outcome run(const std::string& command) {
-  Outcome outcome;
-  FILE* const pipe = popen((command + " 2>&1").c_str(), "r");
-  char part[4096];
-  for (std::size_t n; (n = fread(part, 1, sizeof part, pipe)) > 0;) outcome.text.append(part, n);
-  outcome.status = WEXITSTATUS(pclose(pipe));
-  return outcome;
-}
+inline Outcome run(const std::string& command) { return test::shell(command + " 2>&1"); }
 
 // In the folder of the sources; `setting`: variables of the environment, "CXX=clang++".
 inline Outcome compile(const std::string& arguments, const std::string& setting = {}) {

@@ -1,36 +1,23 @@
 // `cdot diff` from the command line: JSON, exit status, errors.
-#include <array>
-#include <cstdio>
 #include <gtest/gtest.h>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "tests/derive/diff/support.hpp"
+#include "tests/shell.hpp"
 
 namespace cdot::test {
 namespace {
 
 using nlohmann::json;
 
-struct Result {
-  int status = -1;
-  std::string out;  // with the standard error, if requested
-};
-
-Result diff(const std::string& arguments, bool errors_too = true, const std::filesystem::path& specs = specs_folder()) {
+ShellResult diff(const std::string& arguments, bool errors_too = true,
+                 const std::filesystem::path& specs = specs_folder()) {
   const std::string command = std::string(CDOT) + " diff --specs '" + specs.string() + "' " + arguments +
                               (errors_too ? " 2>&1" : " 2>/dev/null");
-  Result result;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return result;
-  std::array<char, 4096> buffer;
-  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) result.out.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) result.status = WEXITSTATUS(status);
-  return result;
+  return shell(command);
 }
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -58,9 +45,9 @@ void expect_item(const json& item, const std::string& where) {
 }
 
 TEST(Command, JsonHasEveryFieldOfEveryEntry) {
-  const Result result = diff("--json", false);
+  const ShellResult result = diff("--json", false);
   EXPECT_EQ(result.status, 1);
-  const json entries = json::parse(result.out);
+  const json entries = json::parse(result.text);
   ASSERT_TRUE(entries.is_array());
   std::map<std::string, int> verdicts;
   int items = 0;
@@ -92,13 +79,13 @@ TEST(Command, JsonHasEveryFieldOfEveryEntry) {
 }
 
 TEST(Command, AnEntryCanBeAskedForByItsId) {
-  const Result one = diff("--json LIN-4", false);
+  const ShellResult one = diff("--json LIN-4", false);
   EXPECT_EQ(one.status, 1);
-  const json entries = json::parse(one.out);
+  const json entries = json::parse(one.text);
   ASSERT_EQ(entries.size(), 1u);
   EXPECT_EQ(entries[0]["id"], "LIN-4");
   // Two joints have an entry GEA-5.
-  EXPECT_EQ(json::parse(diff("--json GEA-5", false).out).size(), 2u);
+  EXPECT_EQ(json::parse(diff("--json GEA-5", false).text).size(), 2u);
   EXPECT_EQ(diff("ANG-1").status, 0);
 }
 
@@ -117,14 +104,14 @@ TEST(Command, ShowsWhatDiffersOfAllInTheSameOrderHoweverManyAtOnce) {
       fs::copy(specs_folder() / file, few / file);
     }
   }
-  const Result all = diff("-j 1", true, few);
+  const ShellResult all = diff("-j 1", true, few);
   EXPECT_EQ(all.status, 1);
-  EXPECT_TRUE(contains(all.out, "LIN-4")) << all.out;
-  EXPECT_FALSE(contains(all.out, "ANG-1 ")) << "entries that agree are shown without --all";
-  EXPECT_EQ(diff("-j 3", true, few).out, all.out);
-  const Result as_json = diff("--json -j 1", true, few);
-  EXPECT_EQ(diff("--json -j 3", true, few).out, as_json.out);
-  EXPECT_EQ(json::parse(as_json.out).front()["id"], "ANG-1");
+  EXPECT_TRUE(contains(all.text, "LIN-4")) << all.text;
+  EXPECT_FALSE(contains(all.text, "ANG-1 ")) << "entries that agree are shown without --all";
+  EXPECT_EQ(diff("-j 3", true, few).text, all.text);
+  const ShellResult as_json = diff("--json -j 1", true, few);
+  EXPECT_EQ(diff("--json -j 3", true, few).text, as_json.text);
+  EXPECT_EQ(json::parse(as_json.text).front()["id"], "ANG-1");
   fs::remove_all(few);
 }
 
@@ -137,20 +124,20 @@ TEST(Command, WhatIsNotThereIsTwoAndSaysSo) {
       {"rolling", "no hand derivation beside "},
   };
   for (const auto& [word, message] : messages) {
-    const Result result = diff(word);
+    const ShellResult result = diff(word);
     EXPECT_EQ(result.status, 2) << word;
-    EXPECT_TRUE(contains(result.out, message)) << word << ": " << result.out;
+    EXPECT_TRUE(contains(result.text, message)) << word << ": " << result.text;
   }
   EXPECT_EQ(diff("--no-such-option").status, 2);
 }
 
 TEST(Command, AHandFileThatCannotBeReadIsTwo) {
   const std::filesystem::path hand = write_hand("line", "  J = [ t', cros(ra, t), -t', 0 ]\n");
-  const Result result = diff("'" + hand.string() + "'");
+  const ShellResult result = diff("'" + hand.string() + "'");
   std::filesystem::remove_all(hand.parent_path());
   EXPECT_EQ(result.status, 2);
-  EXPECT_TRUE(contains(result.out, "there is no operator `cros`")) << result.out;
-  EXPECT_TRUE(contains(result.out, ":3:")) << result.out;
+  EXPECT_TRUE(contains(result.text, "there is no operator `cros`")) << result.text;
+  EXPECT_TRUE(contains(result.text, ":3:")) << result.text;
 }
 
 }  // namespace

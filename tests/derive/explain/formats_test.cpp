@@ -5,30 +5,17 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
-#include <sys/wait.h>
 
 #include "support.hpp"
+#include "tests/shell.hpp"
 
 using namespace cdot::derive;
+using cdot::test::ShellResult, cdot::test::shell;
 namespace fs = std::filesystem;
 
 namespace {
 
-struct Ran {
-  int status = -1;
-  std::string output;  // stdout and stderr
-};
-
-Ran run(const std::string& command) {
-  Ran ran;
-  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) return ran;
-  char buffer[4096];
-  for (std::size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) ran.output.append(buffer, n);
-  const int status = pclose(pipe);
-  ran.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return ran;
-}
+ShellResult run(const std::string& command) { return shell(command + " 2>&1"); }
 
 // An empty folder for this test.
 fs::path folder(const std::string& name) {
@@ -67,7 +54,7 @@ std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
 const std::string python = CDOT_PYTHON;
 
 // Runs sympy in a separate process.
-Ran check_json(const fs::path& files) {
+ShellResult check_json(const fs::path& files) {
   return run(python + " " + quoted(fs::path(CDOT_SOURCE_DIR "/tests/derive/explain") / "check_json.py") + " " +
              quoted(files));
 }
@@ -87,13 +74,13 @@ TEST(ExplainHtml, IsWellFormedAndNeedsNothingFromElsewhere) {
     EXPECT_NE(page.find("prefers-color-scheme: dark"), std::string::npos) << name;
     write(pages / (flat(name) + ".html"), page);
   }
-  const Ran parsed = run(python +
-                         " -c \"import sys, glob, xml.etree.ElementTree as E\n"
-                         "files = glob.glob(sys.argv[1] + '/*.html')\n"
-                         "assert len(files) > 15\n"
-                         "[E.parse(f) for f in files]\" " +
-                         quoted(pages));
-  EXPECT_EQ(parsed.status, 0) << parsed.output;
+  const ShellResult parsed = run(python +
+                                 " -c \"import sys, glob, xml.etree.ElementTree as E\n"
+                                 "files = glob.glob(sys.argv[1] + '/*.html')\n"
+                                 "assert len(files) > 15\n"
+                                 "[E.parse(f) for f in files]\" " +
+                                 quoted(pages));
+  EXPECT_EQ(parsed.status, 0) << parsed.text;
   fs::remove_all(pages);
 }
 
@@ -110,12 +97,12 @@ TEST(ExplainHtml, IndicesStandBelowTheLine) {
                "document.body.dataset.below = ((bottom(index) - bottom(letter)) / 20).toFixed(3); });</script></body>");
   const fs::path place = folder("indices");
   write(place / "page.html", page);
-  const Ran seen =
+  const ShellResult seen =
       run(CDOT_CHROMIUM " --headless --no-sandbox --disable-gpu --virtual-time-budget=2000 --user-data-dir=" +
           quoted(place / "profile") + " --dump-dom " + "file://" + (place / "page.html").string());
   std::smatch below;
-  ASSERT_TRUE(std::regex_search(seen.output, below, std::regex("data-below=\"(-?[0-9.]+)\"")))
-      << seen.output.substr(0, 500);
+  ASSERT_TRUE(std::regex_search(seen.text, below, std::regex("data-below=\"(-?[0-9.]+)\"")))
+      << seen.text.substr(0, 500);
   EXPECT_NEAR(std::stod(below[1]), 0.2, 0.1);
   fs::remove_all(place);
 }
@@ -129,9 +116,9 @@ TEST(ExplainLatex, BalancesAndCompilesWhereATexIsInstalled) {
     for (const char c : latex) ASSERT_LT(static_cast<unsigned char>(c), 128) << name << ": not ASCII";
     if (!has_tex) continue;
     write(papers / (flat(name) + ".tex"), latex);
-    const Ran compiled =
+    const ShellResult compiled =
         run("cd " + quoted(papers) + " && pdflatex -interaction=nonstopmode -halt-on-error " + flat(name) + ".tex");
-    EXPECT_EQ(compiled.status, 0) << compiled.output;
+    EXPECT_EQ(compiled.status, 0) << compiled.text;
   }
   std::cout << (has_tex ? "compiled by pdflatex\n" : "no pdflatex here: balance checked only\n");
   fs::remove_all(papers);
@@ -150,9 +137,9 @@ TEST(ExplainJson, IsTrueForTheCatalogueWhenSympyEvaluatesIt) {
     const Derivation derivation = read_spec(name);
     write(files / (flat(name) + ".json"), explanation_json(derivation));
   }
-  const Ran ran = check_json(files);
-  EXPECT_EQ(ran.status, 0) << ran.output;
-  std::cout << ran.output;
+  const ShellResult ran = check_json(files);
+  EXPECT_EQ(ran.status, 0) << ran.text;
+  std::cout << ran.text;
   fs::remove_all(files);
 }
 
@@ -161,9 +148,9 @@ TEST(ExplainJson, IsTrueForUnusualJointsWhenSympyEvaluatesIt) {
   for (const auto& [name, text] : unusual_specs()) {
     write(files / (name + ".json"), explanation_json(read_text(name, text)));
   }
-  const Ran ran = check_json(files);
-  EXPECT_EQ(ran.status, 0) << ran.output;
-  std::cout << ran.output;
+  const ShellResult ran = check_json(files);
+  EXPECT_EQ(ran.status, 0) << ran.text;
+  std::cout << ran.text;
   fs::remove_all(files);
 }
 
@@ -177,9 +164,9 @@ TEST(ExplainJson, TheCheckFindsAWrongEntry) {
     nlohmann::ordered_json& entry = json[key][0].is_array() ? json[key][0][0] : json[key][0];
     entry = "-(" + entry.get<std::string>() + ")";
     write(files / "line.json", json.dump(1));
-    const Ran ran = check_json(files);
-    EXPECT_EQ(ran.status, 1) << key << "\n" << ran.output;
-    EXPECT_NE(ran.output.find("line"), std::string::npos) << ran.output;
+    const ShellResult ran = check_json(files);
+    EXPECT_EQ(ran.status, 1) << key << "\n" << ran.text;
+    EXPECT_NE(ran.text.find("line"), std::string::npos) << ran.text;
   }
   fs::remove_all(files);
 }
@@ -187,25 +174,24 @@ TEST(ExplainJson, TheCheckFindsAWrongEntry) {
 TEST(ExplainCommand, WritesFilesAndSaysWhatIsWrong) {
   const fs::path out = folder("command");
   const std::string specs = " --specs " + quoted(CDOT_SOURCE_DIR "/specs"), cdot = CDOT;
-  const Ran text = run(cdot + " explain line" + specs);
+  const ShellResult text = run(cdot + " explain line" + specs);
   EXPECT_EQ(text.status, 0);
-  EXPECT_EQ(text.output, explanation_text(explain(read_spec("line"))));
-  const Ran page = run(cdot + " explain line --format html -o " + quoted(out / "line.html") + specs);
-  EXPECT_EQ(page.status, 0) << page.output;
+  EXPECT_EQ(text.text, explanation_text(explain(read_spec("line"))));
+  const ShellResult page = run(cdot + " explain line --format html -o " + quoted(out / "line.html") + specs);
+  EXPECT_EQ(page.status, 0) << page.text;
   EXPECT_TRUE(fs::exists(out / "line.html"));
   const auto singular = [&](const char* joint) {
-    return run(cdot + " explain " + joint + " --format html" + specs)
-        .output.find("<h2>Where K is singular, or a guard");
+    return run(cdot + " explain " + joint + " --format html" + specs).text.find("<h2>Where K is singular, or a guard");
   };
   EXPECT_EQ(singular("line"), std::string::npos);
   EXPECT_NE(singular("spherical_spherical"), std::string::npos);
-  const Ran json = run(cdot + " explain line --json" + specs);
-  EXPECT_EQ(nlohmann::json::parse(json.output)["joint"], "line");
-  EXPECT_NE(run(cdot + " explain --help").output.find("intermediates"), std::string::npos);
+  const ShellResult json = run(cdot + " explain line --json" + specs);
+  EXPECT_EQ(nlohmann::json::parse(json.text)["joint"], "line");
+  EXPECT_NE(run(cdot + " explain --help").text.find("intermediates"), std::string::npos);
 
-  const Ran unknown = run(cdot + " explain lime" + specs);
+  const ShellResult unknown = run(cdot + " explain lime" + specs);
   EXPECT_EQ(unknown.status, 2);
-  EXPECT_NE(unknown.output.find("did you mean `line`"), std::string::npos) << unknown.output;
+  EXPECT_NE(unknown.text.find("did you mean `line`"), std::string::npos) << unknown.text;
   EXPECT_EQ(run(cdot + " explain line --format pdf" + specs).status, 2);
   EXPECT_EQ(run(cdot + " explain line --format html --json" + specs).status, 2);
   EXPECT_EQ(run(cdot + " explain line -o " + quoted(out / "none" / "x.txt") + specs).status, 2);
@@ -216,13 +202,13 @@ TEST(ExplainCommand, WritesFilesAndSaysWhatIsWrong) {
             2);
   std::ifstream after(kept);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(after), {}), "before");
-  const Ran form = run(cdot + " explain line --form local" + specs);
+  const ShellResult form = run(cdot + " explain line --form local" + specs);
   EXPECT_EQ(form.status, 2);
-  EXPECT_NE(form.output.find("for spatial joints"), std::string::npos) << form.output;
+  EXPECT_NE(form.text.find("for spatial joints"), std::string::npos) << form.text;
   write(out / "ball.joint", "joint ball spatial\n  \"pin\"\n  point pa on a\n  point pb on b\n  pa = pb\n");
-  const Ran ball = run(cdot + " explain " + quoted(out / "ball.joint") + " --form euler" + specs);
+  const ShellResult ball = run(cdot + " explain " + quoted(out / "ball.joint") + " --form euler" + specs);
   EXPECT_EQ(ball.status, 0);
-  EXPECT_NE(ball.output.find("J_euler = [ E | -2 S(ra) G_a | -E | 2 S(rb) G_b ]"), std::string::npos) << ball.output;
+  EXPECT_NE(ball.text.find("J_euler = [ E | -2 S(ra) G_a | -E | 2 S(rb) G_b ]"), std::string::npos) << ball.text;
   write(out / "bad.joint", "joint bad planar\n  point pa on\n");
   EXPECT_EQ(run(cdot + " explain " + quoted(out / "bad.joint") + specs).status, 2);
   fs::remove_all(out);

@@ -75,7 +75,7 @@ class DeriveAtOnce : public Derive {
   // Starts in the background, where a shell ignores Ctrl-C, on a spec that takes seconds; the output goes to `said`.
   std::string begin() const {
     fs::copy(fs::path(CDOT_SOURCE_DIR "/specs") / "spatial", place_ / "specs/spatial");
-    const std::string started = run("env --default-signal=INT " CDOT " derive screw line >said 2>&1 & echo $!").said;
+    const std::string started = run("env --default-signal=INT " CDOT " derive screw line >said 2>&1 & echo $!").text;
     return started.substr(0, started.find('\n'));
   }
   static bool ends(const std::string& process) {
@@ -94,18 +94,18 @@ TEST_F(DeriveAtOnce, TheSameBytesHoweverManyAtOnce) {
   for (const char* spec : {"angle.hand", "gear.joint", "gear.hand", "motor.joint", "target.joint"}) {
     take("planar/" + std::string(spec));
   }
-  const Result one = cdot("derive --fresh -j 1");
+  const ShellResult one = cdot("derive --fresh -j 1");
   const auto right = files("generated");
-  EXPECT_EQ(one.status, 0) << one.said;
+  EXPECT_EQ(one.status, 0) << one.text;
   for (const std::string jobs : {"3", "20"}) {
     fs::remove_all(place_ / "generated");
-    EXPECT_EQ(cdot("derive --fresh -j " + jobs).said, one.said);
+    EXPECT_EQ(cdot("derive --fresh -j " + jobs).text, one.text);
     EXPECT_EQ(files("generated"), right);
   }
   // Errors appear in the same order too.
   write("specs/planar/bad.joint", "joint bad planar\n  \"x\"\n  point pa on a\n  norm(pb) = 0\n");
   write("specs/planar/wrong.joint", "joint wrong planar\n  \"x\"\n  angle(a) + angle(b) = 0\n");
-  EXPECT_EQ(cdot("derive --fresh -j 3").said, cdot("derive --fresh -j 1").said);
+  EXPECT_EQ(cdot("derive --fresh -j 3").text, cdot("derive --fresh -j 1").text);
   EXPECT_EQ(files("generated"), right);
   EXPECT_EQ(cdot("derive -j 0").status, 2);
 }
@@ -134,8 +134,8 @@ TEST_F(DeriveAtOnce, LeavesNoProcessBehind) {
 }
 
 TEST_F(DeriveAtOnce, ShowsOnATerminalHowFarItIs) {
-  EXPECT_EQ(cdot("derive").said.find("of 2]"), std::string::npos);
-  const std::string shown = run("script -qec '" CDOT " derive --fresh' /dev/null").said;
+  EXPECT_EQ(cdot("derive").text.find("of 2]"), std::string::npos);
+  const std::string shown = run("script -qec '" CDOT " derive --fresh' /dev/null").text;
   EXPECT_NE(shown.find("[1 of 2] specs/planar/line.joint"), std::string::npos) << shown;
 }
 

@@ -18,16 +18,16 @@ class Recorded : public Derive {
     fs::remove(place_ / "specs/planar/line.joint");
     write("specs/planar/pair.joint", "joint pair planar\n  \"Two angles.\"\n  include angle\n  angle(b) = angle(c)\n");
     first_ = cdot("derive");
-    ASSERT_EQ(first_.status, 0) << first_.said;
+    ASSERT_EQ(first_.status, 0) << first_.text;
     right_ = files("generated");
   }
 
   // The number of the four specs with a recorded proof.
   int on_record(const std::string& arguments = "derive") {
-    const Result result = cdot(arguments);
-    EXPECT_EQ(result.status, 0) << result.said;
-    const std::size_t at = result.said.find(" of 4 specs are proved by the record generated/proofs.csv");
-    return at == std::string::npos ? 0 : result.said[at - 1] - '0';
+    const ShellResult result = cdot(arguments);
+    EXPECT_EQ(result.status, 0) << result.text;
+    const std::size_t at = result.text.find(" of 4 specs are proved by the record generated/proofs.csv");
+    return at == std::string::npos ? 0 : result.text[at - 1] - '0';
   }
 
   void replace(const std::string& file, const std::string& old, const std::string& other) const {
@@ -36,12 +36,12 @@ class Recorded : public Derive {
     write(file, text.replace(text.find(old), old.size(), other));
   }
 
-  Result first_;
+  ShellResult first_;
   std::map<std::string, std::string> right_;
 };
 
 TEST_F(Recorded, GivesTheSameBytes) {
-  EXPECT_EQ(first_.said.find("proved by the record"), std::string::npos);
+  EXPECT_EQ(first_.text.find("proved by the record"), std::string::npos);
   EXPECT_EQ(on_record(), 4);
   EXPECT_EQ(files("generated"), right_);
   EXPECT_EQ(on_record("derive --fresh"), 0);
@@ -57,19 +57,19 @@ TEST_F(Recorded, GivesTheSameBytes) {
 
 TEST_F(Recorded, WhatIsShownIsSaidAgain) {
   take("spatial/p1.joint");
-  const std::string derive = "(" CDOT " derive p1 -o one 2>/dev/null)", fresh = run(derive).said;
+  const std::string derive = "(" CDOT " derive p1 -o one 2>/dev/null)", fresh = run(derive).text;
   EXPECT_NE(fresh.find("p1: shown at 8 random points"), std::string::npos) << fresh;
   fs::remove_all(place_ / "one/spatial");
-  const std::string again = run(derive).said;
+  const std::string again = run(derive).text;
   EXPECT_EQ(again.substr(0, again.find("one:")), fresh.substr(0, fresh.find("one:")));
-  EXPECT_NE(cdot("derive p1 -o one").said.find("1 of 1 specs"), std::string::npos);
+  EXPECT_NE(cdot("derive p1 -o one").text.find("1 of 1 specs"), std::string::npos);
 }
 
 // For all specs that would be a page: the record lists them.
 TEST_F(Recorded, ShownLawsOfAllSpecsAreCounted) {
   take("spatial/p1.joint");
   cdot("derive");
-  const std::string said = cdot("derive").said;
+  const std::string said = cdot("derive").text;
   EXPECT_EQ(said.find("p1: shown"), std::string::npos) << said;
   EXPECT_NE(said.find("shown at 8 random points, listed in generated/proofs.csv: 1\n"), std::string::npos) << said;
 }
@@ -116,19 +116,19 @@ TEST_F(Recorded, AFreshCheckFindsAFalseRecord) {
   const auto right = files("one");
   replace("one/proofs.csv", "isotropic,stiffness ", "isotropic stiffness,");
   EXPECT_EQ(cdot("derive --check p1 -o one").status, 0);
-  const Result check = cdot("derive --check --fresh p1 -o one");
+  const ShellResult check = cdot("derive --check --fresh p1 -o one");
   EXPECT_EQ(check.status, 1);
-  EXPECT_NE(check.said.find("proofs.csv: differs"), std::string::npos) << check.said;
-  const std::string mend = check.said.substr(check.said.rfind("Fix: cdot ") + 10);
+  EXPECT_NE(check.text.find("proofs.csv: differs"), std::string::npos) << check.text;
+  const std::string mend = check.text.substr(check.text.rfind("Fix: cdot ") + 10);
   EXPECT_EQ(cdot(mend.substr(0, mend.find('\n'))).status, 0) << mend;
   EXPECT_EQ(files("one"), right);
 }
 
 TEST_F(Recorded, NotWhatIsNotProved) {
   write("specs/planar/wrong.joint", "joint wrong planar\n  \"x\"\n  angle(a) + angle(b) = 0\n");
-  const Result once = cdot("derive wrong -o one"), again = cdot("derive wrong -o one");
+  const ShellResult once = cdot("derive wrong -o one"), again = cdot("derive wrong -o one");
   EXPECT_EQ(again.status, 2);
-  EXPECT_EQ(again.said, once.said);
+  EXPECT_EQ(again.text, once.text);
   EXPECT_FALSE(fs::exists(place_ / "one"));
 }
 
@@ -136,9 +136,9 @@ TEST_F(Recorded, NotWhatIsNotProved) {
 TEST_F(Recorded, ACoordinateThatBreaksALawIsRefused) {
   write("specs/planar/wrong.joint",
         "joint wrong planar\n  \"x\"\n  angle(a) = angle(b)\n  coordinate sum = angle(a) + angle(b) + angle(c)\n");
-  const Result result = cdot("derive wrong -o one");
-  EXPECT_EQ(result.status, 2) << result.said;
-  EXPECT_NE(result.said.find("wrong.joint:4:14: error: momentum is conserved"), std::string::npos) << result.said;
+  const ShellResult result = cdot("derive wrong -o one");
+  EXPECT_EQ(result.status, 2) << result.text;
+  EXPECT_NE(result.text.find("wrong.joint:4:14: error: momentum is conserved"), std::string::npos) << result.text;
 }
 
 TEST(Statement, ChangesWithEveryPartOfADerivation) {

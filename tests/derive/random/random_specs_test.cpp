@@ -39,20 +39,20 @@ Seeds seeds(std::uint64_t count) {
 
 class RandomSpecs : public Derive {
  protected:
-  Result answer(const std::string& command, const RandomSpec& spec) const {
+  ShellResult answer(const std::string& command, const RandomSpec& spec) const {
     write(spec.name + ".joint", spec.text);
     return cdot(command + " --specs " CDOT_SOURCE_DIR "/specs " + spec.name + ".joint");
   }
 };
 
 // An error names the line, the column and the reason. No number is infinite or none at all.
-void expect_a_clear_answer(const RandomSpec& spec, const Result& result) {
+void expect_a_clear_answer(const RandomSpec& spec, const ShellResult& result) {
   static const std::regex placed("spec_[0-9]+\\.joint:[0-9]+:[0-9]+: error: [^\n]{10,}"), broken("\\b(nan|inf)\\b");
   EXPECT_TRUE(result.status >= 0 && result.status <= 2) << result.status << "\n" << spec.text;
-  EXPECT_TRUE(result.status != 2 || std::regex_search(result.said, placed)) << result.said << spec.text;
-  EXPECT_FALSE(std::regex_search(result.said, broken)) << spec.text;
-  EXPECT_EQ(result.said.find("killed by"), std::string::npos) << spec.text;
-  EXPECT_EQ(result.said.find("failed:"), std::string::npos) << result.said << spec.text;
+  EXPECT_TRUE(result.status != 2 || std::regex_search(result.text, placed)) << result.text << spec.text;
+  EXPECT_FALSE(std::regex_search(result.text, broken)) << spec.text;
+  EXPECT_EQ(result.text.find("killed by"), std::string::npos) << spec.text;
+  EXPECT_EQ(result.text.find("failed:"), std::string::npos) << result.text << spec.text;
 }
 
 std::size_t longest_line(const std::string& text) {
@@ -68,9 +68,9 @@ TEST_F(RandomSpecs, AreExplainedOrRefused) {
   for (std::uint64_t seed = all.first; seed < all.first + all.count; ++seed) {
     const RandomSpec spec = random_spec(seed);
     EXPECT_LE(std::ranges::count(spec.text, '\n'), 40) << spec.text;
-    const Result result = answer("explain", spec);
+    const ShellResult result = answer("explain", spec);
     expect_a_clear_answer(spec, result);
-    EXPECT_LT(result.said.size(), most_letters) << spec.text;
+    EXPECT_LT(result.text.size(), most_letters) << spec.text;
     accepted += result.status == 0 ? 1 : 0;
     mistakes += spec.mistake.empty() ? 0 : 1;
     EXPECT_TRUE(spec.mistake.empty() || result.status == 2) << spec.mistake << "\n" << spec.text;
@@ -86,12 +86,12 @@ TEST_F(RandomSpecs, AreChecked) {
   for (std::uint64_t seed = all.first; seed < all.first + all.count; ++seed) {
     const RandomSpec spec = random_spec(seed);
     if (!all.chosen && slow.contains(seed)) continue;
-    const Result result = answer("check -j1", spec);
+    const ShellResult result = answer("check -j1", spec);
     expect_a_clear_answer(spec, result);
-    EXPECT_LT(longest_line(result.said), longest_message) << spec.text;
-    EXPECT_EQ(result.said.find("but not proved"), std::string::npos) << "a right joint is refused:\n" << spec.text;
+    EXPECT_LT(longest_line(result.text), longest_message) << spec.text;
+    EXPECT_EQ(result.text.find("but not proved"), std::string::npos) << "a right joint is refused:\n" << spec.text;
     if (result.status >= 0 && result.status <= 2) ++status[result.status];
-    given_up += result.said.find("note: the search for poses at which K is singular was given up: too long") !=
+    given_up += result.text.find("note: the search for poses at which K is singular was given up: too long") !=
                 std::string::npos;
   }
   std::printf("clean: %d, with problems: %d, unreadable: %d; %d with a search given up\n", status[0], status[1],

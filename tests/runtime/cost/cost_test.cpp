@@ -1,12 +1,13 @@
 // A scene pays only for the features that it uses: callgrind counts the instructions of step(), and the counts must be
 // equal.
-#include <array>
-#include <cstdio>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <iterator>
 #include <string>
 
+#include "tests/shell.hpp"
+
+namespace cdot::test {
 namespace {
 
 struct Counted {
@@ -21,11 +22,9 @@ Counted count(const std::string& program, const std::string& arguments) {
                               " --toggle-collect=measured_steps " +
                               program + " " + arguments + " 2>&1";
   Counted run;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (!pipe) return run;
-  std::array<char, 512> line;
-  while (std::fgets(line.data(), line.size(), pipe)) run.output += line.data();
-  EXPECT_EQ(pclose(pipe), 0) << command << "\n" << run.output;
+  const ShellResult outcome = shell(command);
+  run.output = outcome.text;
+  EXPECT_EQ(outcome.status, 0) << command << "\n" << run.output;
   const auto at = run.output.find("Collected : ");
   if (at != std::string::npos) run.instructions = std::stol(run.output.substr(at + 12));
   EXPECT_GT(run.instructions, 1000) << command << "\n" << run.output;
@@ -96,3 +95,4 @@ TEST(Cost, SleepingIslandsCostNoInstruction) {
 }
 
 }  // namespace
+}  // namespace cdot::test

@@ -1,15 +1,16 @@
 // Whole runs of cdot-run over many islands: callgrind counts all instructions, from reading the scene to the summary.
 // They must grow in proportion to the islands, which are all equal and at one place: far from the origin round-off
 // costs rounds of Newton.
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <string>
-#include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/shell.hpp"
+
+namespace cdot::test {
 namespace {
 
 struct Many {
@@ -70,13 +71,10 @@ class ManyIslands : public testing::TestWithParam<Many> {
     const std::string command =
         std::string(steady_counts) + CDOT_VALGRIND " --tool=callgrind --callgrind-out-file=/dev/null " + CDOT_RUN +
         " simulate " + scene + " " + replaced(GetParam().options, "OUT", folder_ / "out") + " 2>&1";
-    std::string output;
-    std::array<char, 512> line;
-    FILE* pipe = popen(command.c_str(), "r");
-    while (std::fgets(line.data(), line.size(), pipe)) output += line.data();
-    EXPECT_EQ(pclose(pipe), 0) << command << "\n" << output;
-    const auto at = output.find("Collected : ");
-    return at == std::string::npos ? 0 : std::stod(output.substr(at + 12));
+    const ShellResult outcome = shell(command);
+    EXPECT_EQ(outcome.status, 0) << command << "\n" << outcome.text;
+    const auto at = outcome.text.find("Collected : ");
+    return at == std::string::npos ? 0 : std::stod(outcome.text.substr(at + 12));
   }
 
  private:
@@ -99,3 +97,4 @@ INSTANTIATE_TEST_SUITE_P(Of, ManyIslands, testing::ValuesIn(all),
                          [](const auto& one) { return std::string(one.param.name); });
 
 }  // namespace
+}  // namespace cdot::test

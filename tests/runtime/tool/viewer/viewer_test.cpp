@@ -142,7 +142,7 @@ TEST(Pictures, NamesCannotBreakOutOfThePage) {
   scene.title = "</script><b>\"&";
   const std::string page = html_page(scene, film_of(scene));
   EXPECT_EQ(page.find("</script><b>"), std::string::npos);
-  EXPECT_NE(page.find("&lt;/script>&lt;b>&quot;&amp;"), std::string::npos);
+  EXPECT_NE(page.find("&lt;/script&gt;&lt;b&gt;&quot;&amp;"), std::string::npos);
 }
 
 TEST(Pictures, EverySceneCanBeDrawn) {
