@@ -57,9 +57,9 @@ class EquationWriter {
     for (std::size_t k = 0; k < system().blocks().size(); ++k) {
       const RowBlock& joint = system().blocks()[k];
       Values C;
-      if (!joint.speed) C = blocks_.call(algebra, joint, "position", blocks_.inputs(algebra, joint));
+      if (!joint.motor) C = blocks_.call(algebra, joint, "position", blocks_.inputs(algebra, joint));
       for (std::size_t r = 0; r < joint.rows->count(); ++r)
-        algebra.output(element("C", system().first_row(k) + r), joint.speed ? algebra.value(0) : C.at(element("C", r)));
+        algebra.output(element("C", system().first_row(k) + r), joint.motor ? algebra.value(0) : C.at(element("C", r)));
     }
     out_.errors = algebra.finish();
   }

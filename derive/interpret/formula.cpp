@@ -7,6 +7,7 @@
 #include "derive/derivation/derivation.hpp"
 #include "derive/expression/components.hpp"
 #include "derive/expression/symbols.hpp"
+#include "derive/interpret/program_in_time.hpp"
 #include "derive/interpret/tape.hpp"
 #include "derive/language/evaluate.hpp"
 #include "derive/syntax/parser.hpp"
@@ -218,21 +219,29 @@ struct FormulaInTime::Program {
   NamedTape tape;
 };
 
-FormulaInTime::Reading FormulaInTime::read(std::string_view text, std::string_view unit) {
+ProgramInTime program_in_time(std::string_view text, std::string_view unit) {
   const auto pool = std::make_shared<Pool>(2);
   const Vocabulary no_words;
   Names names(*pool, no_words);
-  Reading reading;
-  const Value value = read_value(text, names, *pool, unit, reading.mistakes);
-  if (!reading.mistakes.empty()) return reading;
+  ProgramInTime read;
+  const Value value = read_value(text, names, *pool, unit, read.mistakes);
+  if (!read.mistakes.empty()) return read;
   Joint nothing;
   nothing.pool = pool;
   const Expr rate = time_derivative(value.e, nothing), acceleration = time_derivative(rate, nothing);
   Components components;
+  read.program = assemble({{"value", components.of(value.e)},
+                           {"rate", components.of(rate)},
+                           {"acceleration", components.of(acceleration)}});
+  return read;
+}
+
+FormulaInTime::Reading FormulaInTime::read(std::string_view text, std::string_view unit) {
+  ProgramInTime written = program_in_time(text, unit);
+  Reading reading{{}, std::move(written.mistakes)};
+  if (!reading.mistakes.empty()) return reading;
   auto program = std::make_shared<Program>();
-  program->tape = NamedTape(assemble({{"value", components.of(value.e)},
-                                      {"rate", components.of(rate)},
-                                      {"acceleration", components.of(acceleration)}}));
+  program->tape = NamedTape(written.program);
   const int length = static_cast<int>(text.size());
   if (program->tape.tape().registers > most_registers)
     reading.mistakes.push_back({0, length, "the expression with its derivatives has more than 512 operations",

@@ -99,8 +99,8 @@ void BoundedSystem::output_forces(const Values& a, int h) {
     }
     const BoundWriter::Kick forces = rows_[b].kick(algebra_.value(1));
     const int missed = algebra_.sum({{rows_[b].rate(), forces.bias}, {1, 1}});
-    output_row(b, algebra_.sum({{rows_[b].gamma(), rows_[b].along(a), algebra_.times(per_half, missed)}, {1, -1, -1}}),
-               forces);
+    const int asked = algebra_.sum({{rows_[b].gamma(), rows_[b].rate_change()}, {1, 1}});
+    output_row(b, algebra_.sum({{asked, rows_[b].along(a), algebra_.times(per_half, missed)}, {1, -1, -1}}), forces);
   }
   output_S({});
 }

@@ -36,7 +36,9 @@ int BoundWriter::along(const Values& velocities) const {
 
 Values BoundWriter::bounds() const {
   const auto number = [&](std::size_t k, const char* name) {
-    return algebra_.value(std::clamp(effect_.numbers[k], -boundless, boundless), block_.name + "_" + name);
+    const std::string full = block_.name + "_" + name;
+    return effect_.in_time.contains(k) ? blocks_.number(algebra_, effect_, k, full)
+                                       : algebra_.value(std::clamp(effect_.numbers[k], -boundless, boundless), full);
   };
   switch (effect_.law) {
     case Effect::motor:
@@ -61,6 +63,12 @@ bool BoundWriter::is_rate() const {
 bool BoundWriter::are_equal(int lower, int upper) const {
   const std::optional<double> low = algebra_.constant(lower), high = algebra_.constant(upper);
   return effect_.law == Effect::lock || (low && high && *low >= *high);
+}
+
+int BoundWriter::rate_change() const {
+  const auto speed = effect_.in_time.find(0);
+  if (effect_.law != Effect::motor || speed == effect_.in_time.end()) return algebra_.value(0);
+  return blocks_.in_time(algebra_, speed->second, "rate", block_.name + "_speed");
 }
 
 BoundWriter::Kick BoundWriter::kick(int h) const {

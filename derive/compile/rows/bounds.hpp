@@ -11,6 +11,7 @@ class BoundWriter {
 
   const RowBlock& block() const { return block_; }
   const Values& inputs() const { return in_; }  // with J
+  int rate_change() const;                      // of the rate that a motor prescribes
   // J v of these velocities alone, by the names of components.
   int along(const Values& velocities) const;
   int drift() const { return law_.drift()[0]; }  // dC/dt

@@ -39,8 +39,12 @@ Program JointRows::evaluate(Constants& constants, std::vector<std::string>& stor
       J_[k][field] = store(joint.name + "_" + field, in["J." + field]);
     }
     const Values C_t = joint.rows->has_rates ? blocks_.call(algebra, joint, "time_derivative", in) : Values{};
-    for (std::size_t r = 0, row = system_.first_row(k); r < joint.rows->count() && !C_t.empty(); ++r, ++row)
-      rates_[row] = store(system_.names()[row] + "_rate", C_t.at(derive::element("C_t", r)));
+    for (std::size_t r = 0, row = system_.first_row(k); r < joint.rows->count(); ++r, ++row) {
+      Summands drift;
+      if (!C_t.empty()) drift.add(1, C_t.at(derive::element("C_t", r)));
+      if (joint.motor && joint.motor->speed_in_time) drift.add(-1, blocks_.speed(algebra, joint));
+      if (!drift.args.empty()) rates_[row] = store(system_.names()[row] + "_rate", algebra.sum(drift));
+    }
     system_.add_block(algebra, k, in);
   }
   system_.couple(algebra);
@@ -68,7 +72,7 @@ std::vector<int> JointRows::rates(Algebra& algebra, const Values& velocities) co
     const Values Jv = blocks_.call(algebra, joint, "velocity", in);
     for (std::size_t r = 0; r < joint.rows->count(); ++r) {
       Summands rate{{Jv.at(derive::element("Jv", r)), drift(algebra, rates.size())}, {1, 1}};
-      if (joint.speed) rate.add(-1, algebra.value(*joint.speed, joint.name + "_speed"));
+      if (joint.motor && !joint.motor->speed_in_time) rate.add(-1, blocks_.speed(algebra, joint));
       rates.push_back(algebra.sum(rate));
     }
   }

@@ -25,7 +25,7 @@ class JointRows {
   Values inputs(Algebra& algebra, std::size_t block) const;
   // J v + dC/dt of all rows, with these velocities in place of v, if there are any.
   std::vector<int> rates(Algebra& algebra, const Values& velocities) const;
-  // dC/dt of a row; 0 for most.
+  // dC/dt of a row; 0 for most; of a motor whose speed follows a function of time, what it takes from the rate.
   int drift(Algebra& algebra, std::size_t row) const;
   int factor(Algebra& algebra, const std::string& name) const { return read(algebra, factor_.at(name)); }
 
@@ -40,7 +40,7 @@ class JointRows {
   const RowBlocks& blocks_;
   RowSystem system_;
   std::vector<std::map<std::string, Stored>> J_;  // by block and field
-  std::map<std::size_t, Stored> rates_;           // dC/dt, by row
+  std::map<std::size_t, Stored> rates_;           // drift(), by row
   std::map<std::string, Stored> factor_;
 };
 

@@ -154,7 +154,7 @@ class Accelerated {
       answers.add(in, {});
       const Values g = blocks.call(algebra, joint, "gamma", in);
       for (std::size_t r = 0; r < joint.rows->count(); ++r)
-        rest.push_back(algebra.sum({{g.at(element("g", r))}, {-1}}));
+        rest.push_back(algebra.sum({{g.at(element("g", r)), faster(blocks, algebra, joint)}, {-1, -1}}));
     }
     end = answers.to(free_accelerations(blocks, algebra), [&](std::size_t row) { return rest[row]; });
     for (std::size_t row = 0; row < rest.size(); ++row) algebra.output(element("lambda", row), end.lambda[row]);
@@ -162,6 +162,11 @@ class Accelerated {
 
   Answers answers;
   Answers::Answer end;
+
+ private:
+  static int faster(const RowBlocks& blocks, Algebra& algebra, const RowBlock& joint) {
+    return joint.motor ? blocks.speed_rate(algebra, joint) : algebra.value(0);
+  }
 };
 
 }  // namespace

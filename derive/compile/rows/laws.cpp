@@ -55,7 +55,7 @@ Values LawWriter::call(const Program& function) const {
   const SpecPrograms& law = spec();
   Values in;
   for (std::size_t p = 0; p < law.parameters.size(); ++p)
-    in[law.parameters[p]] = algebra_.value(effect_.numbers[p], number_name(block_, law.parameters[p]));
+    in[law.parameters[p]] = rows_.number(algebra_, effect_, p, number_name(block_, law.parameters[p]));
   in["pi"] = algebra_.value(std::numbers::pi);
   in["time"] = algebra_.input("time");
   for (const auto& [leaf, place] : law.leaves) {
@@ -77,7 +77,7 @@ int LawWriter::most(int a, int b) const {
 std::vector<int> LawWriter::force_without_limits() const {
   if (effect_.law == Effect::spring) return spring_force();
   if (effect_.law == Effect::load)
-    return std::vector<int>(C_.size(), algebra_.value(effect_.numbers[0], block_.name + "_force"));
+    return std::vector<int>(C_.size(), rows_.number(algebra_, effect_, 0, block_.name + "_force"));
   return elements(call(spec().rows.function("force")), "F", C_.size());
 }
 
@@ -183,7 +183,7 @@ std::vector<int> LawWriter::bound(const Values& slopes, const std::string& lette
 
 int LawWriter::energy() const {
   if (effect_.law == Effect::load)
-    return algebra_.sum({{algebra_.times(algebra_.value(effect_.numbers[0], block_.name + "_force"), C_[0])}, {-1}});
+    return algebra_.sum({{algebra_.times(rows_.number(algebra_, effect_, 0, block_.name + "_force"), C_[0])}, {-1}});
   if (effect_.law != Effect::spring)
     return spec().rows.has("energy") ? call(spec().rows.function("energy")).at("E") : algebra_.value(0);
   const Slopes slopes = spring_slopes();

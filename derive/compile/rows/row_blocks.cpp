@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <numbers>
+#include <stdexcept>
 
+#include "derive/interpret/program_in_time.hpp"
 #include "derive/kernel/factor.hpp"
+#include "derive/program/print.hpp"
 
 namespace cdot::compile {
 
@@ -47,7 +51,7 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
     if (joint.coordinate.empty()) continue;
     joints_.back().owner = owner_of(names.joints[j], joint.name);
     joints_.back().rows = &spec.coordinates.at(joint.coordinate);
-    joints_.back().speed = &joint.speed;
+    joints_.back().motor = &joint;
   }
   for (std::size_t e = 0; e < mechanism.effects.size(); ++e)
     effects_.push_back(block_of(names.effects[e], mechanism.effects[e]));
@@ -74,9 +78,48 @@ RowBlock RowBlocks::block_of(const std::string& name, const Effect& effect) cons
   const SpecPrograms& spec = types_.at(effect.type);
   const bool own = effect.coordinate.empty() && effect.law == Effect::bound;
   const std::string& coordinate = own ? spec.bounded[effect.row].coordinate : effect.coordinate;
-  return {name,           effect.coordinate.empty() ? name : owner_of(name, effect.name),
-          &spec,          coordinate.empty() ? &spec.rows : &spec.coordinates.at(coordinate),
-          &effect.bodies, &effect.parameters};
+  const RowBlock block{name,           effect.coordinate.empty() ? name : owner_of(name, effect.name),
+                       &spec,          coordinate.empty() ? &spec.rows : &spec.coordinates.at(coordinate),
+                       &effect.bodies, &effect.parameters};
+  if (effect.coordinate.empty()) check_functions(effect, block);
+  return block;
+}
+
+// dC/dt and gamma know nothing of their rates.
+void RowBlocks::check_functions(const Effect& effect, const RowBlock& block) const {
+  const std::set<std::string> read = derive::inputs_read(block.rows->function("position"), {});
+  for (const auto& [number, function] : effect.in_time)
+    if (const std::string& field = block.spec->parameters[number]; read.contains(field))
+      throw std::runtime_error(
+          fmt::format("{}: cdot compile knows no place or direction that follows a function of time, as {} does. Fix: "
+                      "leave it to cdot-run",
+                      effect.name, field.starts_with("p.") ? field.substr(2) : field));
+}
+
+int RowBlocks::number(Algebra& algebra, const Effect& effect, std::size_t k, const std::string& name) const {
+  const auto function = effect.in_time.find(k);
+  return function == effect.in_time.end() ? algebra.value(effect.numbers[k], name)
+                                          : in_time(algebra, function->second, "value", name);
+}
+
+int RowBlocks::in_time(Algebra& algebra, const InTime& function, const std::string& derivative,
+                       const std::string& name) const {
+  const Program written = program_in_time(function.text, function.unit).program;
+  const auto input = [&](const std::string& text) {
+    return text == "time" ? algebra.input("time") : algebra.value(std::numbers::pi);
+  };
+  return algebra.inlined(written, input, name).at(derivative);
+}
+
+int RowBlocks::speed(Algebra& algebra, const RowBlock& block) const {
+  const Joint& motor = *block.motor;
+  const std::string name = block.name + "_speed";
+  return motor.speed_in_time ? in_time(algebra, *motor.speed_in_time, "value", name) : algebra.value(motor.speed, name);
+}
+
+int RowBlocks::speed_rate(Algebra& algebra, const RowBlock& block) const {
+  const Joint& motor = *block.motor;
+  return motor.speed_in_time ? in_time(algebra, *motor.speed_in_time, "rate", block.name + "_speed") : algebra.value(0);
 }
 
 Values RowBlocks::inputs(Algebra& algebra, const RowBlock& block) const {

@@ -28,7 +28,7 @@ struct RowBlock {
   const RowPrograms* rows = nullptr;
   const std::vector<int>* bodies = nullptr;
   const std::vector<double>* parameters = nullptr;
-  const double* speed = nullptr;  // of a motor, the rate of its row
+  const Joint* motor = nullptr;  // whose speed is the rate of its row
 };
 
 // Forces by body and column.
@@ -50,6 +50,14 @@ class RowBlocks {
   // The spec whose law the effect has.
   const SpecPrograms& law(const Effect& effect) const;
   const std::string& body_name(int index) const { return names_.bodies[static_cast<std::size_t>(index)]; }
+
+  // A number of an effect's law, which may follow a function of time.
+  int number(Algebra& algebra, const Effect& effect, std::size_t k, const std::string& name) const;
+  // A function of time: "value", "rate" or "acceleration".
+  int in_time(Algebra& algebra, const InTime& function, const std::string& derivative, const std::string& name) const;
+  // The speed of a motor, and its derivative.
+  int speed(Algebra& algebra, const RowBlock& block) const;
+  int speed_rate(Algebra& algebra, const RowBlock& block) const;
 
   // Inputs of the kernel, in this scene: places and velocities of its bodies, masses, parameters.
   Values inputs(Algebra& algebra, const RowBlock& block) const;
@@ -77,6 +85,7 @@ class RowBlocks {
   // The joint on whose coordinate an effect of that name acts: they share its parameters. Else `name`.
   std::string owner_of(const std::string& name, const std::string& effect) const;
   RowBlock block_of(const std::string& name, const Effect& effect) const;
+  void check_functions(const Effect& effect, const RowBlock& block) const;
   void add_body(Algebra& algebra, Values& in, const std::string& L, int index) const;
   void add_place(Algebra& algebra, Values& in, const std::string& L, int index) const;
   void add_masses(Algebra& algebra, Values& in, const std::string& L, int index) const;

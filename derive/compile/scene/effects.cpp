@@ -2,10 +2,12 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 #include <cdot/effects.hpp>
 
 #include "runtime/state/world_data.hpp"
+#include "runtime/tool/scene/profile.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -27,6 +29,7 @@ class EffectReader {
       if (record(j).places.empty()) continue;  // between immovable bodies
       if (world_.joint_type(j).is_effect) add_of_joint(source, j);
       else if (source.definition.soft) add_soft(source.name, j);
+      else if (is_rope(world_.joint_type(j))) add_rope(source, j);
       add_on_coordinates(source, j);
     }
     for (int j = joints; j < world_.joint_count(); ++j)
@@ -61,6 +64,7 @@ class EffectReader {
     Effect effect = along(source.name, joint);
     effect.law_type = effect.type;
     effect.numbers = effect.parameters;
+    if (!note_functions(source, joint, -1, effect)) return;
     const std::vector<Place>& places = record(joint).places;
     const auto rows = world_.joint_type(joint).row_names.size();
     if (rows > 0 && has_limits(places[0]) && mechanism_.method == Method::euler) {
@@ -80,10 +84,21 @@ class EffectReader {
     if (law.cone_rows > 0) refuse_(source, fmt::format("{}: one force along several coordinates", effect.name));
     else if (law.by_load) refuse_(source, fmt::format("{}: bounds that grow with a load", effect.name));
     else if (law.distance) refuse_(source, fmt::format("{}: events", effect.name));
+    else if (mechanism_.method == Method::rattle && effect.law == Effect::bound && !law.error &&
+             !effect.in_time.empty())
+      refuse_(source, fmt::format("{}: a rate of a spec that follows a function of time by rattle", effect.name));
     else if (!mechanism_.on_accelerations()) mechanism_.bounded.push_back(effect);
     else
       refuse_(source, fmt::format("{} by {}, which has to find when it begins to slip, to hold or to touch",
                                   effect.name, mechanism_.method_name));
+  }
+
+  // C >= 0
+  void add_rope(const SceneJoint& source, int joint) {
+    Effect effect = along(source.name, joint);
+    effect.law = Effect::limit;
+    effect.numbers = {0, std::numeric_limits<double>::infinity()};
+    add_bounded(source, effect, record(joint).places[0]);
   }
 
   void add_soft(const std::string& name, int joint) {
@@ -100,18 +115,20 @@ class EffectReader {
     const std::vector<Place>& places = record(joint).places;
     std::size_t next = places.size() - count;
     for (const CoordinateEffects& on : source.effects)
-      on.each([&](const auto& effect) { add_on_coordinate(source, joint, on.coordinate, effect, places[next++]); });
+      on.each([&](const auto& effect) { add_on_coordinate(source, joint, on.coordinate, effect, next++); });
   }
 
   template <class Kind>
   void add_on_coordinate(const SceneJoint& source, int joint, const std::string& coordinate, const Kind& kind,
-                         const Place& place) {
+                         std::size_t number) {
+    const Place place = record(joint).places[number];
     Effect effect = along(source.name + "." + coordinate, joint);
     effect.coordinate = coordinate;
-    if constexpr (std::is_same_v<Kind, Motor>)
-      if (mechanism_.on_accelerations() && std::isinf(kind.max_force)) return add_strong_motor(effect, kind.speed);
     effect.numbers = constants_of(place);
+    if (!note_functions(source, joint, static_cast<int>(number), effect)) return;
     const std::string what = name_law(kind, effect);
+    if (effect.law == Effect::motor && mechanism_.on_accelerations() && std::isinf(effect.numbers[1]))
+      return add_strong_motor(effect);
     effect.name += "." + what;
     if (batch_of(place).ops->counters > 0) effect.angle = mechanism_.angles++;
     if (is_bounded(place)) return add_bounded(source, effect, place);
@@ -124,12 +141,37 @@ class EffectReader {
   }
 
   // It never slips, so it needs no events.
-  void add_strong_motor(const Effect& effect, double speed) {
+  void add_strong_motor(const Effect& effect) {
     mechanism_.joints.push_back(
-        {effect.name + ".motor", effect.type, effect.bodies, effect.parameters, effect.coordinate, speed});
+        {effect.name + ".motor", effect.type, effect.bodies, effect.parameters, effect.coordinate, effect.numbers[0]});
+    if (const auto speed = effect.in_time.find(0); speed != effect.in_time.end())
+      mechanism_.joints.back().speed_in_time = speed->second;
   }
 
+  // Notes which numbers follow functions of time. `place`: of its rows; -1: its own. False if it is refused.
+  bool note_functions(const SceneJoint& source, int joint, int place, Effect& effect) {
+    for (const auto& [of_place, drive] : record(joint).drives) {
+      if (of_place != place) continue;
+      const WrittenProfile* const written = written_profile(drive.profile);
+      if (!written || written->text.empty()) {
+        refuse_(source, fmt::format("{}: numbers that follow a table", effect.name));
+        return false;
+      }
+      effect.in_time[static_cast<std::size_t>(drive.number)] = {written->text, written->unit};
+    }
+    return true;
+  }
+
+  // Of the effects that have a short form, the ones whose numbers follow functions of time are read as specs.
   std::string name_law(const SpecEffect& kind, Effect& effect) {
+    if (kind.type == "motor") return name_law(Motor{}, effect);
+    if (kind.type == "load") return name_law(Load{}, effect);
+    if (kind.type == "friction") {
+      std::map<std::size_t, InTime> in_time;
+      for (const auto& [number, function] : effect.in_time) in_time[number + 1] = function;
+      effect.in_time = std::move(in_time);
+      return name_law(DryFriction{}, effect);
+    }
     const JointType& type = *find_coordinate_effect(kind.type);
     effect.law = type.row_names.empty() ? Effect::bound : Effect::of_spec;
     return effect.law_type = kind.type;
@@ -167,6 +209,8 @@ class EffectReader {
 };
 
 }  // namespace
+
+bool is_rope(const JointType& type) { return type.row_kinds.size() == 1 && type.row_kinds[0] == RowKind::inequality; }
 
 template <class S>
 void read_effects(const Scene& scene, BasicWorld<S>& world, const RefuseEffect& refuse, Mechanism& mechanism) {

@@ -14,6 +14,9 @@ namespace cdot::compile {
 // refuse(joint of the scene, or null for a spring; what it is): for effects that cannot be compiled.
 using RefuseEffect = std::function<void(const SceneJoint&, const std::string&)>;
 
+// True for a joint whose one row is an inequality: it is a row with bounds.
+bool is_rope(const JointType& type);
+
 template <class S>
 void read_effects(const Scene& scene, BasicWorld<S>& world, const RefuseEffect& refuse, Mechanism& mechanism);
 

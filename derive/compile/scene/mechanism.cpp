@@ -40,19 +40,16 @@ void refuse_joint(const SceneJoint& joint, const Scene& scene, Refusals& refusal
     refusals.add(joint.where, fmt::format("{}: cdot compile knows no {}", name, part), "leave it to cdot-run");
   };
   if (joint.breaking) refuse("joints that break");
-  const auto follows = [](const CoordinateEffects& effects) {
-    return std::ranges::any_of(effects.specs, [](const SpecEffect& effect) { return in_time(effect.parameters); });
-  };
-  if (in_time(joint.definition.parameters) || std::ranges::any_of(joint.effects, follows))
-    refuse("numbers that follow functions of time");
   const JointType* type = find_joint_type(scene.dimension, joint.definition.type);
+  if (type && !type->is_effect && in_time(joint.definition.parameters))
+    refuse("joints whose numbers follow functions of time");
   const auto has = [&](RowKind kind) {
     return type && std::ranges::find(type->row_kinds, kind) != type->row_kinds.end();
   };
   if (has(RowKind::velocity) && scene.settings.integrator == Integrator::rattle)
     refuse(fmt::format("rows of velocities by rattle, as {} has", type->name));
-  if (has(RowKind::inequality))
-    refuse(fmt::format("inequality, as {} has: it would end the fixed pattern of the equations", type->name));
+  if (has(RowKind::inequality) && !is_rope(*type))
+    refuse(fmt::format("inequality beside other rows, as {} has", type->name));
 }
 
 void refuse_parts(const Scene& scene) {
@@ -214,7 +211,8 @@ void add_parts(const Scene& scene, Mechanism& mechanism) {
   ground.pose =
       S::dimension == Dimension::planar ? std::vector<double>{0, 0, 0} : std::vector<double>{0, 0, 0, 1, 0, 0, 0};
   for (int i = 0; i < static_cast<int>(scene.joints.size()); ++i)
-    if (!world.joint_type(i).is_effect && !scene.joints[static_cast<std::size_t>(i)].definition.soft)
+    if (!world.joint_type(i).is_effect && !is_rope(world.joint_type(i)) &&
+        !scene.joints[static_cast<std::size_t>(i)].definition.soft)
       mechanism.joints.push_back(joint_of(scene, world, i));
   add_effects(scene, world, mechanism);
   note_own_specs(mechanism);

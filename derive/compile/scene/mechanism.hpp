@@ -3,6 +3,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,11 @@ struct Body {
   double linear_drag = 0, angular_drag = 0;  // [1/s]
 };
 
+// A number that follows a function of time: an expression in a unit, as the scene has written it.
+struct InTime {
+  std::string text, unit;
+};
+
 struct Joint {
   std::string name, type;
   std::vector<int> bodies;         // indices into Mechanism::bodies
@@ -32,6 +38,7 @@ struct Joint {
   // Of a motor without a largest force, whose rate is an equation: the coordinate of that spec, and its speed.
   std::string coordinate{};
   double speed = 0;
+  std::optional<InTime> speed_in_time{};
 };
 
 // A force along each row of a spec, or along one of its coordinates; a row with bounds on a coordinate.
@@ -56,6 +63,7 @@ struct Effect {
   int angle = -1;        // of a coordinate in space that counts whole turns: its number among the mechanism's
   std::size_t row = 0;
   std::vector<double> numbers;
+  std::map<std::size_t, InTime> in_time{};  // those of `numbers` that follow functions of time
 };
 
 enum class Method { euler, rattle, rk4, dop853 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
+#include <mutex>
 
 #include "runtime/tool/scene/csv.hpp"
 #include "runtime/tool/scene/read.hpp"
@@ -21,6 +23,55 @@ std::string range_of(const NumberNeed& need) {
   if (std::isinf(need.below)) return fmt::format("above {:.6g}", need.above);
   if (std::isinf(need.above)) return fmt::format("below {:.6g}", need.below);
   return fmt::format("between {:.6g} and {:.6g}", need.above, need.below);
+}
+
+bool are_equal(const Profile& a, const Profile& b, const std::vector<double>& times) {
+  return std::ranges::all_of(times, [&](double time) {
+    const ProfileValue one = a.at(time), other = b.at(time);
+    return one.value == other.value && one.rate == other.rate;
+  });
+}
+
+// Those of its rows, and between; of an expression some.
+std::vector<double> times_of(const WrittenProfile& written) {
+  std::vector<double> times = written.table.times;
+  for (std::size_t k = 0; k + 1 < written.table.times.size(); ++k) times.push_back((times[k] + times[k + 1]) / 2);
+  for (int k = 0; k <= 100; ++k) times.push_back(0.1 * k);
+  return times;
+}
+
+// All that were read, by the hash of their values. Equal hashes are told apart by the values themselves. Scenes may be
+// read by several threads.
+class WrittenProfiles {
+ public:
+  static WrittenProfiles& all() {
+    static WrittenProfiles all;
+    return all;
+  }
+  const WrittenProfile* find(const Profile& profile) {
+    const std::lock_guard lock(mutex_);
+    return find_locked(profile);
+  }
+  void note(const Profile& profile, WrittenProfile written) {
+    const std::lock_guard lock(mutex_);
+    if (!find_locked(profile)) by_hash_.emplace(profile.hash(), std::pair(profile, std::move(written)));
+  }
+
+ private:
+  const WrittenProfile* find_locked(const Profile& profile) const {
+    const auto [begin, end] = by_hash_.equal_range(profile.hash());
+    for (auto one = begin; one != end; ++one)
+      if (are_equal(profile, one->second.first, times_of(one->second.second))) return &one->second.second;
+    return nullptr;
+  }
+
+  std::mutex mutex_;
+  std::multimap<std::uint64_t, std::pair<Profile, WrittenProfile>> by_hash_;
+};
+
+SceneNumber noted(const Profile& profile, WrittenProfile written) {
+  WrittenProfiles::all().note(profile, std::move(written));
+  return {0, profile};
 }
 
 // A function may leave its range in a run: a mistake, with the first time at which it does.
@@ -50,7 +101,7 @@ std::optional<SceneNumber> read_expression(const Entry& entry, const std::string
   });
   if (!keeps_range(entry, written.where, key, profile, need)) return {};
   if (read.formula->constant()) return SceneNumber{profile.at(0).value};
-  return SceneNumber{0, profile};
+  return noted(profile, {written.text, std::string(need.unit), {}});
 }
 
 template <class Rows>
@@ -78,12 +129,13 @@ std::optional<SceneNumber> read_table_of_numbers(Entry& table, const std::string
   if (!file || !column || !time || !interpolate || !beyond) return {};
   try {
     const Csv csv = read_csv(table.beside(*file));
-    const Profile profile = Profile::table({.times = csv.column(*time, "s"),
-                                            .values = csv.column(*column, need.unit),
-                                            .interpolation = row_named(interpolations, *interpolate).interpolation,
-                                            .beyond = row_named(ends, *beyond).beyond});
+    const ProfileTable rows{.times = csv.column(*time, "s"),
+                            .values = csv.column(*column, need.unit),
+                            .interpolation = row_named(interpolations, *interpolate).interpolation,
+                            .beyond = row_named(ends, *beyond).beyond};
+    const Profile profile = Profile::table(rows);
     if (!keeps_range(table, table.where("table"), key, profile, need)) return {};
-    return SceneNumber{0, profile};
+    return noted(profile, {{}, {}, rows});
   } catch (const Error& error) {
     table.error(table.where("table"), fmt::format("table \"{}\" of `{}`: {}", *file, key, error.what()));
     return {};
@@ -91,6 +143,8 @@ std::optional<SceneNumber> read_table_of_numbers(Entry& table, const std::string
 }
 
 }  // namespace
+
+const WrittenProfile* written_profile(const Profile& profile) { return WrittenProfiles::all().find(profile); }
 
 Span place_in(Span whole, const std::string& text, const FormulaMistake& mistake) {
   if (whole.end - whole.begin != static_cast<int>(text.size()) + 2) return whole;

@@ -29,6 +29,14 @@ std::optional<std::vector<SceneNumber>> read_numbers_in_time(Entry& entry, const
                                                              std::optional<std::size_t> size, Quantity quantity,
                                                              const NumberNeed& need);
 
+// A function of time as a scene has written it: an expression in a unit, or the rows of a table.
+struct WrittenProfile {
+  std::string text, unit;
+  ProfileTable table;
+};
+// That of a profile which this program has read in a scene; null: in none.
+const WrittenProfile* written_profile(const Profile& profile);
+
 // As a parameter of a joint or an effect.
 NamedValue named_value(std::string name, const std::vector<SceneNumber>& numbers);
 

@@ -1,0 +1,51 @@
+// Joints that are inequalities: ropes that go slack and taut move as in the World.
+#include <gtest/gtest.h>
+
+#include "planar_ropes_euler.hpp"
+#include "planar_ropes_rattle.hpp"
+#include "spatial_ropes_euler.hpp"
+#include "spatial_ropes_rattle.hpp"
+#include "tests/derive/compile/beside_world.hpp"
+#include "tests/derive/compile/command.hpp"
+
+namespace {
+
+using cdot::Integrator;
+using namespace cdot::scenes;
+
+const std::string planar = "tests/hard_cases/chattering_ropes/planar.toml",
+                  spatial = "tests/hard_cases/chattering_ropes/spatial.toml";
+
+// By Euler's steps in space, a rope that a correction pushes across its end is taut or slack by round-off: by h^2.
+TEST(CompiledRopes, MoveAsTheWorld) {
+  cdot::runs_as_the_world<planar_ropes_euler<double>>(planar, Integrator::euler, 1e-10, 3);
+  cdot::runs_as_the_world<planar_ropes_rattle<double>>(planar, Integrator::rattle, 1e-10, 3);
+  cdot::runs_as_the_world<spatial_ropes_euler<double>>(spatial, Integrator::euler, 1e-5, 0.2);
+  cdot::runs_as_the_world<spatial_ropes_rattle<double>>(spatial, Integrator::rattle, 1e-8, 1);
+}
+
+// A rope that never goes slack, or never is taut, would miss half of the test.
+TEST(CompiledRopes, GoSlackAndTaut) {
+  using Ropes = planar_ropes_euler<double>;
+  Ropes::State state;
+  Ropes::reset(state);
+  bool taut[Ropes::bounded] = {}, slack[Ropes::bounded] = {};
+  for (int k = 0; k < 3000; ++k) {
+    Ropes::step(state, 0.001);
+    for (int i = 0; i < Ropes::bounded; ++i) (state.hold[i] == 0 ? taut : slack)[i] = true;
+  }
+  for (int i = 0; i < Ropes::bounded; ++i) EXPECT_TRUE(taut[i] && slack[i]) << "rope " << i;
+}
+
+TEST(CompiledRopes, LanesAreAsAlone) {
+  cdot::lanes_are_as_alone<planar_ropes_euler>();
+  cdot::lanes_are_as_alone<planar_ropes_rattle>();
+}
+
+TEST(CompiledRopes, OtherMethodsRefuseThem) {
+  const cdot::Outcome ropes = cdot::compile(planar + " --integrator rk4");
+  EXPECT_EQ(ropes.status, 2);
+  EXPECT_NE(ropes.text.find("error: left: cdot compile does not know left by rk4"), std::string::npos) << ropes.text;
+}
+
+}  // namespace
