@@ -10,6 +10,7 @@
 #include "derive/compile/gyroscopes.hpp"
 #include "derive/compile/identifiers.hpp"
 #include "derive/compile/methods/rattle.hpp"
+#include "derive/compile/methods/tables.hpp"
 #include "derive/compile/space.hpp"
 #include "derive/compile/steps.hpp"
 #include "derive/compile/texts.hpp"
@@ -44,7 +45,7 @@ class HeaderWriter {
     write_equations();
     write_corrections();
     if (has().exerts) text_ += start_of(has());
-    text_ += step_of(mechanism_, has());
+    write_step();
     text_ += "};\n\n}  // namespace cdot::scenes\n";
     return {with_arguments(std::move(text_)), name_, operations(), state_bytes()};
   }
@@ -279,7 +280,7 @@ class HeaderWriter {
 
   void write_equations() {
     const std::string at = "$dconst Pose (&q)[bodies], const T& time", moving = "const Velocity (&v)[bodies]";
-    text_ += guards;
+    text_ += guards + tables_of(mechanism_);
     text_ += bounded_of(equations_.is_rate, has());
     if (has().looks)
       text_ += damping_of(equations_.effect_of.size(), equations_.effect_of.back() + 1, equations_.triangle);
@@ -360,6 +361,16 @@ class HeaderWriter {
         "accelerate(" + at + ", " + moving + ", const Jacobian& J, T (&lambda)[rows], Velocity (&a)[bodies])",
         equations_.accelerate);
     text_ += slope;
+  }
+
+  void write_step() {
+    std::string step = step_of(mechanism_, has());
+    if (breaks(mechanism_)) {
+      const std::string_view head = "step(State& s, T h = T(default_step))";
+      step.replace(step.find(head), head.size(), "advance(State& s, const T& h)");
+      step += step_in_parts(mechanism_.method, has());
+    }
+    text_ += step;
   }
 
   void write_corrections() {

@@ -51,6 +51,9 @@ void RowBlocks::note_start(Constants& constants) const {
   for (int k = 0; k < mechanism_.angles; ++k)
     for (const char* array : {"angles.angle", "angles.turns"})
       constants.at_start[derive::element(array, static_cast<std::size_t>(k))] = 0;
+  for (std::size_t k = 0; k < mechanism_.tables.size(); ++k)
+    for (const std::string_view derivative : {"value", "rate", "acceleration"})
+      constants.at_start[fmt::format("table_{}(time).{}", k, derivative)] = 0;  // in no effective mass
   constants.at_start["time"] = 0, constants.at_start["h"] = mechanism_.step;
 }
 

@@ -104,6 +104,7 @@ int RowBlocks::number(Algebra& algebra, const Effect& effect, std::size_t k, con
 
 int RowBlocks::in_time(Algebra& algebra, const InTime& function, const std::string& derivative,
                        const std::string& name) const {
+  if (function.table >= 0) return algebra.input(fmt::format("table_{}(time).{}", function.table, derivative));
   const Program written = program_in_time(function.text, function.unit).program;
   const auto input = [&](const std::string& text) {
     return text == "time" ? algebra.input("time") : algebra.value(std::numbers::pi);

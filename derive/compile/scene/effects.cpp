@@ -6,6 +6,7 @@
 
 #include <cdot/effects.hpp>
 
+#include "runtime/rows/spline.hpp"
 #include "runtime/state/world_data.hpp"
 #include "runtime/tool/scene/profile.hpp"
 
@@ -14,6 +15,19 @@ namespace {
 
 bool is_damper(const CoordinateSpring& spring) {
   return !spring.softness.by_frequency && spring.softness.stiffness == 0;
+}
+
+// order: steps end where a derivative of this order or a lower one jumps.
+Table table_of(const ProfileTable& rows, int order) {
+  Table table{rows.times, pieces_of(rows), rows.beyond == Beyond::repeat, {}};
+  table.pieces.push_back({rows.values.back()});
+  for (std::size_t k = 0; k + 1 < rows.times.size(); ++k)
+    if (rows.times[k] == rows.times[k + 1]) table.pieces[k] = {rows.values[k]};  // a jump
+  const Profile profile = Profile::table(rows);
+  const double last = rows.times.back();
+  for (double at = profile.next_break(rows.times.front() - 1e-9, order); at <= last; at = profile.next_break(at, order))
+    table.breaks.push_back(at);
+  return table;
 }
 
 template <class S>
@@ -153,11 +167,15 @@ class EffectReader {
     for (const auto& [of_place, drive] : record(joint).drives) {
       if (of_place != place) continue;
       const WrittenProfile* const written = written_profile(drive.profile);
-      if (!written || written->text.empty()) {
-        refuse_(source, fmt::format("{}: numbers that follow a table", effect.name));
+      if (!written) {
+        refuse_(source, fmt::format("{}: numbers that follow a function of a program", effect.name));
         return false;
       }
-      effect.in_time[static_cast<std::size_t>(drive.number)] = {written->text, written->unit};
+      InTime& function = effect.in_time[static_cast<std::size_t>(drive.number)];
+      function = {written->text, written->unit};
+      if (!written->text.empty()) continue;
+      function.table = static_cast<int>(mechanism_.tables.size());
+      mechanism_.tables.push_back(table_of(written->table, mechanism_.on_accelerations() ? 2 : 0));
     }
     return true;
   }

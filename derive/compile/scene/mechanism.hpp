@@ -26,9 +26,19 @@ struct Body {
   double linear_drag = 0, angular_drag = 0;  // [1/s]
 };
 
-// A number that follows a function of time: an expression in a unit, as the scene has written it.
+// Rows of a table of time as cubics between them, in the time since the first row of each: a + b t + c t^2 + d t^3. The
+// last piece, and outside the table the first number of an end, are constant.
+struct Table {
+  std::vector<double> times;
+  std::vector<std::array<double, 4>> pieces;
+  bool repeats = false;
+  std::vector<double> breaks;  // the times at which steps of the method end
+};
+
+// A number that follows a function of time: an expression in a unit, as the scene has written it, or a table.
 struct InTime {
   std::string text, unit;
+  int table = -1;  // among those of the mechanism
 };
 
 struct Joint {
@@ -81,6 +91,7 @@ struct Mechanism {
   std::vector<Effect> effects;                   // by forces
   std::vector<Effect> bounded;                   // rows with bounds
   std::map<std::string, std::string> own_specs;  // files beside the scene, by type
+  std::vector<Table> tables;                     // that numbers follow
   int angles = 0;                                // that count whole turns
   std::vector<std::string> notes;                // parts of the scene that are left out
 
