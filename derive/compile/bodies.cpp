@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "derive/compile/gyroscopes.hpp"
+#include "derive/program/print.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -18,6 +19,25 @@ std::string pushed(const std::string& v, double drag, const std::string& a) {
 std::string number(double x) { return x == 0 ? "" : fmt::format("T({})", x); }
 
 }  // namespace
+
+std::string BodyTexts::start() const {
+  const char* const plane[] = {"x", "y", "angle"};
+  const char* const space[] = {"x", "y", "z", "e0", "e1", "e2", "e3"};
+  std::string text;
+  const auto add = [&](const std::string& line) {
+    for (const std::string& wrapped : derive::wrapped(line)) text += wrapped + "\n";
+  };
+  each([&](const Body& b, const std::string& name) {
+    std::string pose, velocity;
+    for (std::size_t k = 0; k < b.pose.size(); ++k)
+      pose += fmt::format("{}s.q[{}].{} = T({})", k == 0 ? "" : ", ", name, (mechanism.spatial() ? space : plane)[k],
+                          b.pose[k]);
+    for (const double number : b.velocity) velocity += fmt::format("{}T({})", velocity.empty() ? "" : ", ", number);
+    add("    " + pose + ";");
+    add("    s.v[" + name + "] = {" + velocity + "};");
+  });
+  return text;
+}
 
 std::string BodyTexts::turn(const std::set<std::string>& turning) const {
   std::string text = "\n  static void turn(Pose (&q)[bodies]) {\n";

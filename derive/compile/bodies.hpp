@@ -13,6 +13,8 @@ struct BodyTexts {
   const Mechanism& mechanism;
   const std::vector<std::string>& names;  // in C++
 
+  // Lines that set poses and velocities of the start.
+  std::string start() const;
   // turn(): sine and cosine of the bodies in `turning`; rotation matrices.
   std::string turn(const std::set<std::string>& turning) const;
   // push(): forces other than the joints' for a step of Euler's method.

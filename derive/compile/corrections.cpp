@@ -2,26 +2,34 @@
 
 #include <fmt/format.h>
 
+#include "derive/compile/foresight/foresight.hpp"
+
 namespace cdot::compile {
 namespace {
 
 std::string when(bool condition, const char* text) { return condition ? text : ""; }
 
+// Four maxima, side by side in the processor.
 constexpr const char* largest_row = R"(
+  static T larger(const T& a, const T& b) { return select(a > b, a, b); }
   template <int n>
   static T largest(const T (&of_rows)[n]) {
-    T most = T(0);
-    for (const T& of_row : of_rows) most = select(magnitude(of_row) > most, magnitude(of_row), most);
-    return most;
+    T a = T(0), b = T(0), c = T(0), d = T(0);
+    int i = 0;
+    for (; i + 4 <= n; i += 4) {
+      a = larger(magnitude(of_rows[i]), a), b = larger(magnitude(of_rows[i + 1]), b);
+      c = larger(magnitude(of_rows[i + 2]), c), d = larger(magnitude(of_rows[i + 3]), d);
+    }
+    for (; i < n; ++i) a = larger(magnitude(of_rows[i]), a);
+    return larger(larger(a, b), larger(c, d));
   }
 )";
 
 // As the World does it: runtime/solve/direct.cpp.
 constexpr const char* close_begins = R"(
   // Newton on C, with J as it is evaluated: anew where a round leaves more than the share `slow` of the error. Adds up
-  // the moves. Returns the error before. A lane that is done waits for the others unchanged.
-  static T close(State& s, Evaluated& at, const T& slow, Velocity (&moves)[bodies]) {
-    for (int i = 0; i < bodies; ++i) moves[i] = still();
+  // the moves{0}. Returns the error before. A lane that is done waits for the others unchanged.
+  static T close(State& s, Evaluated& at, const T& slow, {1}Velocity (&moves)[bodies]{2}) {{
     const T left = s.residual;
     T before = T(1e30), error = T(0);
     auto goes_on = T(0) < T(1), renewed = T(1) < T(0);
@@ -47,8 +55,9 @@ constexpr const char* ends_join = R"(      auto more = T(1) < T(0);
 )";
 
 constexpr const char* round_begins = R"(      s.residual = worst;
-      goes_on = goes_on && worst > T(single ? 1e7 * {0} : {0});
       const bool first = round == 0;
+      const T goal = T(single ? 1e7 * {0} : {0});
+      goes_on = goes_on && worst > {1};
       if (first) {{
         error = worst;
         goes_on = goes_on && !(magnitude(worst - left) <= T(single ? -1 : 1e-9) * worst);  // contradicting joints
@@ -61,16 +70,16 @@ constexpr const char* renews = R"(      const auto is_slow = goes_on && {0}worst
       const auto renews = goes_on && is_slow;
       if (any(renews)) {{
 {2}        at.time = select(renews, s.time, at.time);
-        for (int i = 0; i < bodies; ++i) at.q[i] = choose(renews, s.q[i], at.q[i]);
+        for (int i = 0; i < bodies; ++i) at.q[i] = is_pack ? choose(renews, s.q[i], at.q[i]) : s.q[i];
 {1}        renewed = renewed || renews;
       }}
-      before = worst;
+{3}      before = worst;
 )";
 
-constexpr const char* moves_of_rows = R"(      T unused[rows];
-      for (T& of_row : C) of_row = -of_row;
+constexpr const char* moves_of_rows = R"(      T lambda[rows];
       Velocity d[bodies];
-      solve($qs.J, C, unused, d);
+      solve($qs.J, {}C, lambda, d);
+      for (int i = 0; i < bodies; ++i) d[i] = -d[i];
 )";
 
 constexpr const char* no_moves = R"(      Velocity d[bodies];
@@ -86,43 +95,43 @@ constexpr const char* moves_of_ends = R"(      auto passed = T(1) < T(0);
         along($sat.q, at.time, d, along_ends);
         for (int i = 0; i < bounded; ++i) c[i] = -over[i] - along_ends[i], mu[i] = T(0);
         divide(B.S, active, c, mu);
-        for (int e = 0; e < bounded; ++e)
+        for (int e = 0; e < bounded; ++e) {{
           for (int i = 0; i < bodies; ++i) d[i] = d[i] + mu[e] * B.g[e][i];
+        }}
       }}
 )";
 
-constexpr const char* moves_bodies = R"(      for (int i = 0; i < bodies; ++i) {
-        d[i] = choose(goes_on, d[i], still());
-        moves[i] = moves[i] + d[i];
-        s.q[i] = moved(s.q[i], d[i]);
-      }
+constexpr const char* moves_bodies = R"(      for (int i = 0; i < bodies; ++i) d[i] = choose(goes_on, d[i], still());
+      for (int i = 0; i < bodies; ++i) moves[i] = moves[i] + d[i];
+{}    }}
+  }}
+)";
+
+constexpr const char* moves_poses = R"(      for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], d[i]);
       turn(s.q);
-    }
-  }
 )";
 
 // Turning a pose by nothing would change its bits, in a lane that waits.
-constexpr const char* moves_bodies_in_space = R"(      Pose next[bodies];
-      for (int i = 0; i < bodies; ++i) {
-        d[i] = choose(goes_on, d[i], still());
-        moves[i] = moves[i] + d[i];
-        next[i] = moved(s.q[i], d[i]);
+constexpr const char* moves_poses_in_space = R"(      if (is_pack) {
+        Pose next[bodies];
+        for (int i = 0; i < bodies; ++i) next[i] = s.q[i];
+        for (int i = 0; i < bodies; ++i) move(next[i], s.q[i], d[i]);
+        turn(next);
+        for (int i = 0; i < bodies; ++i) s.q[i] = choose(goes_on, next[i], s.q[i]);
+      } else {
+        for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], d[i]);
+        turn(s.q);
       }
-      turn(next);
-      for (int i = 0; i < bodies; ++i) s.q[i] = choose(goes_on, next[i], s.q[i]);
-    }
-  }
 )";
 
 constexpr const char* project = R"(
   // Velocities onto J v = -dC/dt.
   static void project(State& s) {
-    T b[rows], unused[rows];
-    rates(s.J, s.v, b);
-    for (T& of_row : b) of_row = -of_row;
+    T rate[rows], lambda[rows];
+    rates(s.J, s.v, rate);
     Velocity d[bodies];
-    solve($qs.J, b, unused, d);
-    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + d[i];
+    solve($qs.J, rate, lambda, d);
+    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] - d[i];
   }
 )";
 
@@ -279,22 +288,29 @@ constexpr const char* solves_bounded = R"(
 std::string corrections_of(double tolerance, const Contents& has, const std::string& renew) {
   std::string text;
   if (has.closes()) {
-    text += close_begins;
+    if (has.foresees) text += foresight();
+    text += fmt::format(close_begins, has.foresees ? " and multipliers to those foreseen" : "",
+                        has.foresees ? "Mask foreseen, " : "", has.foresees ? ", T (&total)[rows]" : "");
+    text += has.foresees ? moves_as_foreseen : "    for (int i = 0; i < bodies; ++i) moves[i] = still();\n";
     text += when(has.ends,
                  "    Bounded B;\n    bool reached = false;  // B is that of `at`\n    Mask active[bounded];\n"
                  "    for (Mask& of_row : active) of_row = T(1) < T(0);\n");
     text += "    for (int round = 0;; ++round) {\n";
     text += has.rows ? errors_of_rows : "      const T of_joints = T(0);\n";
     text += has.ends ? errors_of_ends : "      const T worst = of_joints;\n";
-    text += fmt::format(round_begins, tolerance);
+    text +=
+        fmt::format(round_begins, tolerance, has.foresees ? "(first ? select(foreseen, T(-1), goal) : goal)" : "goal");
     text += when(has.ends, ends_join);
+    text += when(has.foresees, takes_back);
     text += fmt::format(
         renews, has.ends ? "!more && " : "",
         when(has.rows, "        evaluate($sat.q, at.time, s.J);\n") + when(has.ends, "        reached = false;\n"),
-        renew);
-    text += has.rows ? moves_of_rows : no_moves;
+        renew, has.foresees ? aims(has.spatial) : "");
+    text += has.rows ? fmt::format(moves_of_rows, has.foresees ? "B, aimed, " : "") : no_moves;
+    text += when(has.foresees,
+                 "      for (int i = 0; i < rows; ++i) total[i] = total[i] - select(goes_on, lambda[i], T(0));\n");
     if (has.ends) text += fmt::format(moves_of_ends, has.rows ? "s.J, " : "");
-    text += has.spatial ? moves_bodies_in_space : moves_bodies;
+    text += fmt::format(moves_bodies, has.spatial ? moves_poses_in_space : moves_poses);
   }
   if (has.rows) text += project;
   return text;

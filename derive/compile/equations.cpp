@@ -1,8 +1,10 @@
 #include "derive/compile/equations.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <stdexcept>
 
+#include "derive/compile/foresight/aim.hpp"
 #include "derive/compile/rows/bounds.hpp"
 #include "derive/compile/rows/dampers.hpp"
 #include "derive/compile/rows/joint_rows.hpp"
@@ -44,6 +46,9 @@ class EquationWriter {
     if (mechanism_.method == Method::rattle) write_finish();
     if (mechanism_.angles > 0) out_.angles = angles_of(blocks_, out_.constants);
     write_bounded();
+    // Ends that a guess passes are other ones than those that the step passes. By RATTLE forces that change with rates
+    // pull beside the joints.
+    if (system().size() > 0 && !mechanism_.on_accelerations() && !out_.has_ends && !out_.finishes) write_foreseen();
     drop_unread();
     check_inputs();
     return std::move(out_);
@@ -94,6 +99,17 @@ class EquationWriter {
     if (out_.exerts) out_.exert = exert_of(blocks_, joints_, out_.constants);
   }
 
+  void write_foreseen() {
+    Aim aim(blocks_, joints_);
+    out_.aim = aim.factor(out_.constants, out_.aimed);
+    out_.solve_aimed = aim.solve(out_.constants);
+    Algebra algebra(out_.constants);
+    std::vector<int> lambda;
+    for (std::size_t row = 0; row < system().size(); ++row) lambda.push_back(algebra.input(element("lambda", row)));
+    system().write_changes(algebra, lambda, [&](std::size_t k) { return joints_.inputs(algebra, k); });
+    out_.apply = algebra.finish();
+  }
+
   void check_inputs() const {
     const std::vector<std::string> known(out_.constants.known.begin(), out_.constants.known.end());
     for (const std::string& input : out_.constants.inputs) {
@@ -139,8 +155,22 @@ class EquationWriter {
 }  // namespace
 
 std::vector<const Program*> programs_of_equations(const Equations& e) {
-  return {&e.evaluate, &e.errors, &e.rates,  &e.accelerate, &e.solve,  &e.fall, &e.kick,   &e.potential, &e.reach,
-          &e.past,     &e.along,  &e.angles, &e.dampen,     &e.notice, &e.look, &e.finish, &e.exert};
+  return {&e.evaluate,    &e.errors, &e.rates,  &e.accelerate, &e.solve,  &e.apply, &e.aim,
+          &e.solve_aimed, &e.fall,   &e.kick,   &e.potential,  &e.reach,  &e.past,  &e.along,
+          &e.angles,      &e.dampen, &e.notice, &e.look,       &e.finish, &e.exert};
+}
+
+std::set<std::string> functions_of(const Program& program) {
+  std::set<std::string> functions;
+  for (const Operation& op : program.ops)
+    if (op.kind == OpKind::function && !derive::function_of(op.fn).of_contract)
+      functions.insert(std::string(derive::function_of(op.fn).name));
+  return functions;
+}
+
+bool calls_functions(const Equations& equations) {
+  return std::ranges::any_of(programs_of_equations(equations),
+                             [](const Program* program) { return !functions_of(*program).empty(); });
 }
 
 Equations equations_of(const Mechanism& mechanism, const Names& names, const derive::SpecsFolder& specs) {

@@ -20,6 +20,11 @@ struct Equations {
   Program rates;       // J, v -> J v + dC/dt
   Program solve;       // J, b -> lambda with K lambda = b, d = M^-1 J^T lambda
   Program accelerate;  // q, v, time, J -> a, lambda: M a = f + J^T lambda, J a = gamma
+  // With joints, where a step foresees the multipliers of its projection:
+  Program apply;                   // J, lambda -> d = M^-1 J^T lambda
+  Program aim;                     // q, time, J -> B: Aim, the factor of J' M^-1 J^T with J' of q
+  Program solve_aimed;             // J, B, b -> lambda with J' M^-1 J^T lambda = b, d = M^-1 J^T lambda
+  std::vector<std::string> aimed;  // the numbers that `aim` writes
   // Without:
   Program fall;       // q, v, time -> a
   Program kick;       // q, v, time, J, h -> next: v after an Euler step with effects; lambda of the joints
@@ -42,6 +47,9 @@ struct Equations {
   Program along;  // q, v, time -> along: J v
 };
 std::vector<const Program*> programs_of_equations(const Equations& equations);
+// Those of <cmath> that it calls.
+std::set<std::string> functions_of(const Program& program);
+bool calls_functions(const Equations& equations);
 
 Equations equations_of(const Mechanism& mechanism, const Names& names, const derive::SpecsFolder& specs);
 

@@ -10,13 +10,12 @@ namespace {
 
 bool is_diagonal(const Tensor& I) { return I[3] == 0 && I[4] == 0 && I[5] == 0; }
 
-std::string text_of(const Tensor& I, double unit, bool whole) {
-  if (is_diagonal(I) && !whole)
-    return fmt::format("Vector<T>{{T({}), T({}), T({})}}", unit * I[0], unit * I[1], unit * I[2]);
+std::string text_of(const Tensor& I, double unit) {
+  if (is_diagonal(I)) return fmt::format("Vector<T>{{T({}), T({}), T({})}}", unit * I[0], unit * I[1], unit * I[2]);
   return fmt::format("Tensor<T>{{T({}), T({}), T({}), T({}), T({}), T({})}}", unit * I[0], unit * I[1], unit * I[2],
                      unit * I[3], unit * I[4], unit * I[5]);
 }
-std::string moments(const Tensor& I) { return text_of(I, 1, false); }
+std::string moments(const Tensor& I) { return text_of(I, 1); }
 
 // The axis about which the body is symmetric, as mean_spin() of the runtime finds it; -1: none.
 int symmetry_axis(const Tensor& I) {
@@ -32,17 +31,17 @@ std::string spin_of(const std::string& name) {
 
 // Lines of drift() for one body. The rotation does not depend on the scale of the inertia: of about 1 it suits floats.
 std::string drifted(const Body& body, const std::string& name) {
-  if (!body.inertia_turns) return fmt::format("    s.q[{0}] = moved(s.q[{0}], h * s.v[{0}]);\n", name);
+  if (!body.inertia_turns) return fmt::format("    move(s.q[{0}], q[{0}], h * s.v[{0}]);\n", name);
   const double unit = std::scalbn(1, -std::ilogb(std::max({body.inertia[0], body.inertia[1], body.inertia[2]})));
   const int axis = symmetry_axis(body.inertia);
   if (axis < 0)
-    return fmt::format("    s.q[{0}] = spun(s.q[{0}], s.v[{0}], {1}, {2}, h);\n", name,
-                       text_of(body.inertia, unit, true), text_of(body.inverse_inertia, 1 / unit, true));
+    return fmt::format("    spin(s.q[{0}], q[{0}], s.v[{0}], {1}, {2}, h);\n", name, text_of(body.inertia, unit),
+                       text_of(body.inverse_inertia, 1 / unit));
   const Tensor& I = body.inertia;
   const double along = I[static_cast<std::size_t>(axis)];
   const std::string e = fmt::format("Vector<T>{{T({}), T({}), T({})}}", int{axis == 0}, int{axis == 1}, int{axis == 2});
-  return fmt::format("    s.q[{0}] = spun(s.q[{0}], s.v[{0}], {1}, T({2}), {3}, h);\n", name, e,
-                     0.5 * unit * (I[0] + I[1] + I[2] - along), text_of(I, unit, false));
+  return fmt::format("    spin(s.q[{0}], q[{0}], s.v[{0}], {1}, T({2}), {3}, h);\n", name, e,
+                     0.5 * unit * (I[0] + I[1] + I[2] - along), text_of(I, unit));
 }
 
 constexpr const char* momentum_functions = R"(
@@ -62,17 +61,18 @@ constexpr const char* momentum_functions = R"(
     q.I = turned<T>(q, inverse), g.I = turned<T>(q, I), g.momentum = g.I * g.spin;
   }
   // The pose after h by the mean spin: of a body that is symmetric about e, and of any other.
-  static Pose spun(const Pose& q, const Velocity& v, const Vector<T>& e, const T& across, const Vector<T>& I, const T& h) {
+  static void spin(Pose& to, const Pose& q, const Velocity& v, const Vector<T>& e, const T& across, const Vector<T>& I,
+                   const T& h) {
     const Vector<T> W = to_body(q, Vector<T>{v.wx, v.wy, v.wz});
     T c;
     const Vector<T> half = free_turn(e, across, W, times(I, W), h, c);
-    Pose to = turned_by(q, c, to_world(q, half));
+    turn_by(to, q, c, to_world(q, half));
     to.x = q.x + h * v.x, to.y = q.y + h * v.y, to.z = q.z + h * v.z;
-    return to;
   }
-  static Pose spun(const Pose& q, const Velocity& v, const Tensor<T>& I, const Tensor<T>& inverse, const T& h) {
+  template <class Moments>
+  static void spin(Pose& to, const Pose& q, const Velocity& v, const Moments& I, const Moments& inverse, const T& h) {
     const Vector<T> w = to_world(q, mean_spin(I, inverse, to_body(q, Vector<T>{v.wx, v.wy, v.wz}), h));
-    return moved(q, {h * v.x, h * v.y, h * v.z, h * w.x, h * w.y, h * w.z});
+    move(to, q, {h * v.x, h * v.y, h * v.z, h * w.x, h * w.y, h * w.z});
   }
 )";
 
@@ -104,7 +104,8 @@ std::string gyroscopes_of(const Mechanism& mechanism, const std::vector<std::str
            weigh + "  }\n";
   return momentum_functions + ("  static void wind(State& s) {\n" + wind + "  }\n") +
          "  static void follow(State& s, const Mask& now) {\n" + follow +
-         "  }\n  static void drift(State& s, const T& h) {\n" + drift + "    turn(s.q);\n  }\n";
+         "  }\n  static void drift(State& s, const Pose (&q)[bodies], const T& h) {\n" + drift +
+         "    turn(s.q);\n  }\n";
 }
 
 std::string torque_of(const Body& body, const std::string& name) {

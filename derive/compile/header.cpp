@@ -7,6 +7,7 @@
 #include "derive/compile/arithmetic.hpp"
 #include "derive/compile/bodies.hpp"
 #include "derive/compile/equations.hpp"
+#include "derive/compile/foresight/foresight.hpp"
 #include "derive/compile/gyroscopes.hpp"
 #include "derive/compile/identifiers.hpp"
 #include "derive/compile/methods/rattle.hpp"
@@ -46,8 +47,11 @@ class HeaderWriter {
     write_corrections();
     if (has().exerts) text_ += start_of(has());
     write_step();
+    const auto moving = static_cast<std::size_t>(std::ranges::count_if(mechanism_.bodies, &Body::moves));
     text_ += "};\n\n}  // namespace cdot::scenes\n";
-    return {with_arguments(std::move(text_)), name_, operations(), state_bytes()};
+    return {unrolled(with_arguments(std::move(text_)),
+                     {moving, equations_.rows.size(), moving * (mechanism_.spatial() ? 13 : 6)}),
+            name_, operations(), state_bytes()};
   }
 
  private:
@@ -65,7 +69,8 @@ class HeaderWriter {
             .dampens = !equations_.dampen.outputs.empty(),
             .looks = !equations_.effect_of.empty(),
             .finishes = equations_.finishes,
-            .exerts = equations_.exerts};
+            .exerts = equations_.exerts,
+            .foresees = !equations_.apply.outputs.empty()};
   }
   bool has_rows() const { return has().rows; }
   bool has_effects() const { return has().effects || has().bounded; }
@@ -74,7 +79,8 @@ class HeaderWriter {
 
   // Functions take the inputs and the angles: "$d" declares them, "$s" passes those of a State, "$p" those of the
   // caller; "$C" counts the turns of the angles. Functions that weigh take poses where inertias turn: "$g" declares
-  // them, "$q" passes those of a State. Poses get their inertias by "$w" at a stage, by "$W" at the end of a step.
+  // them, "$q" passes those of a State, "$t" those of the caller. Poses get their inertias by "$w" at a stage, by "$W"
+  // at the end of a step.
   std::string with_arguments(std::string text) const {
     const bool inputs = has_inputs(), angles = has().angles, turns = has().gyroscopes;
     const std::pair<std::string_view, std::string> marks[] = {
@@ -86,6 +92,7 @@ class HeaderWriter {
         {"$p", std::string(inputs ? "p, " : "") + (angles ? "angles, " : "")},
         {"$g", pose_argument(mechanism_)},
         {"$q", turns ? "s.q, " : ""},
+        {"$t", turns ? "q, " : ""},
         {"$w", turns ? "    weigh(at.q, T(0) < T(1));\n" : ""},
         {"$W", turns ? "    weigh(s.q, T(0) < T(1));\n" : ""}};
     for (const auto& [mark, argument] : marks)
@@ -101,15 +108,17 @@ class HeaderWriter {
     const auto of = [](int times, const Program& program) { return long{times} * derive::count(program).total(); };
     return of(calls.evaluate, equations_.evaluate) + of(calls.errors, equations_.errors) +
            of(calls.rates, equations_.rates) + of(calls.accelerate, equations_.accelerate) +
-           of(calls.solve, equations_.solve) + of(calls.fall, equations_.fall) + of(calls.kick, equations_.kick) +
-           of(calls.past, equations_.past) + of(1, equations_.angles) + of(calls.dampen, equations_.dampen) +
-           of(calls.notice, equations_.notice) + of(calls.look, equations_.look) + of(calls.finish, equations_.finish);
+           of(calls.solve, equations_.solve) + of(1, equations_.apply) + of(calls.fall, equations_.fall) +
+           of(calls.kick, equations_.kick) + of(calls.past, equations_.past) + of(1, equations_.angles) +
+           of(calls.dampen, equations_.dampen) + of(calls.notice, equations_.notice) + of(calls.look, equations_.look) +
+           of(calls.finish, equations_.finish);
   }
 
   long state_bytes() const {
     long of_bodies = 0;
     for (const Body& body : mechanism_.bodies) of_bodies += numbers_of(mechanism_, body, has().pulls());
-    const long of_rows = long(equations_.rows.size()) + long(equations_.stored.size()) + (has().closes() ? 1 : 0) +
+    const long of_rows = long{has().foresees ? 1 + foreseen_by : 1} * long(equations_.rows.size()) +
+                         long(equations_.stored.size()) + (has().closes() ? 1 : 0) + (has().foresees ? 1 : 0) +
                          (has().exerts ? 1 : 0);
     return long{sizeof(double)} * (1 + of_bodies + of_rows + long(mechanism_.bounded.size()) +
                                    long(equations_.constants.inputs.size()) + 2 * mechanism_.angles);
@@ -135,7 +144,7 @@ class HeaderWriter {
     for (const std::string& note : mechanism_.notes) line("// " + note);
     line("#pragma once");
     line();
-    if (calls_functions() || mechanism_.spatial()) line("#include <cmath>"), line();
+    if (calls_functions(equations_) || mechanism_.spatial()) line("#include <cmath>"), line();
     text_ += arithmetic;
     if (mechanism_.spatial()) text_ += space;
     line("namespace cdot::scenes {");
@@ -164,9 +173,13 @@ class HeaderWriter {
       for (const std::string& member : equations_.stored) line("    T " + member + ";");
       line("  };");
     }
+    if (has().foresees) {
+      line("  // J' M^-1 J^T = L D U, J' of the end of a step, numbered as K.\n  struct Aim {");
+      for (const std::string& member : equations_.aimed) line("    T " + member + ";");
+      line("  };");
+    }
     if (has_inputs()) {
-      line("  // Numbers that may be set before any step.");
-      line("  struct Inputs {");
+      line("  // Numbers that may be set before any step.\n  struct Inputs {");
       for (const auto& [name, value] : equations_.constants.inputs_read) line("    T " + name + ";");
       line("  };");
     }
@@ -176,6 +189,7 @@ class HeaderWriter {
       line(fmt::format("    T angle[{0}], turns[{0}];", mechanism_.angles));
       line("  };");
     }
+    if (has().foresees) line("  struct Multipliers {\n    T of[rows];\n  };");
     line("  // What a run is made of: a copy is a snapshot. After a change of poses or velocities call begin().");
     line("  struct State {");
     line("    T time;  // [s]");
@@ -188,6 +202,10 @@ class HeaderWriter {
     if (has_rows())
       line(fmt::format("    T lambda[rows];  // {} of the joints",
                        mechanism_.method == Method::euler ? "impulses before the correction" : "forces"));
+    if (has().foresees)
+      line(fmt::format("    Multipliers past[{}];  // the last {}\n    T known;  // so many of them form a series",
+                       foreseen_by,
+                       by_rattle() ? "forces of first halves" : "corrections' multipliers by the step's square"));
     if (has().bounded)
       line("    T hold[bounded];  // of the rows with bounds: -1 at the lower one, 1 at the upper one, 0 between");
     if (has_inputs()) line("    Inputs p;");
@@ -200,7 +218,6 @@ class HeaderWriter {
     line("    T time;");
     line("    Pose q[bodies];");
     line("  };");
-    if (on_accelerations()) text_ += slope_type;
   }
 
   void write_start() {
@@ -208,7 +225,7 @@ class HeaderWriter {
     line("  // The start of the scene.");
     line("  static void reset(State& s) {");
     line("    s.time = T(0);");
-    each_body([&](const Body& b, const std::string& name) { write_start_of(b, name); });
+    text_ += BodyTexts{mechanism_, names_.bodies}.start();
     for (const auto& [name, value] : equations_.constants.inputs_read)
       line(fmt::format("    s.p.{} = T({});", name, value));
     if (has().bounded) line("    for (T& of_row : s.hold) of_row = T(0);");
@@ -217,18 +234,6 @@ class HeaderWriter {
     line("    begin(s);");
     line("  }");
     text_ += begin_of(mechanism_.method, has());
-  }
-
-  void write_start_of(const Body& b, const std::string& name) {
-    const char* const plane[] = {"x", "y", "angle"};
-    const char* const space[] = {"x", "y", "z", "e0", "e1", "e2", "e3"};
-    std::string pose, velocity;
-    for (std::size_t k = 0; k < b.pose.size(); ++k)
-      pose += fmt::format("{}s.q[{}].{} = T({})", k == 0 ? "" : ", ", name, (mechanism_.spatial() ? space : plane)[k],
-                          b.pose[k]);
-    for (const double number : b.velocity) velocity += fmt::format("{}T({})", velocity.empty() ? "" : ", ", number);
-    for (const std::string& wrapped : derive::wrapped("    " + pose + ";")) line(wrapped);
-    for (const std::string& wrapped : derive::wrapped("    s.v[" + name + "] = {" + velocity + "};")) line(wrapped);
   }
 
   void write_function(const std::string& comment, const std::string& head, const Program& program) {
@@ -245,7 +250,8 @@ class HeaderWriter {
     for (const std::string& statement : lines) line(statement);
     if (has_inputs() && head.find("$d") != std::string::npos) line("    (void)p;");
     if (has().angles && head.find("$d") != std::string::npos) line("    (void)angles;");
-    for (const std::string argument : {"q", "v", "time", "J", "b", "h", "C", "rate", "K", "guess", "given", "end"})
+    for (const std::string argument :
+         {"q", "v", "time", "J", "B", "b", "h", "lambda", "C", "rate", "K", "guess", "given", "end"})
       if (reads(arguments, argument)) line(fmt::format("    (void){};", argument));
     line("  }");
   }
@@ -259,23 +265,8 @@ class HeaderWriter {
     return before.find("const", before.rfind(',') + 1) != std::string::npos;
   }
 
-  bool calls_functions() const {
-    for (const Program* program : programs_of_equations(equations_))
-      if (!functions_of(*program).empty()) return true;
-    return false;
-  }
-
   void write_using(const Program& program) {
     for (const std::string& f : functions_of(program)) line("    using std::" + f + ";");
-  }
-
-  // Those of <cmath>.
-  static std::set<std::string> functions_of(const Program& program) {
-    std::set<std::string> functions;
-    for (const Operation& op : program.ops)
-      if (op.kind == OpKind::function && !derive::function_of(op.fn).of_contract)
-        functions.insert(std::string(derive::function_of(op.fn).name));
-    return functions;
   }
 
   void write_equations() {
@@ -292,6 +283,7 @@ class HeaderWriter {
                      "solve($gconst Jacobian& J, const T (&b)[rows], T (&lambda)[rows], Velocity (&d)[bodies])",
                      equations_.solve);
     }
+    if (has().foresees) write_foreseen(at);
     if (has_effects())
       write_function("Potential energy of the effects", "potential(" + at + ", T& E)", equations_.potential);
     if (by_rattle()) write_rattle(at, moving);
@@ -340,6 +332,17 @@ class HeaderWriter {
           "Forces at the start of a run, with motors that reach their rates in h/2",
           "exert(" + at + ", " + moving + J + ", const T& h" + lambda + ", Velocity (&pull)[bodies]" + B + ")",
           equations_.exert);
+  }
+
+  void write_foreseen(const std::string& at) {
+    write_function("d = M^-1 J^T lambda", "apply($gconst Jacobian& J, const T (&lambda)[rows], Velocity (&d)[bodies])",
+                   equations_.apply);
+    write_function("The factor of J' M^-1 J^T with J' of the pose", "aim(" + at + ", const Jacobian& J, Aim& B)",
+                   equations_.aim);
+    write_function("J' M^-1 J^T lambda = b, d = M^-1 J^T lambda",
+                   "solve($gconst Jacobian& J, const Aim& B, const T (&b)[rows], T (&lambda)[rows], "
+                   "Velocity (&d)[bodies])",
+                   equations_.solve_aimed);
   }
 
   void write_ends(const std::string& at, const std::string& moving) {

@@ -8,16 +8,16 @@ namespace cdot::compile {
 std::set<std::string> taken_names() {
   std::istringstream words(
       "T q v a J C Cdot g b d s h i k at x y w c time rows bodies pivot select abs sign turn close errors evaluate "
-      "rates gamma solve step reset begin push fall moved weighed project slope State energy Pose Slope Body lambda "
+      "rates gamma solve step reset begin push fall move weighed project slope State energy Pose Slope Body lambda "
       "inverse accelerate Velocity Jacobian Evaluated default_step int float double for if do new this and or not "
       "auto const static struct case switch default return template left largest next kick potential E sum free B "
       "Bounded Bound bounded Mask entry divide settle part find_active p Inputs find_contradiction is_rate reach "
       "past along hold mu residual error moves Vector Tensor Gyroscope Rate Pack NumberOf angles Angles count "
       "next_angles "
-      "to pull scenes std still choose "
-      "rate_of "
-      "orient weigh wind follow drift spun dot cross times root half_turn turned to_world to_body turned_by free_turn "
-      "newton_step mean_spin sin_cos magnitude any single epsilon smallest is_rate settle part_and_settle");
+      "to pull scenes std still choose rate_of larger foresee remember exert apply aim Aim Multipliers is_pack "
+      "orient weigh wind follow drift spin dot cross times root half_turn turned to_world to_body turn_by free_turn "
+      "inverse_root wide_half_turn whole newton_step mean_spin sin_cos magnitude any single epsilon smallest is_rate "
+      "settle part_and_settle");
   std::set<std::string> names;
   for (std::string word; words >> word;) names.insert(word);
   return names;

@@ -59,9 +59,9 @@ inline T root(const T& x) {
   return sqrt(x);
 }
 
-// cos(a / 2), and sin(a / 2) / a, from a^2. Series of half a radian, to round-off, cost half as much as the functions.
+// cos(a / 2), and sin(a / 2) / a, from a^2: by series to round-off up to half a radian, else by the functions.
 template <class T>
-inline T half_turn(const T& square, T& c) {
+inline T wide_half_turn(const T& square, T& c) {
   const T y = T(0.25) * square;
   const auto is_small = square < T(0.25);
   c = T(1) -
@@ -82,6 +82,22 @@ inline T half_turn(const T& square, T& c) {
   sin_cos(T(0.5) * angle, sine, cosine);
   c = select(is_small, c, cosine);
   return select(is_small, s, sine / angle);
+}
+// The same, with short series up to 0.03 rad, as of most steps, and up to 2e-4 rad, as of most corrections.
+template <class T>
+inline T half_turn(const T& square, T& c) {
+  const T y = T(0.25) * square, c_1 = T(1) - T(0.5) * y, s_1 = T(0.5) - T(1.0 / 12) * y;
+  const auto is_slight = square < T(4e-8), is_slow = square < T(1e-3);
+  c = c_1;
+  if (!any(!is_slight)) return s_1;
+  const T c_4 = T(1) - T(0.5) * y * (T(1) - T(1.0 / 12) * y * (T(1) - T(1.0 / 30) * y * (T(1) - T(1.0 / 56) * y)));
+  const T s_4 = T(0.5) * (T(1) - T(1.0 / 6) * y * (T(1) - T(1.0 / 20) * y * (T(1) - T(1.0 / 42) * y)));
+  c = select(is_slight, c_1, c_4);
+  if (!any(!is_slow)) return select(is_slight, s_1, s_4);
+  T wide_c;
+  const T wide_s = wide_half_turn(square, wide_c);
+  c = select(is_slow, c, wide_c);
+  return select(is_slight, s_1, select(is_slow, s_4, wide_s));
 }
 // The same of a rotation vector: c, and sin(a / 2) / a times the vector.
 template <class T>
@@ -108,21 +124,29 @@ inline Vector<T> to_body(const Pose& q, const Vector<T>& a) {
           q.xz * a.x + q.yz * a.y + q.zz * a.z};
 }
 
-// q with e turned by (c, v), not yet of length 1.
+// e of q turned by (c, v), not yet of length 1.
 template <class Pose, class T>
-inline Pose turned_by(const Pose& from, const T& c, const Vector<T>& v) {
-  Pose q = from;
+inline void turn_by(Pose& to, const Pose& q, const T& c, const Vector<T>& v) {
   const T e0 = c * q.e0 - v.x * q.e1 - v.y * q.e2 - v.z * q.e3, e1 = c * q.e1 + v.x * q.e0 + v.y * q.e3 - v.z * q.e2;
   const T e2 = c * q.e2 + v.y * q.e0 + v.z * q.e1 - v.x * q.e3, e3 = c * q.e3 + v.z * q.e0 + v.x * q.e2 - v.y * q.e1;
-  q.e0 = e0, q.e1 = e1, q.e2 = e2, q.e3 = e3;
-  return q;
+  to.e0 = e0, to.e1 = e1, to.e2 = e2, to.e3 = e3;
+}
+
+// 1 / sqrt(x). Near 1 a step of Newton from 1 is exact to round-off: 1 - d / 2 of x = 1 + d, 3 d^2 / 8 apart.
+template <class T>
+inline T inverse_root(const T& x) {
+  constexpr double near = sizeof(typename NumberOf<T>::type) == 4 ? 1e-4 : 1e-8;
+  const T d = x - T(1), by_newton = T(1) - T(0.5) * d;
+  const auto is_near = d * d < T(near * near);
+  if (!any(!is_near)) return by_newton;
+  return select(is_near, by_newton, T(1) / root(x));
 }
 
 // Brings e to length 1, and sets its rotation matrix.
 template <class Pose>
 inline void orient(Pose& q) {
   using T = decltype(q.e0 + q.e0);
-  const T scale = T(1) / root(q.e0 * q.e0 + q.e1 * q.e1 + q.e2 * q.e2 + q.e3 * q.e3), two = T(2);
+  const T scale = inverse_root(q.e0 * q.e0 + q.e1 * q.e1 + q.e2 * q.e2 + q.e3 * q.e3), two = T(2);
   q.e0 = scale * q.e0, q.e1 = scale * q.e1, q.e2 = scale * q.e2, q.e3 = scale * q.e3;
   q.xx = T(1) - two * (q.e2 * q.e2 + q.e3 * q.e3), q.xy = two * (q.e1 * q.e2 - q.e0 * q.e3);
   q.xz = two * (q.e1 * q.e3 + q.e0 * q.e2), q.yx = two * (q.e1 * q.e2 + q.e0 * q.e3);
@@ -160,16 +184,26 @@ inline Vector<T> newton_step(const Tensor<T>& I, const Vector<T>& b, const Vecto
          Vector<T>{dot(right, across), dot(right, cross(third, first)), dot(right, cross(first, second))};
 }
 
-// The mean spin of any free body during h, in its own axes: theta = h (W + W') / 2 with I W' = exp(-theta) I W, by
-// Newton (Simo and Wong 1991). A lane that is done waits for the others unchanged.
 template <class T>
-inline Vector<T> mean_spin(const Tensor<T>& I, const Tensor<T>& inverse, const Vector<T>& W, const T& h) {
+inline Tensor<T> whole(const Vector<T>& moments) {
+  return {moments.x, moments.y, moments.z, T(0), T(0), T(0)};
+}
+template <class T>
+inline Tensor<T> whole(const Tensor<T>& S) {
+  return S;
+}
+
+// The mean spin of any free body during h, in its own axes: theta = h (W + W') / 2 with I W' = exp(-theta) I W, by
+// Newton (Simo and Wong 1991). Sizes are compared by their squares. A lane that is done waits for the others unchanged.
+template <class Moments, class T>
+inline Vector<T> mean_spin(const Moments& I, const Moments& inverse, const Vector<T>& W, const T& h) {
   constexpr double epsilon = sizeof(typename NumberOf<T>::type) == 4 ? 1.1920929e-07 : 2.220446049250313e-16;
-  const Vector<T> L = I * W, rate = inverse * cross(L, W);
-  const Vector<T> bend = inverse * (cross(I * rate, W) + cross(L, rate));
-  const T fine = T(epsilon) * root(dot(W, W));
-  const T curvature = T(0.125) * h * h * (inverse.xx + inverse.yy + inverse.zz) * root(dot(L, L));
-  Vector<T> after = choose(h * h * dot(W, W) < T(0.25), W + h * (rate + (T(0.5) * h) * bend), W), best = W;
+  const Vector<T> L = times(I, W), rate = times(inverse, cross(L, W));
+  const Vector<T> bend = times(inverse, cross(times(I, rate), W) + cross(L, rate));
+  const Tensor<T> across = whole(inverse);
+  const T spin = dot(W, W), fine = T(epsilon * epsilon) * spin;
+  const T bent = T(0.125) * h * h * (across.xx + across.yy + across.zz), curvature = bent * bent * dot(L, L);
+  Vector<T> after = choose(h * h * spin < T(0.25), W + h * (rate + (T(0.5) * h) * bend), W), best = W;
   T smallest = T(1e30);
   auto busy = T(0) < T(1);
   for (int round = 0; round < 12 && any(busy); ++round) {
@@ -177,19 +211,20 @@ inline Vector<T> mean_spin(const Tensor<T>& I, const Tensor<T>& inverse, const V
     T c;
     const T s = half_turn(dot(theta, theta), c);
     const T sinc = T(2) * s * c, versine = T(2) * s * s;
-    const Vector<T> across = cross(theta, L), turned = L - sinc * across + versine * cross(theta, across);
-    const Vector<T> residual = after - inverse * turned;
-    const T size = root(dot(residual, residual));
-    const auto better = busy && size < smallest, converges = size < T(0.5) * smallest;
+    const Vector<T> side = cross(theta, L), turned = L - sinc * side + versine * cross(theta, side);
+    const Vector<T> residual = after - times(inverse, turned);
+    const T size = dot(residual, residual);
+    const auto better = busy && size < smallest, converges = size < T(0.25) * smallest;
     best = choose(better, mean, best), smallest = select(better, size, smallest);
     busy = busy && converges && size > fine;
-    const Vector<T> step = newton_step(I, (T(0.5) * h) * turned, theta, sinc, versine, residual);
+    const Vector<T> step = newton_step(whole(I), (T(0.5) * h) * turned, theta, sinc, versine, residual);
     after = choose(busy, after - step, after);
-    const auto last = busy && curvature * dot(step, step) <= fine;
+    const T length = dot(step, step);
+    const auto last = busy && curvature * length * length <= fine;
     best = choose(last, T(0.5) * (W + after), best);
     busy = busy && !last;
   }
-  return choose(smallest < T(0.5) * root(dot(W, W)), best, W);
+  return choose(smallest < T(0.25) * spin, best, W);
 }
 
 }  // namespace cdot::scenes

@@ -11,10 +11,17 @@ namespace {
 constexpr const char* closes = R"(    Velocity moves[bodies];
     close(s, at, T({}), moves);
 )";
-constexpr const char* notes_poses = R"(    Evaluated at;
-    at.time = s.time;
-    for (int i = 0; i < bodies; ++i) at.q[i] = s.q[i];
+constexpr const char* begins_series = R"(    s.known = T(0);
+    for (Multipliers& numbers : s.past)
+      for (T& of_row : numbers.of) of_row = T(0);
+    Velocity moves[bodies];
 )";
+// Alone a mechanism needs them where an end is passed; lanes, where J is renewed in others.
+std::string notes_poses(const Contents& has) {
+  const std::string copies = "for (int i = 0; i < bodies; ++i) at.q[i] = s.q[i];\n";
+  return "    Evaluated at;\n    at.time = s.time;\n" +
+         (has.ends ? "    " + copies : "    if (is_pack) {\n      " + copies + "    }\n");
+}
 
 constexpr const char* euler_begins = R"(
   // Symplectic Euler: velocities with the joints' impulses, then poses, then C = 0 and J v = -dC/dt.
@@ -22,12 +29,12 @@ constexpr const char* euler_begins = R"(
 )";
 
 constexpr const char* euler_by_joints = R"(    push($qs.v, h);
-    T b[rows];
-    rates(s.J, s.v, b);
-    for (T& of_row : b) of_row = -of_row;
+    T rate[rows];
+    rates(s.J, s.v, rate);
     Velocity d[bodies];
-    solve($qs.J, b, s.lambda, d);
-    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + d[i];
+    solve($qs.J, rate, s.lambda, d);
+    for (int i = 0; i < rows; ++i) s.lambda[i] = -s.lambda[i];
+    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] - d[i];
 )";
 
 constexpr const char* euler_by_kick = R"(    Velocity next[bodies];
@@ -38,12 +45,43 @@ constexpr const char* kick_with_bounds = R"(    Bounded B;
     T mu[bounded];
     kick({0}, B);
     settle(B, s.hold, mu);
-    for (int e = 0; e < bounded; ++e)
+    for (int e = 0; e < bounded; ++e) {{
       for (int i = 0; i < bodies; ++i) next[i] = next[i] + mu[e] * B.g[e][i];
+    }}
 {1})";
 
-constexpr const char* adds_impulses = R"(    for (int e = 0; e < bounded; ++e)
+constexpr const char* adds_impulses = R"(    for (int e = 0; e < bounded; ++e) {
       for (int i = 0; i < rows; ++i) s.lambda[i] = s.lambda[i] + mu[e] * B.l[e][i];
+    }
+)";
+
+// The multipliers are foreseen where the last step ended at C = 0.
+constexpr const char* euler_moves_as_foreseen =
+    R"(    s.known = select(left > T(single ? 1e7 * {0} : {0}), T(0), s.known);
+    T foreseen[rows], total[rows];
+    foresee(s, h * h, foreseen);
+    for (int i = 0; i < rows; ++i) total[i] = foreseen[i];
+    Velocity moves[bodies];
+    apply($qs.J, foreseen, moves);
+    {2} is_foreseen = s.known > T(0.5);
+{1})";
+
+// In space the pose at the end depends on the way of the rounds, but for small angles.
+constexpr const char* foresees_small_turns = R"(    T most = T(0);
+    for (const Velocity& d : moves) most = larger(d.wx * d.wx + d.wy * d.wy + d.wz * d.wz, most);
+    is_foreseen = is_foreseen && most < T(1e-8);
+    for (int i = 0; i < rows; ++i) total[i] = select(is_foreseen, foreseen[i], T(0));
+    for (int i = 0; i < bodies; ++i) moves[i] = choose(is_foreseen, moves[i], still());
+)";
+
+constexpr const char* euler_corrects_as_foreseen =
+    R"(    const T error = close(s, at, T(0.2), is_foreseen, moves, total);
+    const auto fits = s.residual <= T(single ? 1e7 * {0} : {0});
+    for (int i = 0; i < rows; ++i) total[i] = select(fits, total[i], T(0));
+    remember(s, fits, h * h, total, foreseen);
+    // A displacement beyond the motion of the step, or of an error older than it, would add energy.
+    const auto keep = (is_foreseen || left <= T(0.1) * error) && T(4) * weighed(s.q, moves) <= h * h * weighed(s.q, s.v);
+    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + select(keep, T(1) / h, T(0)) * moves[i];
 )";
 
 constexpr const char* euler_corrects = R"(    Velocity moves[bodies];
@@ -56,18 +94,17 @@ constexpr const char* euler_corrects = R"(    Velocity moves[bodies];
 constexpr const char* stages_begin = R"(
   // {0}, on accelerations{2}. The end's accelerations begin the next step.
   static T step(State& s, T h = T(default_step)) {{
-    Slope k[{1}][bodies];
+    Slope k[{1}], now;
     Evaluated at;
     Velocity v[bodies];
-{3}    for (int i = 0; i < bodies; ++i) k[0][i] = {{rate_of(s.q[i], s.v[i]), s.a[i]}};
+{3}    for (int i = 0; i < bodies; ++i) at.q[i] = s.q[i];
+    for (int i = 0; i < bodies; ++i) k[0].set(i, rate_of(s.q[i], s.v[i]), s.a[i]);
 )";
 
-constexpr const char* stages_end = R"(    for (int i = 0; i < bodies; ++i) {{
-      const Slope k_end = {0};
-      s.q[i] = moved(s.q[i], h * k_end.v);
-      s.v[i] = s.v[i] + h * k_end.a;
-{2}    }}
-    turn(s.q);
+constexpr const char* stages_end = R"(    for (int i = 0; i < Slope::size; ++i) now.of[i] = {0};
+    for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], h * now.rate(i));
+    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + h * now.acceleration(i);
+{2}    turn(s.q);
     s.time = s.time + h;
 {1}  }}
 )";
@@ -91,7 +128,7 @@ std::string combined(const Method& method, int stage) {
     const double weight = method.a[stage][j];
     if (weight == 0) continue;
     const char* sign = sum.empty() ? (weight < 0 ? "-" : "") : weight < 0 ? " - " : " + ";
-    sum += fmt::format("{}T({}) * k[{}][i]", sign, std::abs(weight), j);
+    sum += fmt::format("{}T({}) * k[{}].of[i]", sign, std::abs(weight), j);
   }
   return sum;
 }
@@ -102,17 +139,20 @@ std::string runge_kutta(const Method& method, const char* title, const Contents&
   std::string text = fmt::format(stages_begin, title, method.stages, rows ? "; then C = 0 and J v = -dC/dt" : "",
                                  rows ? "    T forces[rows];\n" : "");
   for (int stage = 1; stage < method.stages; ++stage) {
-    text += "    for (int i = 0; i < bodies; ++i) {\n";
-    text += fmt::format("      const Slope now = {};\n", combined(method, stage));
-    text += "      at.q[i] = moved(s.q[i], h * now.v);\n      v[i] = s.v[i] + h * now.a;\n    }\n";
+    text += fmt::format("    for (int i = 0; i < Slope::size; ++i) now.of[i] = {};\n", combined(method, stage));
+    text += "    for (int i = 0; i < bodies; ++i) move(at.q[i], s.q[i], h * now.rate(i));\n";
+    text += "    for (int i = 0; i < bodies; ++i) v[i] = s.v[i] + h * now.acceleration(i);\n";
     text += fmt::format("    at.time = s.time + T({}) * h;\n", double(method.c[stage]));
     text += fmt::format("    slope($sat, v, {}k[{}]);\n", rows ? "s.J, forces, " : "", stage);
   }
-  return text + fmt::format(stages_end, combined(method, method.stages), rows ? ends_on_joints : ends_freely,
-                            has.gyroscopes ? "      s.q[i].I = at.q[i].I;  // as J, of the last stage\n" : "");
+  return text +
+         fmt::format(stages_end, combined(method, method.stages), rows ? ends_on_joints : ends_freely,
+                     has.gyroscopes
+                         ? "    for (int i = 0; i < bodies; ++i) s.q[i].I = at.q[i].I;  // as J, of the last stage\n"
+                         : "");
 }
 
-std::string euler(const Contents& has) {
+std::string euler(double tolerance, const Contents& has) {
   std::string text = euler_begins;
   if (has.effects || has.bounded) {
     const std::string arguments =
@@ -123,11 +163,18 @@ std::string euler(const Contents& has) {
   } else {
     text += has.rows ? euler_by_joints : "    push($qs.v, h);\n";
   }
-  if (has.closes()) text += "    const T left = s.residual;\n" + std::string(notes_poses);
-  text += drifts(has);
+  if (has.closes()) text += "    const T left = s.residual;\n" + notes_poses(has);
+  if (has.gyroscopes || !has.foresees) text += drifts(has, "s");
   text += "    s.time = s.time + h;\n";
   if (has.gyroscopes) text += follows;
-  if (has.closes()) text += euler_corrects;
+  if (has.foresees)
+    text += fmt::format(
+                euler_moves_as_foreseen, tolerance,
+                (has.spatial ? foresees_small_turns : std::string()) +
+                    (has.gyroscopes ? "" : "    for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], h * s.v[i]);\n"),
+                has.spatial ? "auto" : "const auto") +
+            fmt::format(euler_corrects_as_foreseen, tolerance);
+  else if (has.closes()) text += euler_corrects;
   if (has.gyroscopes && has.closes()) text += follows;
   text += "$C";
   if (has.rows) text += std::string(evaluates) + "    project(s);\n";
@@ -164,10 +211,12 @@ std::string begin_of(Method method, const Contents& has) {
       "    turn(s.q);\n";
   if (has.gyroscopes) text += accelerates ? "$W" : "    wind(s);\n";
   text += "$C";
-  if (has.rows) text += "    for (T& of_row : s.lambda) of_row = T(0);\n";
+  if (has.rows) text += "    for (int i = 0; i < rows; ++i) s.lambda[i] = T(0);\n";
   if (has.closes()) text += "    s.residual = T(1e30);\n";
   if (has.rows) text += evaluates;
-  if (has.closes()) text += notes_poses + fmt::format(closes, 0.2);
+  if (has.closes())
+    text +=
+        notes_poses(has) + (has.foresees ? std::string(begins_series) + closes_unforeseen : fmt::format(closes, 0.2));
   if (has.closes() && has.gyroscopes) text += accelerates ? "$W" : follows;
   if (has.rows) text += evaluates;
   if (accelerates && has.rows) text += "    project(s);\n    accelerate($ss.q, s.time, s.v, s.J, s.lambda, s.a);\n";
@@ -179,7 +228,7 @@ std::string begin_of(Method method, const Contents& has) {
 }
 
 std::string step_of(const Mechanism& mechanism, const Contents& has) {
-  if (mechanism.method == Method::euler) return euler(has);
+  if (mechanism.method == Method::euler) return euler(mechanism.tolerance, has);
   if (mechanism.method == Method::rattle) return rattle(mechanism.tolerance, has);
   if (mechanism.method == Method::rk4) return runge_kutta(rk4<double>, "The Runge-Kutta method of order 4", has);
   return runge_kutta(dop853<double>, "Dormand and Prince's method of order 8", has);

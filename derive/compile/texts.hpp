@@ -1,20 +1,21 @@
 // Members of a compiled struct that do not depend on the scene.
 #pragma once
 
+#include <cstddef>
+#include <string>
+
 namespace cdot::compile {
 
-inline constexpr const char* slope_type = R"(  struct Slope {
-    Rate v;
-    Velocity a;
-    friend Slope operator+(const Slope& k, const Slope& l) { return {k.v + l.v, k.a + l.a}; }
-    friend Slope operator-(const Slope& k, const Slope& l) { return {k.v - l.v, k.a - l.a}; }
-    friend Slope operator-(const Slope& k) { return {-k.v, -k.a}; }
-    friend Slope operator*(const T& x, const Slope& k) { return {x * k.v, x * k.a}; }
-  };
-)";
+struct Counts {
+  std::size_t bodies, rows, rates;  // rates: of all bodies that move, their poses and velocities
+};
+// The text with a line for each body, row or rate in place of a line "for (int i = 0; i < bodies; ++i) …;", where there
+// are few. The wide loads of a compiler's vector loop would wait for the stores of single numbers before them.
+std::string unrolled(const std::string& text, const Counts& counts);
 
 inline constexpr const char* guards = R"(
   static constexpr bool single = sizeof(typename NumberOf<T>::type) == 4;
+  static constexpr bool is_pack = sizeof(T) != sizeof(typename NumberOf<T>::type);
   static constexpr double epsilon = single ? 1.1920929e-07 : 2.220446049250313e-16;
   template <class>
   static T smallest() {
@@ -29,23 +30,23 @@ inline constexpr const char* guards = R"(
 
 inline constexpr const char* slope = R"(
   // The rates of change at a stage of a Runge-Kutta method.
-  static void slope($dEvaluated& at, const Velocity (&v)[bodies], Jacobian& J, T (&forces)[rows], Slope (&k)[bodies]) {
+  static void slope($dEvaluated& at, const Velocity (&v)[bodies], Jacobian& J, T (&forces)[rows], Slope& k) {
     turn(at.q);
 $w    evaluate($pat.q, at.time, J);
     Velocity a[bodies];
     accelerate($pat.q, at.time, v, J, forces, a);
-    for (int i = 0; i < bodies; ++i) k[i] = {rate_of(at.q[i], v[i]), a[i]};
+    for (int i = 0; i < bodies; ++i) k.set(i, rate_of(at.q[i], v[i]), a[i]);
   }
 )";
 
 // Without joints.
 inline constexpr const char* free_slope = R"(
   // The rates of change at a stage of a Runge-Kutta method.
-  static void slope($dEvaluated& at, const Velocity (&v)[bodies], Slope (&k)[bodies]) {
+  static void slope($dEvaluated& at, const Velocity (&v)[bodies], Slope& k) {
     turn(at.q);
 $w    Velocity a[bodies];
     fall($pat.q, at.time, v, a);
-    for (int i = 0; i < bodies; ++i) k[i] = {rate_of(at.q[i], v[i]), a[i]};
+    for (int i = 0; i < bodies; ++i) k.set(i, rate_of(at.q[i], v[i]), a[i]);
   }
 )";
 

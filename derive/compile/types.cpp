@@ -30,7 +30,10 @@ constexpr const char* planar_types = R"(
     return {select(now, a.x, b.x), select(now, a.y, b.y), select(now, a.w, b.w)};
   }
   static const Rate& rate_of(const Pose&, const Velocity& v) { return v; }
-  static Pose moved(const Pose& q, const Velocity& d) { return {q.x + d.x, q.y + d.y, q.angle + d.w, q.c, q.s}; }
+  // turn() is to follow.
+  static void move(Pose& to, const Pose& q, const Velocity& d) {
+    to.x = q.x + d.x, to.y = q.y + d.y, to.angle = q.angle + d.w;
+  }
 )";
 
 constexpr const char* spatial_pose = R"(
@@ -74,25 +77,17 @@ constexpr const char* spatial_types = R"(  }};
     return {{select(now, a.x, b.x),   select(now, a.y, b.y),   select(now, a.z, b.z),
             select(now, a.wx, b.wx), select(now, a.wy, b.wy), select(now, a.wz, b.wz)}};
   }}
-  // By the exact rotation about d.w.
-  static Pose moved(const Pose& q, const Velocity& d) {{
+  // By the exact rotation about d.w. turn() is to follow.
+  static void move(Pose& to, const Pose& q, const Velocity& d) {{
     T c;
     const Vector<T> half = half_turn(Vector<T>{{d.wx, d.wy, d.wz}}, c);
-    Pose to = turned_by(q, c, half);
+    turn_by(to, q, c, half);
     to.x = q.x + d.x, to.y = q.y + d.y, to.z = q.z + d.z;
-    return to;
   }}
 )";
 
 constexpr const char* spatial_rates = R"(  struct Rate {  // of a pose
     T x, y, z, e0, e1, e2, e3;
-    friend Rate operator+(const Rate& a, const Rate& b) {
-      return {a.x + b.x, a.y + b.y, a.z + b.z, a.e0 + b.e0, a.e1 + b.e1, a.e2 + b.e2, a.e3 + b.e3};
-    }
-    friend Rate operator-(const Rate& a, const Rate& b) {
-      return {a.x - b.x, a.y - b.y, a.z - b.z, a.e0 - b.e0, a.e1 - b.e1, a.e2 - b.e2, a.e3 - b.e3};
-    }
-    friend Rate operator-(const Rate& a) { return {-a.x, -a.y, -a.z, -a.e0, -a.e1, -a.e2, -a.e3}; }
     friend Rate operator*(const T& a, const Rate& b) {
       return {a * b.x, a * b.y, a * b.z, a * b.e0, a * b.e1, a * b.e2, a * b.e3};
     }
@@ -103,11 +98,9 @@ constexpr const char* spatial_rates = R"(  struct Rate {  // of a pose
     return {v.x, v.y, v.z, -x * q.e1 - y * q.e2 - z * q.e3, x * q.e0 + y * q.e3 - z * q.e2,
             y * q.e0 + z * q.e1 - x * q.e3, z * q.e0 + x * q.e2 - y * q.e1};
   }
-  static Pose moved(const Pose& from, const Rate& d) {
-    Pose q = from;
-    q.x = q.x + d.x, q.y = q.y + d.y, q.z = q.z + d.z;
-    q.e0 = q.e0 + d.e0, q.e1 = q.e1 + d.e1, q.e2 = q.e2 + d.e2, q.e3 = q.e3 + d.e3;
-    return q;
+  static void move(Pose& to, const Pose& q, const Rate& d) {
+    to.x = q.x + d.x, to.y = q.y + d.y, to.z = q.z + d.z;
+    to.e0 = q.e0 + d.e0, to.e1 = q.e1 + d.e1, to.e2 = q.e2 + d.e2, to.e3 = q.e3 + d.e3;
   }
 )";
 
@@ -119,15 +112,55 @@ constexpr const char* gyroscope =
   };
 )";
 
+constexpr const char* slope_type =
+    R"(  // Rates of the poses and of the velocities, as one list: sums of lists are loops that a compiler makes wide.
+  struct Slope {{
+    static constexpr int of_body = {0}, size = bodies * of_body;
+    T of[size];
+    void set(int i, const Rate& q, const Velocity& v) {{
+      T* const to = of + of_body * i;
+      {1}
+    }}
+    Rate rate(int i) const {{
+      const T* const to = of + of_body * i;
+      return {{{2}}};
+    }}
+    Velocity acceleration(int i) const {{
+      const T* const to = of + of_body * i;
+      return {{{3}}};
+    }}
+  }};
+)";
+
+std::string slope_of(bool spatial) {
+  const std::vector<std::string> rates = spatial ? std::vector<std::string>{"x", "y", "z", "e0", "e1", "e2", "e3"}
+                                                 : std::vector<std::string>{"x", "y", "w"};
+  const std::vector<std::string> velocities =
+      spatial ? std::vector<std::string>{"x", "y", "z", "wx", "wy", "wz"} : rates;
+  std::string sets, of_rate, of_velocity;
+  int number = 0;
+  for (const std::string& name : rates) {
+    sets += fmt::format("to[{}] = q.{}, ", number, name);
+    of_rate += fmt::format("{}to[{}]", number == 0 ? "" : ", ", number), ++number;
+  }
+  for (const std::string& name : velocities) {
+    const bool last = &name == &velocities.back(), first = &name == &velocities.front();
+    sets += fmt::format("to[{}] = v.{}{}", number, name, last ? ";" : ", ");
+    of_velocity += fmt::format("{}to[{}]", first ? "" : ", ", number), ++number;
+  }
+  return fmt::format(slope_type, number, sets, of_rate, of_velocity);
+}
+
 }  // namespace
 
 std::string types_of(const Mechanism& mechanism) {
-  if (!mechanism.spatial()) return planar_types;
+  const std::string slope = mechanism.on_accelerations() ? slope_of(mechanism.spatial()) : "";
+  if (!mechanism.spatial()) return planar_types + slope;
   const bool gyroscopes = has_gyroscopes(mechanism);
   std::string text = spatial_pose;
   if (gyroscopes) text += spatial_inertia;
   text += fmt::format(spatial_types, gyroscopes ? "    one.I = scenes::choose(now, q.I, p.I);\n" : "");
-  if (mechanism.on_accelerations()) text += spatial_rates;
+  if (mechanism.on_accelerations()) text += spatial_rates + slope;
   else if (gyroscopes) text += gyroscope;
   return text;
 }

@@ -7,7 +7,7 @@
 
 namespace cdot::compile {
 
-// Pose, Velocity and Rate, that of a pose; choose(), moved(), rate_of().
+// Pose, Velocity and Rate, that of a pose; choose(), move(), rate_of().
 std::string types_of(const Mechanism& mechanism);
 
 // Numbers of a State for each body that moves: with its accelerations or, of a step at velocities, its momentum; pulls:

@@ -84,6 +84,7 @@ const std::vector<std::string> rooms = {
     // cdot-compile.
     "derive/compile/scene", // a scene as numbers
     "derive/compile/rows", // its rows and laws as programs
+    "derive/compile/foresight", // rounds of Newton that begin close to the end
     "derive/compile/methods",  // its steps as text
     "derive/compile",      // a scene to a header of its own
     "derive/play",         // the playground: its engine and its page

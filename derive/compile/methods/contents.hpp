@@ -13,6 +13,7 @@ struct Contents {
   // By RATTLE: effects act by their rates at the start; rates at the end are looked for; the end solves for more than
   // the joints, and so does the start of a run.
   bool rattle = false, dampens = false, looks = false, finishes = false, exerts = false;
+  bool foresees = false;  // the multipliers of the next projection, by those of the last steps
   bool closes() const { return rows || ends; }
   bool pulls() const { return rattle && (rows || bounded); }  // a State has its joints' accelerations
 };
@@ -20,11 +21,17 @@ struct Contents {
 inline constexpr const char* evaluates = "    evaluate($ss.q, s.time, s.J);\n";
 inline constexpr const char* follows = "    follow(s, T(0) < T(1));\n";
 
-inline std::string drifts(const Contents& has) {
-  return has.gyroscopes ? "    drift(s, h);\n"
-                        : R"(    for (int i = 0; i < bodies; ++i) s.q[i] = moved(s.q[i], h * s.v[i]);
-    turn(s.q);
+// With `moves`.
+inline constexpr const char* closes_unforeseen = R"(    T total[rows];
+    for (int i = 0; i < bodies; ++i) moves[i] = still();
+    for (int i = 0; i < rows; ++i) total[i] = T(0);
+    close(s, at, T(0.2), T(1) < T(0), moves, total);
 )";
+
+// From the poses of `from`, "s" or "at".
+inline std::string drifts(const Contents& has, const std::string& from) {
+  if (has.gyroscopes) return "    drift(s, " + from + ".q, h);\n";
+  return "    for (int i = 0; i < bodies; ++i) move(s.q[i], " + from + ".q[i], h * s.v[i]);\n    turn(s.q);\n";
 }
 
 }  // namespace cdot::compile

@@ -25,6 +25,14 @@ constexpr const char* first_kick = R"(    fall($ss.q, s.time, s.v, a);
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + half * {};
 )";
 
+// The first guess of the joints' forces.
+constexpr const char* guesses = R"(    T foreseen[rows], found[rows];
+    Velocity pull[bodies];
+    foresee(s, T(1), foreseen);
+    for (int i = 0; i < rows; ++i) found[i] = foreseen[i];
+    apply($qs.J, found, pull);
+)";
+
 constexpr const char* closing_begins = R"(    Evaluated at;
     at.time = s.time, s.time = s.time + h;
     for (int i = 0; i < bodies; ++i) at.q[i] = s.q[i];
@@ -33,15 +41,19 @@ constexpr const char* closing_begins = R"(    Evaluated at;
     auto goes_on = T(0) < T(1), astray = T(1) < T(0);
 )";
 
+constexpr const char* series_begins = R"(    T last = T(1e30);
+    auto by_series = s.known > T(0.5);
+    Aim B{};
+    Mask aimed = T(1) < T(0);
+)";
+
 constexpr const char* ends_begin = R"(    Bounded reached;
     bool reaches = false;
 )";
 
-constexpr const char* round_begins = R"(    for (int round = 0; round < 100; ++round) {
-      for (int i = 0; i < bodies; ++i) s.q[i] = at.q[i];
-)";
+constexpr const char* round_begins = "    for (int round = 0; round < 100; ++round) {\n";
 
-constexpr const char* joint_errors = R"(      T C[rows], unused[rows];
+constexpr const char* joint_errors = R"(      T C[rows], impulse[rows];
       errors($ss.q, s.time, C);
 )";
 constexpr const char* end_errors = R"(      T over[bounded];
@@ -50,21 +62,45 @@ constexpr const char* end_errors = R"(      T over[bounded];
 
 constexpr const char* judges = R"(      s.residual = select(goes_on, worst, s.residual);
       if (round == 0) goes_on = goes_on && !(magnitude(worst - left) <= T(single ? -1 : 1e-9) * worst);
-      const auto shrinks = worst < T(0.7) * least;
+      const T fine = T(single ? 1e6 * {0} : 0.01 * {0});
+      const auto is_fine = worst <= fine, is_small = worst <= T(single ? 1e7 * {0} : {0});
+{1}      const auto shrinks = worst < T(0.7) * least;
       vain = select(shrinks, T(0), vain + T(1)), least = select(shrinks, worst, least);
-      const auto is_fine = worst <= T(single ? 1e6 * {0} : 0.01 * {0});
-      const auto is_small = worst <= T(single ? 1e7 * {0} : {0});
       goes_on = goes_on && !is_fine && (shrinks || (!is_small && vain <= T(4)));
       astray = astray || (goes_on && vain > T(0));
       if (!any(goes_on)) break;
 )";
 
-constexpr const char* joint_changes = R"(      for (T& of_row : C) of_row = select(goes_on, -of_row / h, T(0));
-      Velocity d[bodies];
-      solve($qs.J, C, unused, d);
+// A guess that leaves slow rounds: begins again with the forces at the end of the last step.
+constexpr const char* leaves_series =
+    R"(      const auto strays = goes_on && by_series && !is_small && worst > T(0.2) * last;
+      if (any(strays)) {
+        for (int i = 0; i < rows; ++i) found[i] = select(strays, s.lambda[i], found[i]);
+        for (int i = 0; i < bodies; ++i) s.v[i] = choose(strays, before[i] + half * (a[i] + s.pull[i]), s.v[i]);
+        by_series = by_series && !strays, least = select(strays, T(1e30), least), last = select(strays, T(1e30), last);
+        --round;
+        continue;
+      }
 )";
+
+// As in close().
+constexpr const char* drift_aims = R"(      if (round == 1) {
+        aimed = goes_on && worst * worst * worst > fine * last * last;
+        if (any(aimed)) aim($ss.q, s.time, s.J, B);
+      }
+      last = worst;
+)";
+
+constexpr const char* joint_changes =
+    R"(      for (int i = 0; i < rows; ++i) C[i] = select(goes_on, C[i] {}, T(0));
+      Velocity d[bodies];
+      solve($qs.J, {}C, impulse, d);
+      for (int i = 0; i < bodies; ++i) d[i] = -d[i];
+)";
+constexpr const char* notes_found =
+    "      for (int i = 0; i < rows; ++i) found[i] = found[i] - (T(1) / half) * impulse[i];\n";
 constexpr const char* no_changes = R"(      Velocity d[bodies];
-      for (Velocity& of_body : d) of_body = still();
+      for (int i = 0; i < bodies; ++i) d[i] = still();
 )";
 
 // Ends that are passed take part in the round.
@@ -78,8 +114,9 @@ constexpr const char* end_changes = R"(      Mask passed[bounded];
         along($sat.q, at.time, d, along_ends);
         for (int i = 0; i < bounded; ++i) c[i] = -over[i] / h - along_ends[i], mu[i] = T(0);
         divide(reached.S, passed, c, mu);
-        for (int e = 0; e < bounded; ++e)
+        for (int e = 0; e < bounded; ++e) {{
           for (int i = 0; i < bodies; ++i) d[i] = d[i] + mu[e] * reached.g[e][i];
+        }}
       }}
 )";
 
@@ -93,15 +130,12 @@ constexpr const char* round_ends =
     const auto fails = reverses || s.residual > T(single ? 1e8 * {0} : 10 * {0});
     if (any(fails)) {{
       Pose next[bodies];
-      for (int i = 0; i < bodies; ++i) {{
-        s.v[i] = choose(fails, before[i] + half * {1}, s.v[i]);
-        next[i] = s.q[i], s.q[i] = choose(fails, at.q[i], s.q[i]);
-      }}
-  {2}      for (int i = 0; i < bodies; ++i) s.q[i] = choose(fails, s.q[i], next[i]);
+      for (int i = 0; i < bodies; ++i) s.v[i] = choose(fails, before[i] + half * {1}, s.v[i]);
+      for (int i = 0; i < bodies; ++i) next[i] = s.q[i];
+{2}      for (int i = 0; i < bodies; ++i) s.q[i] = choose(fails, s.q[i], next[i]);
       s.residual = select(fails, left, s.residual);
       Velocity moves[bodies];
-      close(s, at, T(0.2), moves);
-      const auto keep = fails && T(4) * weighed(s.q, moves) <= h * h * weighed(s.q, s.v);
+{3}      const auto keep = fails && T(4) * weighed(s.q, moves) <= h * h * weighed(s.q, s.v);
       for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + select(keep, T(1) / h, T(0)) * moves[i];
     }}
 )";
@@ -112,13 +146,15 @@ constexpr const char* second_kick = R"(    for (int i = 0; i < bodies; ++i) befo
 {}    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + half * a[i];
 )";
 
-constexpr const char* joints_end = R"(    T b[rows];
-    rates(s.J, s.v, b);
-    for (T& of_row : b) of_row = -of_row;
+constexpr const char* joints_end = R"(    T rate[rows];
+    rates(s.J, s.v, rate);
     Velocity d[bodies];
-    solve($qs.J, b, s.lambda, d);
-    for (T& of_row : s.lambda) of_row = of_row / half;
-    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + d[i], s.pull[i] = (T(1) / half) * d[i];
+    solve($qs.J, rate, s.lambda, d);
+    for (int i = 0; i < rows; ++i) s.lambda[i] = (T(-1) / half) * s.lambda[i];
+    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] - d[i], s.pull[i] = (T(-1) / half) * d[i];
+)";
+constexpr const char* remembers = R"(    for (int i = 0; i < rows; ++i) found[i] = select(fails, s.lambda[i], found[i]);
+    remember(s, !fails, T(1), found, foreseen);
 )";
 
 constexpr const char* looks = R"(    T C_now[damped], rate_now[damped], K_now[triangles], given[damped], end[damped];
@@ -206,16 +242,21 @@ constexpr const char* finds_rates = R"(
 // Newton on the velocities of the drift, with J of its start.
 std::string closing(double tolerance, const Contents& has) {
   std::string text = closing_begins;
+  if (has.foresees) text += series_begins;
   if (has.ends) text += ends_begin;
-  text += round_begins + ("  " + drifts(has));
+  text += round_begins + drifts(has, "at");
   if (has.rows) text += joint_errors;
   if (has.ends) text += end_errors;
   text += has.rows ? "      T worst = largest(C);\n" : "      T worst = largest(over);\n";
   if (has.rows && has.ends) text += "      worst = select(largest(over) > worst, largest(over), worst);\n";
-  text += fmt::format(judges, tolerance);
-  text += has.rows ? joint_changes : no_changes;
+  text += fmt::format(judges, tolerance, has.foresees ? leaves_series : "");
+  if (has.foresees) text += drift_aims;
+  text += has.rows ? fmt::format(joint_changes, has.foresees ? "* (T(1) / h)" : "/ h", has.foresees ? "B, aimed, " : "")
+                   : no_changes;
   if (has.ends) text += fmt::format(end_changes, has.rows ? "s.J, " : "");
-  return text + fmt::format(round_ends, tolerance, has.pulls() ? "(a[i] + s.pull[i])" : "a[i]", drifts(has));
+  if (has.foresees) text += notes_found;
+  return text + fmt::format(round_ends, tolerance, has.pulls() ? "(a[i] + s.pull[i])" : "a[i]", drifts(has, "at"),
+                            has.foresees ? closes_unforeseen : "      close(s, at, T(0.2), moves);\n");
 }
 
 // The end's impulses of joints, effects and rows with bounds together.
@@ -255,13 +296,15 @@ std::string start_of(const Contents& has) {
 std::string rattle(double tolerance, const Contents& has) {
   std::string text = fmt::format(begins, has.exerts ? "    start(s, h);\n" : "");
   text += has.dampens ? dampens : notes_velocities;
-  text += fmt::format(first_kick, has.pulls() ? "(a[i] + s.pull[i])" : "a[i]");
-  text += has.closes() ? closing(tolerance, has) : drifts(has) + "    s.time = s.time + h;\n";
+  if (has.foresees) text += guesses;
+  text += fmt::format(first_kick, has.foresees ? "(a[i] + pull[i])" : has.pulls() ? "(a[i] + s.pull[i])" : "a[i]");
+  text += has.closes() ? closing(tolerance, has) : drifts(has, "s") + "    s.time = s.time + h;\n";
   if (has.gyroscopes) text += follows;
   text += "$C";
   if (has.rows) text += evaluates;
   text += fmt::format(second_kick, has.looks ? looks : "");
   text += has.finishes ? finishing(has) : has.rows ? joints_end : "";
+  if (has.foresees) text += remembers;
   return text + fmt::format("    return {};\n  }}\n", has.closes() ? "s.residual" : "T(0)");
 }
 

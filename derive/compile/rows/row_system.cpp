@@ -92,10 +92,9 @@ void RowSystem::soften(Algebra& algebra, std::size_t row, int by) {
   }
 }
 
-int RowSystem::inverse_pivot(Algebra& algebra, std::size_t j, int D, double noise) const {
-  const int diagonal = K(order_[j], order_[j]);
+int RowSystem::inverse_pivot(Algebra& algebra, std::size_t j, int D, int diagonal) const {
   const std::string name = "inv_D_" + std::to_string(j);
-  if (algebra.at_start(D) > noise) return algebra.function(Fn::pivot, {D, diagonal}, name);
+  if (!redundant_[j]) return algebra.function(Fn::pivot, {D, diagonal}, name);
   const int share = algebra.times(algebra.value(dense::lasting_share), diagonal), zero = algebra.value(0);
   return algebra.function(Fn::select, {algebra.sum({{D, share}, {1, -1}}), algebra.function(Fn::inverse, {D}), zero},
                           name);
@@ -117,8 +116,10 @@ void RowSystem::factor(Algebra& algebra, const Store& store) {
       const std::string place = i == j ? at : fmt::format("{}_{}", i, j);
       const int entry = algebra.sum(terms, (i == j ? "D_" : "U_") + place);
       if (i == j) {
-        noise[j] += dense::pivot_noise<double> * algebra.at_start(K(order_[j], order_[j]));
-        inverse = inverse_pivot(algebra, j, entry, noise[j]);
+        const int diagonal = K(order_[j], order_[j]);
+        noise[j] += dense::pivot_noise<double> * algebra.at_start(diagonal);
+        redundant_.push_back(!(algebra.at_start(entry) > noise[j]));
+        inverse = inverse_pivot(algebra, j, entry, diagonal);
         store("inv_D_" + at, inverse);
         continue;
       }

@@ -33,6 +33,9 @@ class RowSystem {
   using Store = std::function<void(const std::string& name, int op)>;
   void factor(Algebra& algebra, const Store& store);
 
+  // 1/D of the place j in the order, in this factor or in one of a matrix beside K, where its diagonal entry is that.
+  int inverse_pivot(Algebra& algebra, std::size_t j, int D, int diagonal) const;
+
   // --- in that Algebra or another one ---
 
   // lambda from b, both by rows. read("L_5_4") is the operation that was stored.
@@ -47,8 +50,6 @@ class RowSystem {
   void order_rows();
   bool share_a_body(std::size_t i, std::size_t k) const;
   void couple(Algebra& algebra, std::size_t i, std::size_t k);
-  // 1/D of the place j in the order.
-  int inverse_pivot(Algebra& algebra, std::size_t j, int D, double noise) const;
   int K(std::size_t i, std::size_t j) const { return K_[std::max(i, j)][std::min(i, j)]; }
 
   const RowBlocks& rows_;
@@ -59,6 +60,7 @@ class RowSystem {
   std::vector<Values> dense_;         // by block
   std::vector<std::vector<int>> K_;   // lower triangle; -1: zero
   std::vector<std::vector<bool>> L_;  // which entries are not zero
+  std::vector<bool> redundant_;       // at the start, by places in the order
 };
 
 }  // namespace cdot::compile

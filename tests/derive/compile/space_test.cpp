@@ -53,10 +53,11 @@ using cdot::Integrator;
 
 const std::string slider_crank = "specs/scenes/spatial/slider_crank.toml";
 
-// With steps of 1 ms, at 150 rad/s, Newton turns a change of 1e-15 at the start into 1e-7.
+// With steps of 1 ms, at 150 rad/s, Newton turns a change of 1e-15 at the start into 1e-7. Rotations of rounds do not
+// commute: corrections of 1e-4 rad in other rounds are 1e-11 rad apart.
 TEST(CompiledSpace, MovesByEulerAsTheWorld) {
   CDOT_EACH_SCENE_IN_SPACE(CDOT_RUN_IN_SPACE, euler)
-  cdot::runs_as_the_world<cdot::scenes::slider_crank_space_euler<double>>(slider_crank, Integrator::euler, 1e-10, 0.07,
+  cdot::runs_as_the_world<cdot::scenes::slider_crank_space_euler<double>>(slider_crank, Integrator::euler, 2e-10, 0.07,
                                                                           1e-4);
 }
 

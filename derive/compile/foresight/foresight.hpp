@@ -1,0 +1,43 @@
+// Newton's method begins close to C = 0, by the multipliers of the last steps, and ends fast where J turns far in a
+// step. As text.
+#pragma once
+
+#include <string>
+
+namespace cdot::compile {
+
+// So many multipliers of the last steps foretell the next ones.
+inline constexpr int foreseen_by = 6;
+
+// foresee() and remember(); solve() on K, or on another matrix in the lanes that aim.
+std::string foresight();
+
+// --- in close() ---
+
+// Moves the poses as foreseen.
+inline constexpr const char* moves_as_foreseen = R"(    Pose free[bodies];
+    for (int i = 0; i < bodies; ++i) free[i] = s.q[i];
+    for (int i = 0; i < bodies; ++i) move(s.q[i], free[i], moves[i]);
+    turn(s.q);
+    Aim B{};
+    Mask aimed = T(1) < T(0);
+)";
+
+// Foreseen moves that leave slow rounds are taken back: rounds without them decide whether J is to be renewed.
+inline constexpr const char* takes_back = R"(      const auto astray = goes_on && foreseen && worst > slow * before;
+      if (any(astray)) {
+        for (int i = 0; i < bodies; ++i) s.q[i] = choose(astray, free[i], s.q[i]);
+        for (int i = 0; i < bodies; ++i) moves[i] = choose(astray, still(), moves[i]);
+        for (int i = 0; i < rows; ++i) total[i] = select(astray, T(0), total[i]);
+        turn(s.q);
+        before = select(astray, T(1e30), before);
+        foreseen = foreseen && !astray;
+        --round;
+        continue;
+      }
+)";
+
+// Aims, where rounds on K would be many.
+std::string aims(bool spatial);
+
+}  // namespace cdot::compile

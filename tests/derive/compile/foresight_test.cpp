@@ -1,0 +1,80 @@
+// The corrections of compiled steps are foreseen by those before: fewer rounds, where the step is steady and where it
+// is not the same trajectory.
+#include <gtest/gtest.h>
+
+#include "chain_10_euler.hpp"
+#include "chain_10_rattle.hpp"
+#include "chain_10_space_rattle.hpp"
+#include "slider_crank_euler.hpp"
+#include "slider_crank_rattle.hpp"
+#include "tests/derive/compile/beside_world.hpp"
+
+namespace {
+
+using cdot::Integrator;
+using namespace cdot::scenes;
+
+// A number that counts how often it is multiplied.
+struct Counted {
+  Counted() = default;
+  Counted(double number) : number(number) {}  // NOLINT: as a double
+  double number;
+  inline static long products = 0;
+
+  friend Counted operator+(Counted a, Counted b) { return a.number + b.number; }
+  friend Counted operator-(Counted a, Counted b) { return a.number - b.number; }
+  friend Counted operator-(Counted a) { return -a.number; }
+  friend Counted operator*(Counted a, Counted b) { return ++products, a.number * b.number; }
+  friend Counted operator/(Counted a, Counted b) { return a.number / b.number; }
+  friend bool operator<(Counted a, Counted b) { return a.number < b.number; }
+  friend bool operator>(Counted a, Counted b) { return a.number > b.number; }
+  friend bool operator<=(Counted a, Counted b) { return a.number <= b.number; }
+  friend bool operator>=(Counted a, Counted b) { return a.number >= b.number; }
+  friend Counted select(bool condition, Counted a, Counted b) { return condition ? a : b; }
+  friend Counted sqrt(Counted a) { return std::sqrt(a.number); }
+};
+
+// Of a step of 1 ms in the mean, after the first ones.
+template <template <class> class Compiled>
+double products() {
+  typename Compiled<Counted>::State state;
+  Compiled<Counted>::reset(state);
+  for (int k = 0; k < 20; ++k) Compiled<Counted>::step(state);
+  Counted::products = 0;
+  for (int k = 0; k < 500; ++k) Compiled<Counted>::step(state);
+  return double(Counted::products) / 500;
+}
+
+TEST(Foresight, StepsTakeFewRounds) {
+  EXPECT_LT(products<slider_crank_euler>(), 830);
+  EXPECT_LT(products<slider_crank_rattle>(), 920);
+  EXPECT_LT(products<chain_10_euler>(), 1900);
+  EXPECT_LT(products<chain_10_rattle>(), 1930);
+  EXPECT_LT(products<chain_10_space_rattle>(), 10500);
+}
+
+// Steps of other lengths begin other series.
+template <class Compiled>
+void changes_its_step(const std::string& file, Integrator integrator, double within) {
+  using S = std::conditional_t<cdot::is_spatial<Compiled>, cdot::Spatial<double>, cdot::Planar<double>>;
+  auto world = cdot::world_of<S>(cdot::read_scene(std::string(CDOT_SOURCE_DIR) + "/" + file), integrator);
+  typename Compiled::State state;
+  Compiled::reset(state);
+  constexpr double steps[] = {0.001, 0.001, 0.0004, 0.001, 0.0002, 0.0007, 0.0007};
+  for (int k = 0; k < 500; ++k) {
+    const double step = steps[k % 20 < 13 ? 0 : k % 7];
+    ASSERT_TRUE(world.step(step));
+    ASSERT_LT(Compiled::step(state, step), 1e-12) << file << ", step " << k;
+  }
+  EXPECT_LT(cdot::distance<Compiled>(state, world), within) << file;
+}
+
+TEST(Foresight, FollowsChangesOfTheStep) {
+  changes_its_step<chain_10_euler<double>>("specs/scenes/chain_10.toml", Integrator::euler, 1e-10);
+  changes_its_step<chain_10_rattle<double>>("specs/scenes/chain_10.toml", Integrator::rattle, 1e-10);
+  changes_its_step<slider_crank_euler<double>>("specs/scenes/slider_crank.toml", Integrator::euler, 2e-9);
+  changes_its_step<slider_crank_rattle<double>>("specs/scenes/slider_crank.toml", Integrator::rattle, 1e-10);
+  changes_its_step<chain_10_space_rattle<double>>("specs/scenes/spatial/chain_10.toml", Integrator::rattle, 1e-10);
+}
+
+}  // namespace
