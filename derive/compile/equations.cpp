@@ -125,8 +125,10 @@ class EquationWriter {
   void write_bounded() {
     for (std::size_t b = 0; b < mechanism_.bounded.size(); ++b) {
       out_.is_rate += std::string(b == 0 ? "" : ", ") + (prescribes_rate(blocks_, b) ? "true" : "false");
-      out_.has_ends |= has_ends(blocks_, b);
+      out_.waits += std::string(b == 0 ? "" : ", ") + (waits(blocks_, b) ? "true" : "false");
+      out_.has_ends |= has_ends(blocks_, b), out_.has_events |= has_events(blocks_, b);
     }
+    if (out_.has_events) out_.distances = distances_of(blocks_, out_.constants);
     if (!out_.has_ends) return;
     out_.reach = reach_of(blocks_, joints_, out_.constants);
     out_.past = past_of(blocks_, out_.constants);
@@ -157,7 +159,7 @@ class EquationWriter {
 std::vector<const Program*> programs_of_equations(const Equations& e) {
   return {&e.evaluate,    &e.errors, &e.rates,  &e.accelerate, &e.solve,  &e.apply, &e.aim,
           &e.solve_aimed, &e.fall,   &e.kick,   &e.potential,  &e.reach,  &e.past,  &e.along,
-          &e.angles,      &e.dampen, &e.notice, &e.look,       &e.finish, &e.exert};
+          &e.angles,      &e.dampen, &e.notice, &e.look,       &e.finish, &e.exert, &e.distances};
 }
 
 std::set<std::string> functions_of(const Program& program) {

@@ -41,10 +41,12 @@ struct Equations {
   Program exert;               // q, v, time, J, h -> lambda, pull, B: forces at the start of a run
   // Of rows with bounds:
   std::string is_rate;  // "true, false", by row
-  bool has_ends = false;
-  Program reach;  // q, time, J -> B: their part in a projection
-  Program past;   // q, time -> past: errors
-  Program along;  // q, v, time -> along: J v
+  bool has_ends = false, has_events = false;
+  std::string waits;  // "true, false", by row: it waits for an event
+  Program reach;      // q, time, J -> B: their part in a projection
+  Program past;       // q, time -> past: errors
+  Program along;      // q, v, time -> along: J v
+  Program distances;  // q, v, time -> after, until: distances from events
 };
 std::vector<const Program*> programs_of_equations(const Equations& equations);
 // Those of <cmath> that it calls.

@@ -10,6 +10,7 @@
 #include "derive/compile/foresight/foresight.hpp"
 #include "derive/compile/gyroscopes.hpp"
 #include "derive/compile/identifiers.hpp"
+#include "derive/compile/methods/events.hpp"
 #include "derive/compile/methods/rattle.hpp"
 #include "derive/compile/methods/tables.hpp"
 #include "derive/compile/space.hpp"
@@ -62,6 +63,7 @@ class HeaderWriter {
             .effects = !mechanism_.effects.empty(),
             .bounded = !mechanism_.bounded.empty(),
             .ends = equations_.has_ends,
+            .events = equations_.has_events,
             .spatial = mechanism_.spatial(),
             .gyroscopes = has_gyroscopes(mechanism_),
             .angles = mechanism_.angles > 0,
@@ -82,14 +84,15 @@ class HeaderWriter {
   // them, "$q" passes those of a State, "$t" those of the caller. Poses get their inertias by "$w" at a stage, by "$W"
   // at the end of a step.
   std::string with_arguments(std::string text) const {
-    const bool inputs = has_inputs(), angles = has().angles, turns = has().gyroscopes;
+    const bool inputs = has_inputs(), angles = has().angles, events = has().events, turns = has().gyroscopes;
     const std::pair<std::string_view, std::string> marks[] = {
         {"$C", angles ? "    Angles next_angles;\n    count($ss.q, s.time, next_angles.angle, next_angles.turns);\n    "
                         "s.angles = next_angles;\n"
                       : ""},
-        {"$d", std::string(inputs ? "const Inputs& p, " : "") + (angles ? "const Angles& angles, " : "")},
-        {"$s", std::string(inputs ? "s.p, " : "") + (angles ? "s.angles, " : "")},
-        {"$p", std::string(inputs ? "p, " : "") + (angles ? "angles, " : "")},
+        {"$d", std::string(inputs ? "const Inputs& p, " : "") + (angles ? "const Angles& angles, " : "") +
+                   (events ? "const Events& events, " : "")},
+        {"$s", std::string(inputs ? "s.p, " : "") + (angles ? "s.angles, " : "") + (events ? "s.events, " : "")},
+        {"$p", std::string(inputs ? "p, " : "") + (angles ? "angles, " : "") + (events ? "events, " : "")},
         {"$g", pose_argument(mechanism_)},
         {"$q", turns ? "s.q, " : ""},
         {"$t", turns ? "q, " : ""},
@@ -110,8 +113,8 @@ class HeaderWriter {
            of(calls.rates, equations_.rates) + of(calls.accelerate, equations_.accelerate) +
            of(calls.solve, equations_.solve) + of(1, equations_.apply) + of(calls.fall, equations_.fall) +
            of(calls.kick, equations_.kick) + of(calls.past, equations_.past) + of(1, equations_.angles) +
-           of(calls.dampen, equations_.dampen) + of(calls.notice, equations_.notice) + of(calls.look, equations_.look) +
-           of(calls.finish, equations_.finish);
+           of(has().events ? 1 : 0, equations_.distances) + of(calls.dampen, equations_.dampen) +
+           of(calls.notice, equations_.notice) + of(calls.look, equations_.look) + of(calls.finish, equations_.finish);
   }
 
   long state_bytes() const {
@@ -119,7 +122,7 @@ class HeaderWriter {
     for (const Body& body : mechanism_.bodies) of_bodies += numbers_of(mechanism_, body, has().pulls());
     const long of_rows = long{has().foresees ? 1 + foreseen_by : 1} * long(equations_.rows.size()) +
                          long(equations_.stored.size()) + (has().closes() ? 1 : 0) + (has().foresees ? 1 : 0) +
-                         (has().exerts ? 1 : 0);
+                         (has().exerts ? 1 : 0) + (has().events ? 3 * long(mechanism_.bounded.size()) : 0);
     return long{sizeof(double)} * (1 + of_bodies + of_rows + long(mechanism_.bounded.size()) +
                                    long(equations_.constants.inputs.size()) + 2 * mechanism_.angles);
   }
@@ -190,6 +193,12 @@ class HeaderWriter {
       line("  };");
     }
     if (has().foresees) line("  struct Multipliers {\n    T of[rows];\n  };");
+    if (has().events) {
+      line("  // Of rows with bounds: 1 if they have begun, if they have ended, if they act.");
+      line("  struct Events {");
+      line("    T began[bounded], ended[bounded], acts[bounded];");
+      line("  };");
+    }
     line("  // What a run is made of: a copy is a snapshot. After a change of poses or velocities call begin().");
     line("  struct State {");
     line("    T time;  // [s]");
@@ -210,6 +219,7 @@ class HeaderWriter {
       line("    T hold[bounded];  // of the rows with bounds: -1 at the lower one, 1 at the upper one, 0 between");
     if (has_inputs()) line("    Inputs p;");
     if (has().angles) line("    Angles angles;");
+    if (has().events) line("    Events events;");
     if (has().exerts) line("    T begins;        // 1 before the first step");
     if (has().closes()) line("    T residual;      // the largest |C| [m], [rad]");
     if (has_rows()) line("    Jacobian J;      // of the poses q");
@@ -229,6 +239,8 @@ class HeaderWriter {
     for (const auto& [name, value] : equations_.constants.inputs_read)
       line(fmt::format("    s.p.{} = T({});", name, value));
     if (has().bounded) line("    for (T& of_row : s.hold) of_row = T(0);");
+    if (has().events) line("    for (T& of_row : s.events.began) of_row = T(0);");
+    if (has().events) line("    for (T& of_row : s.events.ended) of_row = T(0);");
     if (has().angles) line("    for (T& angle : s.angles.angle) angle = T(0);");
     if (has().angles) line("    for (T& turns : s.angles.turns) turns = T(0);");
     line("    begin(s);");
@@ -250,6 +262,7 @@ class HeaderWriter {
     for (const std::string& statement : lines) line(statement);
     if (has_inputs() && head.find("$d") != std::string::npos) line("    (void)p;");
     if (has().angles && head.find("$d") != std::string::npos) line("    (void)angles;");
+    if (has().events && head.find("$d") != std::string::npos) line("    (void)events;");
     for (const std::string argument :
          {"q", "v", "time", "J", "B", "b", "h", "lambda", "C", "rate", "K", "guess", "given", "end"})
       if (reads(arguments, argument)) line(fmt::format("    (void){};", argument));
@@ -295,6 +308,12 @@ class HeaderWriter {
                          (has().bounded ? ", Bounded& B)" : ")"),
                      equations_.kick);
     if (has().ends) write_ends(at, moving);
+    if (has().events) {
+      write_function("Distances from the events of rows with bounds",
+                     "distances(" + at + ", " + moving + ", T (&after)[bounded], T (&until)[bounded])",
+                     equations_.distances);
+      text_ += latch_of(equations_.waits, has());
+    }
     if (has().angles)
       write_function("Angles with their whole turns",
                      fmt::format("count({}, T (&angle)[{}], T (&turns)[{}])", at, mechanism_.angles, mechanism_.angles),

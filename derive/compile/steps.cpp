@@ -178,6 +178,7 @@ std::string euler(double tolerance, const Contents& has) {
   if (has.gyroscopes && has.closes()) text += follows;
   text += "$C";
   if (has.rows) text += std::string(evaluates) + "    project(s);\n";
+  if (has.events) text += "    latch(s);\n";
   return text + fmt::format("    return {};\n  }}\n", has.closes() ? "s.residual" : "T(0)");
 }
 
@@ -211,6 +212,7 @@ std::string begin_of(Method method, const Contents& has) {
       "    turn(s.q);\n";
   if (has.gyroscopes) text += accelerates ? "$W" : "    wind(s);\n";
   text += "$C";
+  if (has.events) text += "    latch(s);\n";
   if (has.rows) text += "    for (int i = 0; i < rows; ++i) s.lambda[i] = T(0);\n";
   if (has.closes()) text += "    s.residual = T(1e30);\n";
   if (has.rows) text += evaluates;

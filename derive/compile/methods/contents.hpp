@@ -9,6 +9,7 @@ namespace cdot::compile {
 // some whose inertia turns with them.
 struct Contents {
   bool rows = false, effects = false, bounded = false, ends = false;
+  bool events = false;                                       // among rows with bounds some that begin or end to act
   bool spatial = false, gyroscopes = false, angles = false;  // angles: that count whole turns
   // By RATTLE: effects act by their rates at the start; rates at the end are looked for; the end solves for more than
   // the joints, and so does the start of a run.

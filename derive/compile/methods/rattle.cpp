@@ -305,6 +305,7 @@ std::string rattle(double tolerance, const Contents& has) {
   text += fmt::format(second_kick, has.looks ? looks : "");
   text += has.finishes ? finishing(has) : has.rows ? joints_end : "";
   if (has.foresees) text += remembers;
+  if (has.events) text += "    latch(s);\n";
   return text + fmt::format("    return {};\n  }}\n", has.closes() ? "s.residual" : "T(0)");
 }
 

@@ -54,6 +54,7 @@ void RowBlocks::note_start(Constants& constants) const {
   for (std::size_t k = 0; k < mechanism_.tables.size(); ++k)
     for (const std::string_view derivative : {"value", "rate", "acceleration"})
       constants.at_start[fmt::format("table_{}(time).{}", k, derivative)] = 0;  // in no effective mass
+  for (std::size_t b = 0; b < mechanism_.bounded.size(); ++b) constants.at_start[derive::element("events.acts", b)] = 1;
   constants.at_start["time"] = 0, constants.at_start["h"] = mechanism_.step;
 }
 

@@ -16,6 +16,31 @@ bool prescribes_rate(const RowBlocks& blocks, std::size_t bounded) {
   return effect.law == Effect::motor || (effect.law == Effect::bound && blocks.law(effect).bounded[effect.row].of_rate);
 }
 
+bool has_events(const RowBlocks& blocks, std::size_t bounded) {
+  const Effect& effect = blocks.mechanism().bounded[bounded];
+  return effect.law == Effect::bound && blocks.law(effect).bounded[effect.row].has_events();
+}
+
+bool waits(const RowBlocks& blocks, std::size_t bounded) {
+  const Effect& effect = blocks.mechanism().bounded[bounded];
+  return effect.law == Effect::bound && blocks.law(effect).bounded[effect.row].after;
+}
+
+Program distances_of(const RowBlocks& blocks, Constants& constants) {
+  Algebra algebra(constants);
+  for (std::size_t b = 0; b < blocks.mechanism().bounded.size(); ++b) {
+    const Effect& effect = blocks.mechanism().bounded[b];
+    const BoundWriter row(blocks, algebra, b);
+    const bool of_spec = effect.law == Effect::bound;
+    const std::optional<Program> none;
+    algebra.output(derive::element("after", b),
+                   row.distance(of_spec ? blocks.law(effect).bounded[effect.row].after : none));
+    algebra.output(derive::element("until", b),
+                   row.distance(of_spec ? blocks.law(effect).bounded[effect.row].until : none));
+  }
+  return algebra.finish();
+}
+
 bool has_ends(const RowBlocks& blocks, std::size_t bounded) {
   return !prescribes_rate(blocks, bounded) && blocks.mechanism().bounded[bounded].law != Effect::limited;
 }
@@ -23,6 +48,7 @@ bool has_ends(const RowBlocks& blocks, std::size_t bounded) {
 BoundWriter::BoundWriter(const RowBlocks& blocks, Algebra& algebra, std::size_t bounded)
     : blocks_(blocks),
       algebra_(algebra),
+      number_(bounded),
       effect_(blocks.mechanism().bounded[bounded]),
       block_(blocks.bounded(bounded)),
       in_(blocks.inputs_with_jacobian(algebra, block_)),
@@ -71,7 +97,20 @@ int BoundWriter::rate_change() const {
   return blocks_.in_time(algebra_, speed->second, "rate", block_.name + "_speed");
 }
 
+// A row that does not act has no impulse.
 BoundWriter::Kick BoundWriter::kick(int h) const {
+  Kick kick = kick_while_it_acts(h);
+  if (!has_events(blocks_, number_)) return kick;
+  for (int* bound : {&kick.low, &kick.high})
+    *bound = algebra_.function(Fn::select, {acts(), *bound, algebra_.value(0)});
+  return kick;
+}
+
+int BoundWriter::distance(const std::optional<Program>& event) const {
+  return event ? law_.call(*event).at("D") : algebra_.value(boundless);
+}
+
+BoundWriter::Kick BoundWriter::kick_while_it_acts(int h) const {
   if (effect_.law == Effect::limited) return of_force(h);
   return is_rate() ? of_rate(h) : of_ends(h);
 }
@@ -112,6 +151,11 @@ BoundWriter::Kick BoundWriter::of_force(int h) const {
 }
 
 int BoundWriter::past() const {
+  const int past = past_while_it_acts();
+  return has_events(blocks_, number_) ? algebra_.function(Fn::select, {acts(), past, algebra_.value(0)}) : past;
+}
+
+int BoundWriter::past_while_it_acts() const {
   const int zero = algebra_.value(0), C = law_.C()[0];
   if (effect_.law == Effect::limited || is_rate()) return zero;
   const Values B = bounds();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "derive/compile/rows/laws.hpp"
+#include "derive/kernel/factor.hpp"
 
 namespace cdot::compile {
 
@@ -24,8 +25,13 @@ class BoundWriter {
   Kick kick(int h) const;
   // The part of C that the projection removes.
   int past() const;
+  // The distance from an event, far without one.
+  int distance(const std::optional<Program>& event) const;
 
  private:
+  Kick kick_while_it_acts(int h) const;
+  int past_while_it_acts() const;
+  int acts() const { return algebra_.input(derive::element("events.acts", number_)); }
   bool is_rate() const;
   bool are_equal(int lower, int upper) const;  // they hold the coordinate
   Kick of_rate(int h) const;
@@ -37,6 +43,7 @@ class BoundWriter {
 
   const RowBlocks& blocks_;
   Algebra& algebra_;
+  const std::size_t number_;
   const Effect& effect_;
   const RowBlock& block_;
   Values in_;
@@ -45,6 +52,11 @@ class BoundWriter {
 
 // True for a row that prescribes a rate: others hold it where they contradict it.
 bool prescribes_rate(const RowBlocks& blocks, std::size_t bounded);
+// True for a row that begins or ends to act at an event. The input events.acts tells whether it acts.
+bool has_events(const RowBlocks& blocks, std::size_t bounded);
+bool waits(const RowBlocks& blocks, std::size_t bounded);
+// q, v, time -> after, until: the distances from the events of rows with bounds, at most 0 where one happens.
+Program distances_of(const RowBlocks& blocks, Constants& constants);
 // True for a row with ends, or one that holds a value.
 bool has_ends(const RowBlocks& blocks, std::size_t bounded);
 

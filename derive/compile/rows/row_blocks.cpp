@@ -1,6 +1,7 @@
 #include "derive/compile/rows/row_blocks.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <fmt/format.h>
 #include <numbers>
 #include <stdexcept>
@@ -23,6 +24,7 @@ std::string number_name(const RowBlock& block, const std::string& parameter) {
 
 RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const derive::SpecsFolder& specs)
     : mechanism_(mechanism), names_(names) {
+  note_coordinate_laws(specs);
   std::map<std::string, std::set<std::string>> coordinates;
   for (const Joint& joint : mechanism.joints) {
     std::set<std::string>& of_type = coordinates[joint.type];
@@ -61,8 +63,14 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
 
 const SpecPrograms& RowBlocks::law(const Effect& effect) const { return types_.at(law_of(effect)); }
 
-// Laws of effects on a coordinate stand in the plane for both.
+void RowBlocks::note_coordinate_laws(const derive::SpecsFolder& specs) {
+  for (const std::filesystem::path& spec : specs.all())
+    if (spec.parent_path().filename() == "coordinate") coordinate_laws_.insert(spec.stem().string());
+}
+
+// Laws of effects on a coordinate stand with those of any coordinate, or in the plane for both.
 std::string RowBlocks::law_of(const Effect& effect) const {
+  if (!effect.coordinate.empty() && coordinate_laws_.contains(effect.law_type)) return "coordinate/" + effect.law_type;
   return (mechanism_.spatial() && !effect.coordinate.empty() ? "planar/" : "") + effect.law_type;
 }
 

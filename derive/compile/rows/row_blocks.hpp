@@ -82,6 +82,7 @@ class RowBlocks {
 
  private:
   std::string law_of(const Effect& effect) const;
+  void note_coordinate_laws(const derive::SpecsFolder& specs);
   // The joint on whose coordinate an effect of that name acts: they share its parameters. Else `name`.
   std::string owner_of(const std::string& name, const std::string& effect) const;
   RowBlock block_of(const std::string& name, const Effect& effect) const;
@@ -105,6 +106,7 @@ class RowBlocks {
 
   const Mechanism& mechanism_;
   const Names& names_;
+  std::set<std::string> coordinate_laws_;  // specs on a coordinate of any joint
   std::map<std::string, SpecPrograms> types_;
   std::vector<RowBlock> joints_, effects_, bounded_;
 };

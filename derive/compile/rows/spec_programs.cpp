@@ -47,6 +47,7 @@ std::map<std::string, std::string> leaves_of_law(const derive::Joint& joint) {
     for (int k = 0; k < joint.dimension && input.rate->vector; ++k) name(input, std::string("_") + "xyz"[k]);
   }
   leaves[derive::bounded_value] = "C[0]";
+  leaves[derive::bounded_rate] = "rate[0]";
   return leaves;
 }
 
@@ -76,8 +77,13 @@ SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& sp
   for (derive::KernelBlock& coordinate : kernel.coordinates)
     programs.coordinates[coordinate.name] = rows_of(coordinate);
   if (derivation.joint.law) programs.leaves = leaves_of_law(derivation.joint);
-  for (derive::KernelBound& bound : kernel.bounded)
-    programs.bounded.push_back({bound.row->coordinate, bound.row->of_rate, std::move(bound.function.program)});
+  for (derive::KernelBound& bound : kernel.bounded) {
+    programs.bounded.push_back({bound.row->coordinate, bound.row->of_rate, std::move(bound.function.program), {}, {}});
+    for (derive::KernelFunction& other : bound.others) {
+      if (other.name == "after") programs.bounded.back().after = std::move(other.program);
+      if (other.name == "until") programs.bounded.back().until = std::move(other.program);
+    }
+  }
   return programs;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -28,6 +29,9 @@ struct BoundPrograms {
   std::string coordinate;
   bool of_rate = false;    // else its ends
   derive::Program bounds;  // of C and the time: B.lower, B.upper, B.rate
+  // Of C, its rate and the time: D, the distance from the event at which the row begins or ends to act.
+  std::optional<derive::Program> after, until;
+  bool has_events() const { return after || until; }
 };
 
 struct SpecPrograms {

@@ -97,7 +97,8 @@ class EffectReader {
     const auto& law = *batch_of(place).law;
     if (law.cone_rows > 0) refuse_(source, fmt::format("{}: one force along several coordinates", effect.name));
     else if (law.by_load) refuse_(source, fmt::format("{}: bounds that grow with a load", effect.name));
-    else if (law.distance) refuse_(source, fmt::format("{}: events", effect.name));
+    else if (law.distance && mechanism_.on_accelerations()) refuse_(source, fmt::format("{}: events", effect.name));
+    else if (law.distance && by_own_force(place)) refuse_(source, fmt::format("{}: events by a force", effect.name));
     else if (mechanism_.method == Method::rattle && effect.law == Effect::bound && !law.error &&
              !effect.in_time.empty())
       refuse_(source, fmt::format("{}: a rate of a spec that follows a function of time by rattle", effect.name));
@@ -105,6 +106,16 @@ class EffectReader {
     else
       refuse_(source, fmt::format("{} by {}, which has to find when it begins to slip, to hold or to touch",
                                   effect.name, mechanism_.method_name));
+  }
+
+  // True if an event of the row depends on the force that it carries.
+  bool by_own_force(const Place& place) {
+    using T = typename S::Scalar;
+    const Batch<S>& batch = batch_of(place);
+    T of_none[2], of_large[2];
+    batch.law->distance(batch, slot_of(world_.data(), place), T(0), T(0), of_none);
+    batch.law->distance(batch, slot_of(world_.data(), place), T(0), T(1e15), of_large);
+    return !std::equal(of_none, of_none + 2, of_large);
   }
 
   // C >= 0

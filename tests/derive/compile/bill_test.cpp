@@ -14,6 +14,7 @@
 #include "chain_10_rk4.hpp"
 #include "effects_euler.hpp"
 #include "effects_rk4.hpp"
+#include "events_rattle.hpp"
 #include "tests/derive/compile/command.hpp"
 #include "thrown_rattle.hpp"
 #include "thrown_rk4.hpp"
@@ -89,6 +90,7 @@ TEST(Bill, BytesOfStateAreThoseOfTheStruct) {
   EXPECT_EQ(bytes(effects, "rk4"), long{sizeof(effects_rk4<double>::State)});
   EXPECT_EQ(bytes("tests/derive/compile/scenes/bounds.toml", "euler"), long{sizeof(bounds_euler<double>::State)});
   EXPECT_EQ(bytes("tests/derive/compile/scenes/bounds.toml", "rattle"), long{sizeof(bounds_rattle<double>::State)});
+  EXPECT_EQ(bytes("tests/derive/compile/scenes/events.toml", "rattle"), long{sizeof(events_rattle<double>::State)});
   EXPECT_EQ(bytes("tests/derive/compile/scenes/thrown.toml", "rattle"), long{sizeof(thrown_rattle<double>::State)});
   EXPECT_EQ(bytes("tests/derive/compile/scenes/thrown.toml", "rk4"), long{sizeof(thrown_rk4<double>::State)});
 }

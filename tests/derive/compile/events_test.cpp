@@ -1,0 +1,63 @@
+// Rows that begin or end to act at an event: a latch, a switch, a time. Compiled scenes move as the World does.
+#include <gtest/gtest.h>
+
+#include "events_euler.hpp"
+#include "events_rattle.hpp"
+#include "tests/derive/compile/beside_world.hpp"
+#include "tests/derive/compile/command.hpp"
+
+namespace {
+
+using cdot::Integrator;
+using namespace cdot::scenes;
+
+const std::string events = "tests/derive/compile/scenes/events.toml";
+
+// By RATTLE an event makes all mechanisms of a compiled scene start anew, in the World its own alone: the lift, which
+// rests on its limit, differs by h^2.
+TEST(CompiledEvents, MoveAsTheWorld) {
+  cdot::runs_as_the_world<events_euler<double>>(events, Integrator::euler, 1e-10, 1.5);
+  cdot::runs_as_the_world<events_rattle<double>>(events, Integrator::rattle, 1e-5, 1.5);
+}
+
+TEST(CompiledEvents, HappenInTheTest) {
+  using Scene = events_euler<double>;
+  Scene::State state;
+  Scene::reset(state);
+  EXPECT_EQ(state.events.acts[Scene::hinge_angle_latch], 0);
+  EXPECT_EQ(state.events.acts[Scene::rail_slide_limit_switch], 1);
+  EXPECT_EQ(state.events.acts[Scene::hub_angle_timed_motor], 0);
+  while (state.time < 0.5) Scene::step(state, 0.001);
+  EXPECT_EQ(state.events.acts[Scene::rail_slide_limit_switch], 0);
+  EXPECT_EQ(state.events.acts[Scene::hub_angle_timed_motor], 1);
+  while (state.time < 1.5) Scene::step(state, 0.001);
+  EXPECT_EQ(state.events.acts[Scene::hinge_angle_latch], 1);
+  EXPECT_NEAR(state.q[Scene::gate].angle, 80 * 3.14159265358979 / 180, 1e-9);
+  EXPECT_EQ(state.events.acts[Scene::hub_angle_timed_motor], 0);
+}
+
+TEST(CompiledEvents, ASnapshotKeepsThem) {
+  using Scene = events_euler<double>;
+  Scene::State state, kept;
+  Scene::reset(state);
+  for (int k = 0; k < 500; ++k) Scene::step(state, 0.001);
+  std::memcpy(&kept, &state, sizeof state);
+  for (int k = 0; k < 500; ++k) Scene::step(state, 0.001), Scene::step(kept, 0.001);
+  EXPECT_EQ(std::memcmp(&state, &kept, sizeof state), 0);
+  Scene::reset(kept);
+  EXPECT_EQ(kept.events.acts[Scene::hub_angle_timed_motor], 0);
+}
+
+TEST(CompiledEvents, LanesAreAsAlone) {
+  cdot::lanes_are_as_alone<events_euler>();
+  cdot::lanes_are_as_alone<events_rattle>();
+}
+
+TEST(CompiledEvents, OtherMethodsRefuseThem) {
+  const cdot::Outcome refused = cdot::compile(events + " --integrator dop853");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.text.find("error: hinge: cdot compile does not know hinge.angle.latch: events"), std::string::npos)
+      << refused.text;
+}
+
+}  // namespace
