@@ -48,6 +48,7 @@ void describe(const Lecture& lecture, const Parameter& p, Step& step) {
 }
 
 void introduce_bodies(const Joint& joint, Step& step) {
+  if (joint.law && joint.law->on_joint) return step.say("The effect is on any joint, with all its rows.");
   if (joint.on_any_coordinate()) {
     step.say(joint.law->free->name + " [" + text(joint.law->free->unit) +
              "] is the coordinate of any joint. Its J and K are those of the joint; a force F on it is J' F on the "

@@ -18,6 +18,18 @@ std::vector<Chain> law_chains(const Lecture& lecture) {
   return chains;
 }
 
+// The norm of the multipliers is the load: with C in metres that of a force, with C in radians that of a torque.
+static void explain_breaking(Lecture& lecture, Step& step) {
+  const BoundedRow& row = lecture.joint.law->bounded.front();
+  step.say(row.name + ", `" + row.text +
+           "`: the rows of the joint act until the event, and never again. The load of " + row.name +
+           " is the norm of the forces along all these rows.");
+  step.say("The event happens where D is not above 0, a share of what the condition compares:");
+  const std::map<const Node*, Expr> load = {
+      {row.own_load ? &*row.own_load : nullptr, lecture.joint.pool->symbol("load(" + row.name + ")", Role::given)}};
+  step.show({leaf({}, "D"), {{lecture.notation.definition(substitute(row.until, load)), ""}}});
+}
+
 void explain_law(Lecture& lecture) {
   if (!lecture.joint.law) return;
   Step& step = lecture.section("The law");
@@ -28,6 +40,7 @@ void explain_law(Lecture& lecture) {
   for (Chain& chain : law_chains(lecture)) step.show(std::move(chain));
   if (lecture.joint.law->energy)
     step.say("The energy E adds its slope, -dE/dC, to the force along each row, and conserves what it stores.");
+  if (lecture.joint.law->on_joint) return explain_breaking(lecture, step);
   for (const BoundedRow& row : lecture.joint.law->bounded)
     step.say(row.name + ", `" + row.text + "`: a force along the coordinate " + row.coordinate +
              (row.cone_rows > 0 ? ", a part of one force that keeps all these rates, as far as its size may grow. "

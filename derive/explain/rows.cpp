@@ -217,7 +217,8 @@ void state_constraint(Lecture& lecture, const Part& part) {
   Step& step = lecture.section("Position constraint");
   if (part.statements.empty()) {
     step.say(lecture.joint.law
-                 ? "The effect constrains nothing: it acts along its coordinates."
+                 ? lecture.joint.law->on_joint ? "The effect adds no row to those of the joint."
+                                               : "The effect constrains nothing: it acts along its coordinates."
                  : "The joint has no row of its own: it only names coordinates, on which effects may act.");
   }
   if (!lecture.joint.lets.empty()) step.say("Names:");

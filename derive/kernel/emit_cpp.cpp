@@ -56,7 +56,8 @@ class KernelWriter {
     defaults();
     for (const KernelBlock& coordinate : kernel_.coordinates) coordinate_struct(coordinate);
     tuple("Coordinates", kernel_.coordinates, 1);
-    if (!kernel_.bounded.empty()) bounded();
+    if (joint_.law && joint_.law->on_joint) breaking();
+    else if (!kernel_.bounded.empty()) bounded();
     if (const auto on = on_coordinate(joint_)) write_on_coordinate(*on);
     tuple("Immovable", kernel_.rows.variants, 1);
     line("};");
@@ -251,12 +252,22 @@ class KernelWriter {
     for (const OnCoordinate::Use use : on.uses)
       uses += (uses.empty() ? "CoordinateUse::" : ", CoordinateUse::") + std::string(words[use]);
     line("");
-    line(joint_.on_any_coordinate() ? "// On the coordinate of any joint."
-                                    : "// On the coordinate of any joint in this unit, and the parameters there.",
+    line(on.unit == "joint"            ? "// On any joint."
+         : joint_.on_any_coordinate() ? "// On the coordinate of any joint."
+                                      : "// On the coordinate of any joint in this unit, and the parameters there.",
          1);
-    line("static constexpr std::string_view coordinate_unit = " + literal(derive::text(on.unit)) + ";", 1);
+    line("static constexpr std::string_view coordinate_unit = " + literal(on.unit) + ";", 1);
     line(fmt::format("static constexpr std::array<CoordinateUse, {}> coordinate_uses = {{{}}};", on.uses.size(), uses),
          1);
+  }
+
+  // The event that breaks the joint.
+  void breaking() {
+    const KernelBound& bond = kernel_.bounded.front();
+    line("");
+    comment(1, bond.row->name + ": " + bond.row->text);
+    line(fmt::format("static constexpr bool on_joint = true, in_time = {};", bond.in_time), 1);
+    for (const KernelFunction& function : bond.others) out_ += function_text(function, 1, 1);
   }
 
   // A struct for each bounded row.

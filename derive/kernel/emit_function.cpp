@@ -39,7 +39,8 @@ const std::map<std::string, Signature>& signatures() {
       {"bounds", {{"C", "p", "time"}, "RowBounds<T>& B"}},
       {"by_load", {{"C", "p", "time"}, "RowBounds<T>& B"}},
       {"after", {{"C", "rate", "p", "time", "load"}, "T& D"}},
-      {"until", {{"C", "rate", "p", "time", "load"}, "T& D"}}};
+      {"until", {{"C", "rate", "p", "time", "load"}, "T& D"}},
+      {"breaks", {{"p", "time", "load"}, "T& D"}}};
   return table;
 }
 

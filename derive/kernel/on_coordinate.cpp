@@ -40,7 +40,8 @@ std::optional<OnCoordinate> on_coordinate(const Joint& joint) {
   const bool bounded = own != joint.coordinates.end();
   const std::optional<Coordinate>& free = joint.law->free;
   const Expr C = free ? free->value : bounded ? own->value : joint.rows[0].C;
-  OnCoordinate on{free ? free->unit : bounded ? own->unit : joint.law->inputs[0].unit, {}};
+  const Unit unit = free ? free->unit : bounded ? own->unit : joint.law->inputs[0].unit;
+  OnCoordinate on{joint.law->on_joint ? "joint" : text(unit), {}};
   on.uses.assign(joint.parameters.size(), OnCoordinate::none);
   std::set<const Node*> read;
   for (const Expr leaf : leaves_of(numbers_of(*joint.law))) read.insert(&*leaf);

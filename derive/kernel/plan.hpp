@@ -49,11 +49,11 @@ struct KernelBound {
   std::vector<KernelFunction> others{};  // by_load, after, until
 };
 
-// An effect on the coordinate of any joint in this unit.
+// An effect on the coordinate of any joint in this unit; "joint": on a joint itself.
 struct OnCoordinate {
   // Of a parameter there: not read; to be given; has a default; by default the value of the coordinate.
   enum Use { none, required, by_default, value };
-  Unit unit;
+  std::string unit;
   std::vector<Use> uses;  // by parameter
 };
 // Nothing if the law of the effect is about more than one coordinate.

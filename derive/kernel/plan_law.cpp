@@ -94,7 +94,8 @@ bool depends_on_time(const DerivedLaw& law) {
 KernelBound plan_bound(const Joint& joint, const BoundedRow& row, const DerivedBound& derived) {
   PoseInputs parameters(joint);
   Components components;
-  std::map<const Node*, Expr> own = {{&*row.own_rate, joint.pool->symbol(bounded_rate, Role::given)}};
+  std::map<const Node*, Expr> own;
+  if (row.own_rate) own.emplace(&*row.own_rate, joint.pool->symbol(bounded_rate, Role::given));
   if (row.value) own.emplace(&*row.value, joint.pool->symbol(bounded_value, Role::given));
   if (row.own_load) own.emplace(&*row.own_load, joint.pool->symbol(bounded_load, Role::given));
   std::vector<NamedExpr> outputs;
@@ -108,7 +109,7 @@ KernelBound plan_bound(const Joint& joint, const BoundedRow& row, const DerivedB
     others.push_back({"by_load", "what each unit of the load adds to the bounds", assemble(outputs), false, {}});
     outputs.clear();
   }
-  for (const auto& [name, distance] : {std::pair("after", row.after), std::pair("until", row.until)}) {
+  for (const auto& [name, distance] : {std::pair("after", row.after), std::pair(joint.law->on_joint ? "breaks" : "until", row.until)}) {
     if (!distance) continue;
     add("D", distance);
     others.push_back({name, "the distance from that event, at most 0 where it happens", assemble(outputs), false, {}});

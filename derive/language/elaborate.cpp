@@ -57,7 +57,11 @@ void Elaborator::run(Source& spec) {
   joint_.comment = spec.ast.comment;
   joint_.file = spec.file;
   if (spec.ast.effect) joint_.law.emplace();
-  of_coordinate_ = spec.ast.dimension == "coordinate";
+  of_coordinate_ = spec.ast.dimension == "coordinate" || spec.ast.dimension == "joint";
+  if (joint_.law && spec.ast.dimension == "joint") {
+    joint_.law->on_joint = true;
+    joint_.law->free = Coordinate{"joint", {}, Unit{.any = 1}, spec.ast.name.where, "of any kind", "", {}, false};
+  }
   spec.including = {spec.ast.name.text};
   statements(spec);
   if (is_word_of_cpp(joint_.name))

@@ -116,6 +116,9 @@ class Elaborator {
   void check_free(Source& spec);
   // elaborate_bound.cpp
   void bound(Source& source, const StatementAst& s);
+  void row_of_joint(Source& source, const StatementAst& s);
+  bool names_in_kernel(const std::string& name) const;
+  bool may_name_row(Source& source, const Word& label);
   std::optional<BoundedRow> bounded_row(Source& source, const StatementAst& s, const Word& coordinate);
   bool numbers_of_bound(Source& source, const StatementAst& s, const Ast& rate, BoundedRow& row);
   bool events(Source& source, const StatementAst& s, BoundedRow& row);

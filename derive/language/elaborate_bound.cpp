@@ -81,7 +81,9 @@ bool Elaborator::event(Source& source, const ConditionAst& condition, BoundedRow
       return false;
     }
     if (std::ranges::all_of(leaves_of(std::span<const Expr>(&value->e, 1)), known)) continue;
-    d.error(ast->where, "an event depends on parameters, time, the coordinate of its row, its rate and its load alone",
+    d.error(ast->where,
+            joint_.law->on_joint ? "the event that breaks a joint depends on parameters, time and its load alone"
+                         : "an event depends on parameters, time, the coordinate of its row, its rate and its load alone",
             "load(" + row.name + ") is the size of the force of the row");
     return false;
   }
@@ -97,7 +99,7 @@ bool Elaborator::event(Source& source, const ConditionAst& condition, BoundedRow
 }
 
 bool Elaborator::events(Source& source, const StatementAst& s, BoundedRow& row) {
-  row.own_rate = law_rates_.at(row.coordinate).e;
+  if (!joint_.law->on_joint) row.own_rate = law_rates_.at(row.coordinate).e;
   const bool after = !s.after || event(source, *s.after, row, row.after);
   const bool until = !s.until || event(source, *s.until, row, row.until);
   return after && until;
@@ -122,6 +124,21 @@ const Coordinate* Elaborator::bounded_coordinate(Source& source, const Word& nam
   return &all.back();
 }
 
+// True if the generated kernel has something else of that name.
+bool Elaborator::names_in_kernel(const std::string& name) const {
+  return std::ranges::find(joint_.law->bounded, name, &BoundedRow::name) != joint_.law->bounded.end() ||
+         bounded_candidates_.contains(name) || is_word_of_cpp(name) || is_member_of_kernels(name) ||
+         name == joint_.name;
+}
+
+bool Elaborator::may_name_row(Source& source, const Word& label) {
+  const bool taken = names_in_kernel(label.text);
+  if (taken)
+    source.diagnostics.error(label.where, quote(label.text) + " is already a name of the generated kernel",
+                             "choose another name");
+  return !taken;
+}
+
 // The row without its numbers: its name, or after a label with several rates the label and the coordinate. Nothing
 // after an error.
 std::optional<BoundedRow> Elaborator::bounded_row(Source& source, const StatementAst& s, const Word& coordinate) {
@@ -144,17 +161,8 @@ std::optional<BoundedRow> Elaborator::bounded_row(Source& source, const Statemen
                  value == law_values_.end() ? Expr() : value->second.e,
                  in_spec(source, s.where),
                  written(source, s)};
-  const auto taken = [&](const std::string& name) {
-    return std::ranges::find(joint_.law->bounded, name, &BoundedRow::name) != joint_.law->bounded.end() ||
-           bounded_candidates_.contains(name) || is_word_of_cpp(name) || is_member_of_kernels(name) ||
-           name == joint_.name;
-  };
-  if (is_named && taken(row.name)) {
-    source.diagnostics.error(s.label.where, quote(row.name) + " is already a name of the generated kernel",
-                             "choose another name");
-    return {};
-  }
-  while (taken(row.name)) row.name += '_';
+  if (is_named && !may_name_row(source, s.label)) return {};
+  while (names_in_kernel(row.name)) row.name += '_';
   return row;
 }
 
@@ -181,8 +189,29 @@ bool Elaborator::numbers_of_bound(Source& source, const StatementAst& s, const A
   return right & events(source, s, row);
 }
 
+// NAME ":" "joint" "," "until" condition
+void Elaborator::row_of_joint(Source& source, const StatementAst& s) {
+  Diagnostics& d = source.diagnostics;
+  if (!joint_.law->on_joint)
+    return d.error(s.relation_where, "only an effect on a joint may break it",
+                   "write `effect " + joint_.name + " joint`");
+  if (!joint_.law->bounded.empty())
+    return d.error(s.relation_where, "an effect breaks its joint by one event", "write a second effect",
+                   {joint_.law->bounded.front().where});
+  if (s.label.text.empty())
+    return d.error(s.relation_where, "the rows of the joint have no name here", "write bond: joint, until ...");
+  if (s.after)
+    return d.error(s.after->where, "a joint acts from the start, it does not wait for an event", "write until ...");
+  if (!may_name_row(source, s.label)) return;
+  BoundedRow row{s.label.text, "joint", false, {}, {}, {}, {}, in_spec(source, s.where), written(source, s)};
+  if (!events(source, s, row)) return;
+  joint_.uses_time |= depends_on_role(row.until, Role::time);
+  joint_.law->bounded.push_back(std::move(row));
+}
+
 // [ NAME ":" ] ( NAME ( ( ">=" | "<=" ) expression | "in" range ) | "rate" "(" NAME ")" "=" expression ... )
 void Elaborator::bound(Source& source, const StatementAst& s) {
+  if (s.of_joint) return row_of_joint(source, s);
   const int rows = s.across.empty() ? 0 : static_cast<int>(s.across.size()) + 1;
   int place = 0;
   const auto add = [&](const Word& coordinate, const Ast& rate) {

@@ -10,6 +10,11 @@ namespace cdot::derive {
 // coordinate NAME [unit]
 void Elaborator::free_coordinate(Source& source, const StatementAst& s) {
   const DeclaredAst& d = s.declared;
+  if (joint_.law->on_joint) {
+    error(source, d.name.where, "an effect on a joint has no coordinate",
+          "write `effect " + joint_.name + " coordinate`");
+    return enter(source, d.name.text, "coordinate", Value{}, d.name.where);
+  }
   if (!d.unit)
     error(source, d.name.where, "the unit of " + quote(d.name.text) + " is missing",
           "write coordinate " + d.name.text + " [any], or [m] or [rad] for coordinates in that unit alone");
@@ -44,7 +49,8 @@ const Value& Elaborator::mass() {
 const Value& Elaborator::own_load() {
   if (!in_bound_->own_load) in_bound_->own_load = leaf_of_input("own_load", false);
   const Unit joule{.m = 2, .s = -2, .kg = 1};
-  return load_ = scalar(in_bound_->own_load, joule / bounded_candidates_.at(in_bound_->coordinate).unit);
+  const Unit unit = joint_.law->on_joint ? Unit{.any = 1} : bounded_candidates_.at(in_bound_->coordinate).unit;
+  return load_ = scalar(in_bound_->own_load, joule / unit);
 }
 
 // The force of another row of the effect, or of the joint whose coordinate it acts on. Null: there is none.
@@ -70,7 +76,8 @@ void Elaborator::check_free(Source& spec) {
   Diagnostics& d = spec.diagnostics;
   if (!of_coordinate_) return;
   if (!law.free)
-    return d.error(spec.ast.name.where, "the effect names no coordinate that it acts on", "write coordinate s [any]");
+    return d.error(spec.ast.name.where, "the effect names no coordinate that it acts on",
+                   "write coordinate s [any]");
   const auto placed =
       std::ranges::find_if(joint_.parameters, [](const Parameter& p) { return p.kind != ParameterKind::scalar; });
   if (!bodies_.empty() || placed != joint_.parameters.end())

@@ -237,6 +237,9 @@ void Elaborator::limit_force(Source& source, const StatementAst& s, std::size_t 
 
 void Elaborator::check_law(Source& spec) {
   if (spec.diagnostics.has_errors()) return;
+  if (joint_.law->on_joint && joint_.law->bounded.empty())
+    return spec.diagnostics.error(spec.ast.name.where, "the effect has no event that breaks its joint",
+                                  "write bond: joint, until load(bond) >= strength");
   const auto acts = [](const LawInput& input) { return static_cast<bool>(input.force); };
   if (!joint_.law->energy && std::ranges::none_of(joint_.law->inputs, acts) && joint_.law->bounded.empty())
     spec.diagnostics.error(spec.ast.name.where,

@@ -117,6 +117,9 @@ struct EffectLaw {
   // Of an effect on the coordinate of any joint: that coordinate, its value a leaf. Such an effect has no bodies and no
   // rows, and at most one input.
   std::optional<Coordinate> free{};
+  // The effect is on a joint itself. `free` then stands for the joint: it has no value. `bounded` has one row without
+  // bounds, those of the joint, and its `until` breaks the joint.
+  bool on_joint = false;
   Expr mass{};  // the leaf of its effective mass 1/K, if the law reads it
 };
 

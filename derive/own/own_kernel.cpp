@@ -186,7 +186,7 @@ OwnBound bound_of(const KernelBound& bound, const Places& places) {
   return {bound.row->name,     bound.coordinate,     bound.row->of_rate,
           bound.in_time,       bound.of_value,       bound.row->load_of,
           bound.row->cone_row, bound.row->cone_rows, places.of(bound.function.program, {}, 0),
-          other("by_load"),    other("after"),       other("until")};
+          other("by_load"),    other("after"),       other(bound.row->coordinate == "joint" ? "breaks" : "until")};
 }
 
 void add_effect(const Kernel& kernel, const Places& places, OwnKernel& own) {
@@ -199,7 +199,7 @@ void add_effect(const Kernel& kernel, const Places& places, OwnKernel& own) {
   const std::optional<OnCoordinate> on = on_coordinate(joint);
   if (!on) return;
   const SlopesOfLaw slopes = law ? slopes_of(joint, *law) : SlopesOfLaw{};
-  own.on_coordinate = {text(on->unit),
+  own.on_coordinate = {on->unit,
                        {on->uses.begin(), on->uses.end()},
                        static_cast<bool>(joint.law->mass),
                        slopes.linear && joint.on_any_coordinate(),

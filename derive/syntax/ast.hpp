@@ -102,7 +102,7 @@ struct StatementAst {
   Ast left, right;      // row; energy, force: the expression is `left`
   bool torque = false;  // force: `torque on BODY`
   Word bounded;         // bound: the coordinate. `left` is its prescribed rate, if `of_rate`
-  bool of_rate = false;
+  bool of_rate = false, of_joint = false;    // of_joint: the row is those of the joint, `bounded` is empty
   std::optional<Ast> lower, upper;           // bound: of the coordinate, or of the force that prescribes its rate
   std::vector<RateAst> across;               // bound: further rates, which one force of at most `upper` prescribes
   std::optional<ConditionAst> after, until;  // bound: its events
@@ -117,7 +117,7 @@ struct StatementAst {
 struct JointAst {
   Word name;
   bool effect = false;
-  std::string dimension;  // "planar", "spatial" or, of an effect, "coordinate"; empty if the header is missing
+  std::string dimension;  // "planar", "spatial" or, of an effect, "coordinate", "joint"; empty if the header is missing
   std::string title, source, comment;
   std::vector<StatementAst> statements;
 };

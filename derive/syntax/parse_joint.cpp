@@ -66,7 +66,7 @@ class JointParser {
     row();
   }
 
-  // ( joint | effect ) NAME ( planar | spatial ), or effect NAME coordinate
+  // ( joint | effect ) NAME ( planar | spatial ), or effect NAME ( coordinate | joint )
   void header() {
     const Token word = p_.take();
     const std::string kind(word.text);
@@ -75,8 +75,8 @@ class JointParser {
     const Word name = p_.name("the name of the " + kind);
     if (joint_.name.text.empty()) joint_.name = name, joint_.effect = kind == "effect";
     if (p_.failed()) return;
-    const bool of_coordinate = kind == "effect" && p_.at_word("coordinate");
-    if (!p_.at_word("planar") && !p_.at_word("spatial") && !of_coordinate)
+    const bool of_joint = kind == "effect" && (p_.at_word("coordinate") || p_.at_word("joint"));
+    if (!p_.at_word("planar") && !p_.at_word("spatial") && !of_joint)
       return p_.fail(p_.peek().where, "`planar` or `spatial` is missing: " + p_.found(),
                      "write " + kind + " " + name.text + " planar");
     const Token dimension = p_.take();
@@ -205,7 +205,7 @@ class JointParser {
     s.declared.unit = p_.unit();
     if (keyword == "let" && s.declared.unit)
       p_.fail(s.declared.unit->where, "a let takes its unit from its expression", "remove the unit here");
-    const bool of_any_joint = keyword == "coordinate" && joint_.dimension == "coordinate";
+    const bool of_any_joint = keyword == "coordinate" && (joint_.dimension == "coordinate" || joint_.dimension == "joint");
     if (!p_.failed() && !p_.at_symbol("=") && !of_any_joint)
       p_.fail(p_.peek().where, "`=` is missing after `" + keyword + " " + s.declared.name.text + "`: " + p_.found(),
               "write " + keyword + " " + s.declared.name.text + " = ...");

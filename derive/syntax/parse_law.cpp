@@ -78,6 +78,16 @@ void event(Parser& p, StatementAst& s) {
   condition->where = p.from(first);
 }
 
+// "joint" "," "until" condition
+void rows_of_joint(Parser& p, StatementAst& s) {
+  p.take();
+  s.of_joint = true;
+  if (!p.accept(","))
+    return p.fail(p.peek().where, "the event that breaks the joint must follow: " + p.found(),
+                  "write bond: joint, until load(bond) >= strength");
+  event(p, s);
+}
+
 }  // namespace
 
 void parse_law(Parser& p, StatementAst& s) {
@@ -101,7 +111,7 @@ void parse_law(Parser& p, StatementAst& s) {
 // A name and its colon may come first.
 bool at_bounded_row(const Parser& p) {
   const int first = p.at_name() && p.at_symbol(":", 1) ? 2 : 0;
-  if (at_rate(p, first)) return true;
+  if (at_rate(p, first) || p.at_word("joint", first)) return true;
   const auto then = [&](std::string_view symbol) { return p.at_symbol(symbol, first + 1); };
   return p.at_name(first) && (then(">=") || then("<=") || p.at_word("in", first + 1));
 }
@@ -113,6 +123,7 @@ void parse_bounded_row(Parser& p, StatementAst& s) {
   }
   s.relation_where = p.peek().where;
   s.of_rate = at_rate(p, 0);
+  if (p.at_word("joint")) return rows_of_joint(p, s);
   if (!s.of_rate) s.bounded = p.name("the coordinate");
   if (s.of_rate) prescribed_rates(p, s);
   else if (p.accept(">=")) s.lower = p.expression();

@@ -124,8 +124,8 @@ void work_of_rate(const Batch<S>& batch, const Guard<typename S::Scalar>& guard,
   else work.take(batch.source, done);
 }
 
-// Rows with bounds: motors put in, friction takes, limits and ropes take what hits them. Rows that are held on both
-// sides without a rate of their own do no work. Batch::error keeps the work of the first kick.
+// Rows with bounds: motors put in, friction takes, limits, ropes and latches take what hits them. Other rows that are
+// held on both sides without a rate of their own do no work. Batch::error keeps the work of the first kick.
 template <class S, class Lambda>
 void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& work) {
   Guard<typename S::Scalar> guards[most_rows];
@@ -139,6 +139,7 @@ void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& 
     else if (moves) work_of_rate(batch, guards[r], done, work);
     else if (batch.explicit_time()) work.put(batch.source, done);
     else if (guards[r].one_sided()) work.take(batch.source, done);
+    else if (batch.law->distance) work.give(batch.source, done);
   }
 }
 

@@ -1,10 +1,13 @@
-// The breaking load of a joint. It adds no row: after each substep it reads the impulses of the joint's own rows.
+// Joints that break by effects of specs. These add no rows: after each substep they read the impulses of the joint's
+// own rows.
 #include <algorithm>
 #include <cmath>
 
-#include <cdot/effects.hpp>
+#include <cdot/coordinate/breaking.hpp>
+#include <cdot/detail/coordinate_effects.hpp>
 
 #include "runtime/balance/balance.hpp"
+#include "runtime/effects/effect.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/state/add_rows.hpp"
 #include "runtime/state/state_list.hpp"
@@ -66,12 +69,13 @@ template <class S>
 void find_overloads(WorldData<S>& world, double h) {
   auto& overloads = world.overloads;
   overloads.clear();
-  for (const auto& [joint, load] : world.breaking_loads) {
-    const JointRecord& record = world.joints[joint];
+  for (const Bond& bond : world.bonds) {
+    const JointRecord& record = world.joints[bond.joint];
     const int island = world.island_of[movable_body(world, record)];
     if (record.broken || world.islands[island].asleep) continue;
-    const double share = force_of(world, record, h) / load;
-    if (share > 1) overloads.push_back({island, -share, joint});
+    const double distance =
+        bond.distance(bond.parameters.data(), double(world.time) + h, force_of(world, record, h));
+    if (distance <= 0) overloads.push_back({island, distance, bond.joint});
   }
   std::sort(overloads.begin(), overloads.end());
 }
@@ -100,19 +104,27 @@ void break_overloaded(WorldData<S>& world, typename S::Scalar h) {
 }  // namespace
 
 template <class S>
-void set_breaking_load(BasicWorld<S>& world, int joint, double load) {
+void add_bond(BasicWorld<S>& world, const Bond& bond) {
   auto& data = world.data();
-  check_joint(data, joint);
-  if (!(load > 0)) throw Error("a breaking load must be > 0");
-  if (data.joints[joint].places.empty()) return;
-  if (data.breaking_loads.empty()) data.after_substep.push_back(break_overloaded<S>);
-  data.breaking_loads.emplace_back(joint, load);
+  if (data.joints[bond.joint].places.empty()) return;
+  if (data.bonds.empty()) data.after_substep.push_back(break_overloaded<S>);
+  data.bonds.push_back(bond);
   if (!data.prepared) return;
   settle_state(data);  // the flag of the joint joins its island's ranges
-  watch_breaking_loads(data);
+  watch_bonds(data);
 }
 
-#define CDOT_INSTANTIATE(S) template void set_breaking_load(BasicWorld<S>&, int, double);
+template <class S>
+void set_breaking_load(BasicWorld<S>& world, int joint, double load) {
+  check_joint(world.data(), joint);
+  if (!(load > 0)) throw Error("a breaking load must be > 0");
+  using Effect = coordinate::breaking;
+  add_bond(world, {joint, distance_from_breaking<Effect>, {load}, Effect::in_time});
+}
+
+#define CDOT_INSTANTIATE(S)                           \
+  template void add_bond(BasicWorld<S>&, const Bond&); \
+  template void set_breaking_load(BasicWorld<S>&, int, double);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

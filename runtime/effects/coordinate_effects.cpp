@@ -53,7 +53,7 @@ std::size_t index_of(const std::string& name) {
 }
 
 void check_law(std::size_t index, double C, const std::vector<double>& numbers, double time) {
-  const auto& [default_value, bounds, has_value] = functions_on_coordinates()[index];
+  const auto& [default_value, bounds, has_value, breaks] = functions_on_coordinates()[index];
   const JointType& type = coordinate_effects()[index];
   if (has_value && !has_value(C, numbers.data(), time)) throw effect_without_value(type, numbers);
   if (!bounds) return;
@@ -98,8 +98,14 @@ std::vector<double> complete(std::size_t index, const std::vector<NamedValue>& g
   return numbers;
 }
 
+void refuse_on_joint(const JointType& type) {
+  if (type.acts_on_joint())
+    throw Error(fmt::format("effect `{}` acts on a joint itself, not on its coordinate", type.name));
+}
+
 template <class S>
 NamedLaw<S> law_of(std::size_t index) {
+  refuse_on_joint(coordinate_effects()[index]);
   if (is_extended<typename S::Scalar> && index >= laws_on_coordinates<S>().size())
     throw Error(fmt::format("effect `{}` was not made for extended precision", coordinate_effects()[index].name));
   return {*laws_on_coordinates<S>()[index], coordinate_effects()[index].name.data()};
@@ -164,6 +170,7 @@ int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, con
   const JointType& of_joint = joint_types(S::dimension)[static_cast<std::size_t>(data.joints[joint].type)];
   const auto place = static_cast<std::size_t>(coordinate_index<S>(data.joints[joint].type, coordinate));
   const std::string_view unit = of_joint.coordinates[place].unit;
+  refuse_on_joint(type);
   if (!type.acts_on(unit))
     throw Error(fmt::format("effect `{}` acts on a coordinate in {}; `{}` of joint `{}` is in {}", type.name,
                             type.coordinate_unit, coordinate, of_joint.name, unit));
@@ -175,6 +182,19 @@ int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, con
   const int number = add_coordinate_row(data, joint, coordinate, law, constants, type.name);
   if (number >= 0) add_drives(data, joint, number, type, given);
   return number;
+}
+
+template <class S>
+void add_effect(BasicWorld<S>& world, int joint, const SpecEffect& effect) {
+  const double time = world.data().time;
+  check_joint(world.data(), joint);
+  const std::size_t index = index_of(effect.type);
+  const JointType& type = coordinate_effects()[index];
+  if (!type.acts_on_joint())
+    throw Error(fmt::format("effect `{}` acts on a coordinate of a joint: name the coordinate", type.name));
+  refuse_functions(effect.parameters, "an effect on a joint itself");
+  add_bond(world, {joint, functions_on_coordinates()[index].breaks, complete(index, effect.parameters, 0, time),
+                   type.explicit_time});
 }
 
 template <class S>
@@ -197,6 +217,7 @@ void set_effect(BasicWorld<S>& world, int joint, int number, const SpecEffect& e
 #define CDOT_INSTANTIATE(S)                                                          \
   template std::vector<const Law<S>*>& laws_on_coordinates<S>();                     \
   template int add_effect(BasicWorld<S>&, int, std::string_view, const SpecEffect&); \
+  template void add_effect(BasicWorld<S>&, int, const SpecEffect&);                  \
   template void set_effect(BasicWorld<S>&, int, int, const SpecEffect&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

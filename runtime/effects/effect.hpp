@@ -36,6 +36,10 @@ template <class S>
 void set_constants(BasicWorld<S>& world, int joint, int effect, const NamedLaw<S>& named,
                    std::span<const double> constants);
 
+// From the next step on.
+template <class S>
+void add_bond(BasicWorld<S>& world, const Bond& bond);
+
 // The effect, completed from the present pose of the joint.
 template <class S, class Effect>
 const Effect& at_pose(BasicWorld<S>&, int, std::string_view, const Effect& effect) {

@@ -108,6 +108,12 @@ FunctionsOnCoordinate functions_of(const std::shared_ptr<const OwnKernel>& kerne
     functions.has_value = [kernel](double C, const double* parameters, double time) {
       return has_value(*kernel->law, C, parameters, time);
     };
+  else if (kernel->on_coordinate->unit == "joint")
+    functions.breaks = [kernel](const double* parameters, double time, double load) {
+      double distance;
+      run_own<double>(kernel->bounded[0].until, {.parameters = parameters, .time = &time, .load = &load}, &distance);
+      return distance;
+    };
   else functions.bounds = bounds_of<double>(kernel, 0);
   return functions;
 }

@@ -114,8 +114,8 @@ class Ranges {
 template <class S>
 std::vector<std::vector<int>> find_breakable(const WorldData<S>& world) {
   std::vector<std::vector<int>> by_island(world.islands.size());
-  for (const auto& [joint, load] : world.breaking_loads)
-    by_island[world.island_of[movable_body(world, world.joints[joint])]].push_back(joint);
+  for (const Bond& bond : world.bonds)
+    by_island[world.island_of[movable_body(world, world.joints[bond.joint])]].push_back(bond.joint);
   return by_island;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <iterator>
 #include <string_view>
 #include <utility>
@@ -56,6 +57,14 @@ struct Drag {
   T linear, angular;  // [1/s]
 };
 
+// What breaks a joint (FunctionsOnCoordinate::breaks).
+struct Bond {
+  int joint;
+  std::function<double(const double* parameters, double time, double load)> distance;
+  std::vector<double> parameters;
+  bool in_time;
+};
+
 template <class S>
 struct IslandModel {
   std::vector<int> bodies;  // movable ones
@@ -72,7 +81,7 @@ struct IslandModel {
 template <class S>
 struct Model {
   using T = typename S::Scalar;
-  // Called after every substep, for example by breaking loads.
+  // Called after every substep, for example by what breaks joints.
   using Hook = void (*)(WorldData<S>&, T h);
 
   Settings settings;
@@ -81,7 +90,7 @@ struct Model {
   int ground = -1;
   std::vector<Drag<S>> drags;
   std::vector<int> turning;                            // bodies whose inertia tensor turns with them
-  std::vector<std::pair<int, double>> breaking_loads;  // by joint
+  std::vector<Bond> bonds;
   std::vector<Hook> after_substep;
   std::vector<Note> notes;
   std::vector<std::string_view> sources{std::begin(source_names), std::end(source_names)};

@@ -104,10 +104,10 @@ struct IslandWorkspace {
   const System<S>& at_work() const { return stiffened && rescue.built() ? rescue : system; }
 };
 
-// A joint that carries more than its breaking load.
+// A joint that breaks, and Bond::distance.
 struct Overload {
   int island;
-  double share;  // -load / breaking load
+  double distance;
   int joint;
   auto operator<=>(const Overload&) const = default;
 };

@@ -134,6 +134,18 @@ bool has_strong_motor(Island<S>& island) {
   return any;
 }
 
+// True if a latch closes: from its event on it holds its bodies on both sides, and stops them now.
+template <class S>
+bool closes_latch(WorldData<S>& world, Island<S>& island) {
+  using T = typename S::Scalar;
+  bool any = false;
+  find_rates(world, island);
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
+    any |= batch.law->distance && guard.bilateral() && std::abs(batch.rate[i] + batch.bias[i]) > resolution.rate;
+  });
+  return any;
+}
+
 // True if a row stops or drives its bodies by an impulse: an end that is met, or a clutch of unlimited force that meets
 // a rate beyond its own. `missing` is what the row lacks to its rate.
 template <class T>
@@ -283,8 +295,10 @@ void count_guarded_rows(Island<S>& island) {
   flow.resolution.resize(rows);
 }
 
+namespace {
+
 template <class S>
-void choose_modes(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
+void choose_modes_once(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   using T = typename S::Scalar;
   if (island.flow.guarded > 0) {
     std::fill(island.flow.resolution.begin(), island.flow.resolution.end(), Resolution<typename S::Scalar>{});
@@ -298,13 +312,32 @@ void choose_modes(WorldData<S>& world, Island<S>& island, typename S::Scalar tim
       evaluate_anew(world, island, time);
     }
   }
-  const bool starts_motor = has_strong_motor(island);
-  const double before = starts_motor ? kinetic_energy(world, island) : 0;
+  const bool starts_motor = has_strong_motor(island), stops = !starts_motor && closes_latch(world, island);
+  const double before = starts_motor || stops ? kinetic_energy(world, island) : 0;
   project_velocities(world, island);
   if (starts_motor) put_in(world, Source::motor, kinetic_energy(world, island) - before);
+  if (stops) take(world, Source::limit, before - kinetic_energy(world, island));
   note_rates(world, island);
   accelerate(world, island, time);
   find_resolution(world, island, h);
+}
+
+// True if forces at the present state make events happen: a pin that is too weak from the start.
+template <class S>
+bool forces_make_events(WorldData<S>& world, Island<S>& island) {
+  bool any = false;
+  each_guarded_slot(island, [&](Batch<S>& batch, int) { any |= batch.law->distance != nullptr; });
+  if (!any) return false;
+  find_rates(world, island);
+  return latch_events(island, typename S::Scalar(1));
+}
+
+}  // namespace
+
+template <class S>
+void choose_modes(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
+  do choose_modes_once(world, island, time, h);
+  while (island.flow.guarded > 0 && forces_make_events(world, island));
   measure_margins(island);
   island.flow.margins_chosen = island.flow.margins;
 }

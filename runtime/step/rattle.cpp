@@ -13,6 +13,7 @@
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
+#include "runtime/state/gyroscopes.hpp"
 #include "runtime/step/dampers.hpp"
 #include "runtime/step/kick_drift.hpp"
 
@@ -144,6 +145,27 @@ void drift_with_renewed_directions(WorldData<S>& world, Island<S>& island, typen
   add_corrections(world, island, kept / h);
 }
 
+// Forces of the second kick are those at the end's velocity, to second order: 2 v_half - v_start. At the end, a body
+// whose tensor turns has w = I^-1 L there, for L of the half and of the start.
+template <class S>
+void expect_end_velocities(WorldData<S>& world, Island<S>& island) {
+  using T = typename S::Scalar;
+  for (size_t k = 0; k < island.bodies.size(); ++k) {
+    const int i = island.bodies[k];
+    auto &v = world.bodies.velocity[i], &start = island.flow.velocity[k];
+    if constexpr (S::has_gyroscopes)
+      if (!island.gyroscopes.empty())
+        with_gyroscope(world, i, [&](auto gyroscope) {
+          auto mass = world.bodies.inverse_mass[i];
+          S::set_inertia(gyroscope, island.flow.pose[k], mass, start);
+          S::turn(gyroscope, world.bodies.pose[i], mass, start);
+        });
+    const auto half = v;
+    v = S::sum(S::sum({}, half, T(2)), start, T(-1));
+    start = half;
+  }
+}
+
 // Books the first half: at the poses of its start, to which J belongs. Dampers act before the other impulses, but
 // joints work against them: only along the mean of the whole half kick do joints do no work.
 template <class S>
@@ -177,8 +199,6 @@ void book_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
 template <class S>
 void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
-  Bodies<S>& all = world.bodies;
-  Flow<S>& flow = island.flow;
   const T share = begin_kick_drift(world, island, h), at_start = island.residual;
   weigh_springs(world, island);
   begin_kick(world, island);
@@ -198,13 +218,7 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   book_start(world, island, h / 2);
   restore_turns(island);
   evaluate_anew(world, island, T(world.time) + h);
-  // Forces of the second kick are those at the end's velocity, to second order: 2 v_half - v_start.
-  for (size_t k = 0; k < island.bodies.size(); ++k) {
-    auto &v = all.velocity[island.bodies[k]], &start = flow.velocity[k];
-    const auto half = v;
-    v = S::sum(S::sum({}, half, T(2)), start, T(-1));
-    start = half;
-  }
+  expect_end_velocities(world, island);
   find_rates_of_effects(world, island);
   weigh_springs(world, island);
   begin_kick(world, island);

@@ -191,10 +191,12 @@ void build_systems(const WorldData<S>& world, Island<S>& island, Bodies<S>& at) 
 }  // namespace
 
 template <class S>
-void watch_breaking_loads(WorldData<S>& world) {
-  world.overloads.reserve(world.breaking_loads.size());
-  for (const auto& [joint, load] : world.breaking_loads) {
-    Island<S>& island = world.islands[world.island_of[movable_body(world, world.joints[joint])]];
+void watch_bonds(WorldData<S>& world) {
+  world.overloads.reserve(world.bonds.size());
+  for (const Bond& bond : world.bonds) {
+    const JointRecord& record = world.joints[bond.joint];
+    Island<S>& island = world.islands[world.island_of[movable_body(world, record)]];
+    island.restless |= bond.in_time && !record.broken;
     for (System<S>* system : {&island.system, &island.rescue}) system->share_loads();
   }
 }
@@ -226,14 +228,14 @@ void prepare_topology(WorldData<S>& world) {
     stepper_of<S>(world.settings.integrator).prepare(island);
     world.awake.push_back(i);
   }
-  watch_breaking_loads(world);
+  watch_bonds(world);
   watch_events(world);
   settle_state(world);
   world.prepared = true;
 }
 
 #define CDOT_INSTANTIATE(S)                          \
-  template void watch_breaking_loads(WorldData<S>&); \
+  template void watch_bonds(WorldData<S>&); \
   template void prepare_topology(WorldData<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -10,9 +10,9 @@ namespace cdot {
 template <class S>
 void prepare_topology(WorldData<S>& world);
 
-// Lets the solvers of islands with breaking loads share forces among redundant joints. Allocates.
+// Lets the solvers of islands whose joints may break share forces among redundant joints. Allocates.
 template <class S>
-void watch_breaking_loads(WorldData<S>& world);
+void watch_bonds(WorldData<S>& world);
 
 // Island::size and ::scale, from the present poses.
 template <class S>

@@ -66,7 +66,7 @@ template <class S>
 void roll_back(WorldData<S>& world) {
   copy_awake(world, world.before, world.block.bytes);
   for (int index : world.awake) {
-    if (!world.breaking_loads.empty()) find_rows(world, world.islands[index]);
+    if (!world.bonds.empty()) find_rows(world, world.islands[index]);
     compute_again(world, world.islands[index]);
   }
   copy_awake(world, world.before, world.block.bytes);

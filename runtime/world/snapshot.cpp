@@ -59,7 +59,10 @@ std::uint64_t hash_of_joints(const WorldData<S>& world) {
   WordHash hash;
   for (const JointRecord& joint : world.joints) hash.add(joint.added);
   for (const Drag<S>& drag : world.drags) hash.add(drag.body), hash.add(drag.linear), hash.add(drag.angular);
-  for (const auto& [joint, load] : world.breaking_loads) hash.add(joint), hash.add(load);
+  for (const Bond& bond : world.bonds) {
+    hash.add(bond.joint);
+    for (const double number : bond.parameters) hash.add(number);
+  }
   hash.add(S::gravity(world.settings)), hash.add(world.origin);
   return hash.value;
 }

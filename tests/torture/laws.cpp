@@ -126,7 +126,7 @@ Exchange exchange_of(const Scene& scene) {
     const JointType& type = type_of(scene, joint);
     exchange.gives |= type.explicit_time;
     if (type.is_effect) add_effect(type, exchange);
-    exchange.takes |= one_sided(type) || joint.breaking.has_value();
+    exchange.takes |= one_sided(type) || !joint.bonds.empty();
     if (joint.definition.soft) {
       exchange.spring(*joint.definition.soft);
       exchange.takes |= std::count(type.row_kinds.begin(), type.row_kinds.end(), RowKind::velocity) > 0;
@@ -154,7 +154,7 @@ bool has_soft_rows(const Scene& scene) {
 bool is_smooth(const Scene& scene) {
   return std::none_of(scene.joints.begin(), scene.joints.end(), [&](const SceneJoint& joint) {
     const JointType& type = type_of(scene, joint);
-    if (one_sided(type) || joint.breaking || (type.is_effect && bounded(type))) return true;
+    if (one_sided(type) || !joint.bonds.empty() || (type.is_effect && bounded(type))) return true;
     return std::any_of(joint.effects.begin(), joint.effects.end(),
                        [](const CoordinateEffects& effects) { return bounded(effects); });
   });

@@ -45,7 +45,7 @@ void bring_to_rest(Scene& scene) {
   }
   scene.springs.clear();
   std::erase_if(scene.joints, [&](const SceneJoint& joint) { return type_of(scene, joint).explicit_time; });
-  for (SceneJoint& joint : scene.joints) joint.effects.clear(), joint.breaking.reset(), joint.definition.soft.reset();
+  for (SceneJoint& joint : scene.joints) joint.effects.clear(), joint.bonds.clear(), joint.definition.soft.reset();
 }
 
 // The numbers of a point of the joint; null: it has none.

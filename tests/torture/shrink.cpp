@@ -94,7 +94,7 @@ class Shrinker {
     for (std::size_t j = 0; j < best_.scene.joints.size(); ++j) {
       if (best_.scene.joints[j].definition.soft)
         smaller |= attempt([&](Scene& s) { s.joints[j].definition.soft.reset(); });
-      if (best_.scene.joints[j].breaking) smaller |= attempt([&](Scene& s) { s.joints[j].breaking.reset(); });
+      if (!best_.scene.joints[j].bonds.empty()) smaller |= attempt([&](Scene& s) { s.joints[j].bonds.clear(); });
       smaller |= each(best_.scene.joints[j].effects.size(), [&](Scene& s, std::size_t k) {
         s.joints[j].effects.erase(s.joints[j].effects.begin() + long(k));
       });

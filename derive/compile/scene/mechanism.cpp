@@ -39,7 +39,7 @@ void refuse_joint(const SceneJoint& joint, const Scene& scene, Refusals& refusal
   const auto refuse = [&](const std::string& part) {
     refusals.add(joint.where, fmt::format("{}: cdot compile knows no {}", name, part), "leave it to cdot-run");
   };
-  if (joint.breaking) refuse("joints that break");
+  if (!joint.bonds.empty()) refuse("joints that break");
   const JointType* type = find_joint_type(scene.dimension, joint.definition.type);
   if (type && !type->is_effect && in_time(joint.definition.parameters))
     refuse("joints whose numbers follow functions of time");

@@ -28,8 +28,10 @@ struct JointType {
   bool is_effect = false;       // its rows are coordinates that its law pushes, not constraints
   bool without_energy = false;  // an effect with a force beside that of its energy, which may damp
   // Of an effect that acts on the coordinate of any joint too: the unit of that, and the use of each parameter there.
+  // The unit of one on a joint itself is "joint".
   std::string_view coordinate_unit{};
   std::vector<CoordinateUse> coordinate_uses{};
+  bool acts_on_joint() const { return coordinate_unit == "joint"; }
   bool acts_on(std::string_view unit) const { return coordinate_unit == "any" || coordinate_unit == unit; }
 };
 
@@ -40,7 +42,7 @@ void add_joint_type(Dimension dimension, JointType type);
 
 // Every registered joint of a dimension, in the order of its registry.
 std::span<const JointType> joint_types(Dimension dimension);
-// The effects of the catalogue that act on the coordinate of any joint, in the plane and in space.
+// The effects of the catalogue that act on the coordinate of any joint, or on any joint, in the plane and in space.
 std::span<const JointType> coordinate_effects();
 // nullptr if none has that name.
 const JointType* find_coordinate_effect(std::string_view name);

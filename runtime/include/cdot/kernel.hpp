@@ -45,7 +45,9 @@
 //   Immovable                                                      a coordinate: std::tuple of the variants
 //   Bounded                                                        an effect: std::tuple of its bounded rows, if any
 //   coordinate_unit, coordinate_uses                               an effect whose law is about one coordinate alone;
-//                                                                  "any" unit: cdot::coordinate, without row blocks
+//                                                                  "any" unit: cdot::coordinate, without row blocks;
+//                                                                  "joint": an effect on a joint itself, on_joint,
+//                                                                  with breaks(p, t, load, D) for its one event
 //   immovable_body                                                 a variant only: the index of that body
 // A variant inherits every unchanged member from its block. T is float, double, cdot::Pack, or any type with + - * /,
 // comparison, select and the functions used.

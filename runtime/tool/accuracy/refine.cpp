@@ -147,7 +147,7 @@ bool acts_one_way(const CoordinateEffects& effects) {
 
 bool acts_one_way(Dimension dimension, const SceneJoint& joint) {
   const JointType& type = *find_joint_type(dimension, joint.definition.type);
-  return type.explicit_time || type.without_energy || in_time(joint.definition.parameters) || joint.breaking ||
+  return type.explicit_time || type.without_energy || in_time(joint.definition.parameters) || !joint.bonds.empty() ||
          (joint.definition.soft && damps(*joint.definition.soft)) ||
          std::any_of(type.row_kinds.begin(), type.row_kinds.end(),
                      [](RowKind kind) { return kind == RowKind::inequality; }) ||

@@ -38,7 +38,8 @@ std::vector<std::string> effects_on(const CoordinateInfo& coordinate) {
 std::string list_text(const JointType& type) {
   const char* body_or_bodies = type.bodies == 1 ? "body" : "bodies";
   const size_t rows = type.row_kinds.size();
-  std::string text = type.is_effect ? fmt::format("{}  ({} {})\n", type.name, type.bodies, body_or_bodies)
+  std::string text = type.acts_on_joint() ? fmt::format("{}  (any joint)\n", type.name)
+                     : type.is_effect     ? fmt::format("{}  ({} {})\n", type.name, type.bodies, body_or_bodies)
                                     : fmt::format("{}  ({} {}, {} row{})\n", type.name, type.bodies, body_or_bodies,
                                                   rows, rows == 1 ? "" : "s");
   for (const ParameterInfo& parameter : type.parameters) {
@@ -82,9 +83,16 @@ void add_to(Json& list, Dimension dimension) {
   }
 }
 
+std::string list_of_effects_on_joints() {
+  std::string text = "Effects on a joint itself\n\n";
+  for (const JointType& type : coordinate_effects())
+    if (type.acts_on_joint()) text += list_text(type);
+  return text;
+}
+
 std::string list_text() {
   return list_text(Dimension::planar, "in the plane (dimension = 2)") + "\n" +
-         list_text(Dimension::spatial, "in space (dimension = 3)");
+         list_text(Dimension::spatial, "in space (dimension = 3)") + "\n" + list_of_effects_on_joints();
 }
 
 std::string list_json() {

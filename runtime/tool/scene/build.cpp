@@ -17,7 +17,7 @@ void add_joint(BasicWorld<S>& world, const SceneJoint& source) {
   const int joint = world.add_joint(definition);
   for (const CoordinateEffects& effects : source.effects)
     effects.each([&](const auto& effect) { add_effect(world, joint, effects.coordinate, effect); });
-  if (source.breaking) set_breaking_load(world, joint, *source.breaking);
+  for (const SpecEffect& bond : source.bonds) add_effect(world, joint, bond);
 }
 
 template <class S>

@@ -64,10 +64,14 @@ std::string example_of(const JointType& type) {
   return text;
 }
 
+// Effects on a joint itself read it as a coordinate without a name. Its load is written as a force.
+constexpr CoordinateInfo whole_joint{"", "joint"};
+
 // "any/s" on an angle is "rad/s".
 std::string unit_on(std::string_view unit, std::string_view coordinate) {
   std::string text(unit);
-  if (const auto at = text.find("any"); at != std::string::npos) text.replace(at, 3, coordinate);
+  if (const auto at = text.find("any"); at != std::string::npos)
+    text.replace(at, 3, coordinate == whole_joint.unit ? "m" : coordinate);
   return text;
 }
 
@@ -146,6 +150,24 @@ void read_specs(Entry& entry, const CoordinateInfo& coordinate, double duration,
 
 }  // namespace
 
+void read_bonds(Entry& joint, double duration, std::vector<SpecEffect>& to) {
+  CoordinateEffects bonds;
+  for (const JointType& type : coordinate_effects()) {
+    const std::string key(type.name);
+    if (type.acts_on_joint() && joint.has(key)) read_spec(joint, key, type, whole_joint, duration, bonds);
+  }
+  for (const std::string& key : joint.unread()) {
+    const std::string spec = spec_beside(joint, key, {".effect"});
+    const JointType* const own = spec.empty() ? nullptr : own_effect_type(joint, key, spec);
+    if (own && own->acts_on_joint()) read_spec(joint, key, *own, whole_joint, duration, bonds);
+    else if (own)
+      joint.error(joint.where(key), fmt::format("{} acts on a coordinate of a joint", spec),
+                  fmt::format("angle.{} = …", key));
+    if (!spec.empty()) joint.has(key);
+  }
+  to = std::move(bonds.specs);
+}
+
 void read_effects(Entry& joint, const JointType& type, double duration, std::vector<CoordinateEffects>& to) {
   for (const CoordinateInfo& coordinate : type.coordinates) {
     const std::string key(coordinate.name);
@@ -181,12 +203,12 @@ KeyTable keys_of_effects() {
   for (const EffectKind* kind : effect_kinds) table.rows.push_back({kind->key, kind->meaning, ""});
   for (const JointType& type : coordinate_effects()) {
     const bool any = type.coordinate_unit == "any";
+    const std::string on = type.acts_on_joint() ? "the joint itself, without a coordinate"
+                           : any                ? "any coordinate"
+                                                : fmt::format("a coordinate in {}", type.coordinate_unit);
     if (!is_key_of_kind(type.name))
       table.rows.push_back(
-          {std::string(type.name),
-           fmt::format("`{{ {} }}` on {}{}: {}", example_of(type), any ? "any coordinate" : "a coordinate in ",
-                       any ? "" : type.coordinate_unit, type.title),
-           ""});
+          {std::string(type.name), fmt::format("`{{ {} }}` on {}: {}", example_of(type), on, type.title), ""});
   }
   return table;
 }

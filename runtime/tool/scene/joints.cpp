@@ -249,7 +249,6 @@ constexpr Key<JointReading> joint_keys[] = {
     {"soft", "{ frequency, damping_ratio } or { stiffness, damping }: the joint is a spring", "exact", read_soft},
     {start_key, "{ angle = \"30 deg\" }: coordinates at the start; the bodies follow from their written poses", "as written", read_start},
     {start_rate_key, "{ angle = 2 }: rates of coordinates at the start; the velocities follow", "by the written velocities", read_start},
-    {"breaking", "the joint breaks after a step with a larger load [N, N m]", "never", read_number<Sign::positive, &JointReading::joint, &SceneJoint::breaking>},
 };
 constexpr Key<SpringReading> spring_keys[] = {
     {"name", "of messages", "", read_spring_name},
@@ -273,6 +272,7 @@ void read_joints(Entry& top, const BodyNames& names, Scene& scene) {
     if (!read.type) continue;
     read_keys(entry, joint_keys, scene.dimension, read);
     read_effects(entry, *read.type, scene.duration, read.joint.effects);
+    read_bonds(entry, scene.duration, read.joint.bonds);
     refuse_other_coordinates(entry, *read.type, scene.dimension);
     entry.close();
     scene.joints.push_back(std::move(read.joint));

@@ -46,7 +46,8 @@ std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& 
 // The place of a mistake in a text: inside its quotes, if the file has the text as it is.
 Span place_in(Span whole, const std::string& text, const FormulaMistake& mistake);  // tool/scene/profile.cpp
 
-// The effects on the coordinates of a joint, and `soft`, which makes the joint itself a spring.
+// The effects on the coordinates of a joint, those on the joint itself, and `soft`, which makes it a spring.
+void read_bonds(Entry& joint, double duration, std::vector<SpecEffect>& to);
 void read_effects(Entry& joint, const JointType& type, double duration,
                   std::vector<CoordinateEffects>& to);  // tool/scene/effects.cpp
 std::optional<Softness> read_softness(Entry& joint, const char* key);

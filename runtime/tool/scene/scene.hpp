@@ -66,7 +66,7 @@ struct SceneJoint {
   std::string name;
   JointDefinition definition;  // its bodies are indices into Scene::bodies, or world_body
   std::vector<CoordinateEffects> effects;
-  std::optional<double> breaking;
+  std::vector<SpecEffect> bonds{};  // effects on the joint itself, as `breaking`
   Span where;  // its header in the file
   std::vector<CoordinateStart> starts;
 };

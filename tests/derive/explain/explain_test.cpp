@@ -141,7 +141,7 @@ TEST(Explain, AFlippedSignIsFound) {
 TEST(Explain, ReadsAsItWasRead) {
   const bool update = std::getenv("CDOT_UPDATE") != nullptr;
   std::vector<std::pair<std::string, std::string>> texts;
-  for (const std::string name : {"line", "revolute", "distance", "driven_crank", "pulley"}) {
+  for (const std::string name : {"line", "revolute", "distance", "driven_crank", "pulley", "breaking"}) {
     texts.emplace_back(name, explanation_text(explain(read_spec(name))));
   }
   for (const auto& [name, text] : unusual_specs()) {

@@ -25,6 +25,41 @@ TEST(BreakingLoad, BreaksJustAboveIt) {
   }
 }
 
+// The short form and the spec break the same joints in the same steps.
+TEST(BreakingLoad, IsTheSpecOfThatName) {
+  for (const bool by_spec : {false, true}) {
+    World<double> world(settings(Solver::direct, Drift::projection, -10));
+    const auto rods = add_chain(world, 5, 0.0, 2);
+    for (const int joint : {1, 3}) {
+      if (by_spec) add_effect(world, joint, {"breaking", {{"strength", {60}}}});
+      else set_breaking_load(world, joint, 60);
+    }
+    static std::vector<double> places;
+    std::vector<double> now;
+    for (int k = 0; k < 100; ++k) {
+      ASSERT_TRUE(world.step(0.01));
+      now.insert(now.end(), {world.pose(rods[4]).x, world.pose(rods[4]).y, double(world.broken(1) + world.broken(3))});
+    }
+    EXPECT_GT(now.back(), 0);
+    if (by_spec) {
+      EXPECT_EQ(now, places);
+    }
+    places = now;
+  }
+}
+
+TEST(BreakingLoad, WrongUsesAreRefused) {
+  World<double> world(settings(Solver::direct, Drift::projection));
+  add_chain(world, 1, 0.0);
+  EXPECT_THROW(add_effect(world, 0, "angle", SpecEffect{"breaking", {{"strength", {1}}}}), Error);
+  EXPECT_THROW(add_effect(world, 0, SpecEffect{"motor", {{"speed", {1}}}}), Error);
+  EXPECT_THROW(add_effect(world, 0, SpecEffect{"breaking", {}}), Error);
+  EXPECT_THROW(add_effect(world, 0, SpecEffect{"breaking", {{"strength", {-1}}}}), Error);
+  EXPECT_THROW(add_effect(world, 5, SpecEffect{"breaking", {{"strength", {1}}}}), Error);
+  const Profile falls = Profile::table({.times = {0, 1}, .values = {2, 1}});
+  EXPECT_THROW(add_effect(world, 0, SpecEffect{"breaking", {in_time("strength", {falls})}}), Error);
+}
+
 TEST(BreakingLoad, OfOneJointAmongMany) {
   for (Solver solver : both) {
     Settings s = settings(solver, Drift::projection, -10);

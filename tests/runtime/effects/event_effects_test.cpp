@@ -54,6 +54,8 @@ TEST(EventEffects, ALatchClosesAndHolds) {
     advance(world, 0.3, 0.01);
     EXPECT_NEAR(world.pose(wheel).angle, 0.5, 1e-6) << row.name;
     EXPECT_NEAR(world.velocity(wheel).w, 0, 1e-9) << row.name;
+    const Balance balance = world.balance();
+    EXPECT_NEAR(balance.taken - balance.put_in, 0.5 * 0.5 * 1.3 * 1.3, 1e-9) << row.name << ": it takes what it stops";
     world.set_force(wheel, {0, 0, -20});
     advance(world, 0.5, 0.01);
     EXPECT_NEAR(world.pose(wheel).angle, 0.5, 1e-6) << row.name << ": it is closed for good";
@@ -77,6 +79,21 @@ TEST(EventEffects, AShearPinBreaksAtItsStrength) {
     advance(world, breaks + after, (breaks + after) / 100);
     const double W = std::sqrt(k / m), y = strength / k * std::cos(W * after) + v / W * std::sin(W * after);
     EXPECT_NEAR(v * (breaks + after) - world.pose(slide).x, y, allowed(row, 0.01, 1e-7)) << row.name;
+  }
+}
+
+// A pin that is too weak for a weight breaks at the start, not at the end of a long adaptive step.
+TEST(EventEffects, APinThatIsTooWeakBreaksAtOnce) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::dop853, Integrator::radau5}) {
+    Settings settings = with(integrator, -10);
+    settings.local_error = 1e-9;
+    World<double> world(settings);
+    const int weight = world.add_body({.mass = 2, .inertia = 1});
+    const int rail =
+        world.add_joint({"prismatic", {weight, world.ground()}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {1, 0}}}, {}});
+    add_effect(world, rail, "slide", SpecEffect{"shear_pin", {{"strength", {19}}}});
+    advance(world, 1, 0.25);
+    EXPECT_NEAR(world.pose(weight).y, -5, 1e-8) << row_of(integrator).name;
   }
 }
 

@@ -115,11 +115,12 @@ std::vector<double> run_on_coordinate(const SpecEffect& effect, bool of_turn, co
                                       {}}));
   }
   const std::string coordinate = of_turn ? "angle" : "slide";
-  add_effect(world, joints[0], coordinate, effect);
+  if (find_coordinate_effect(effect.type)->acts_on_joint()) add_effect(world, joints[0], effect);
+  else add_effect(world, joints[0], coordinate, effect);
   std::vector<double> numbers;
   for (int k = 0; k < 25; ++k) {
     if (!world.step(0.004)) return numbers.push_back(k), numbers;
-    for (const int joint : joints) numbers.push_back(world.coordinate(joint, coordinate));
+    for (const int joint : joints) numbers.push_back(world.broken(joint) + world.coordinate(joint, coordinate));
     numbers.push_back(world.energy());
   }
   for (const WorkOfSource& of : world.work_by_source()) numbers.push_back(of.work);
@@ -179,6 +180,37 @@ TEST(Own, EveryEffectOnACoordinateActsAsCompiled) {
   EXPECT_GT(effects, 10);
   EXPECT_GT(runs, 20 * effects);
 }
+
+// Effects that the build compiled into this program (cdot_add_joints): on coordinates, on the coordinates of the effect's
+// own bodies too, and on a joint itself. They act as those of the catalogue.
+TEST(Own, EffectsOfAProgramActOnCoordinates) {
+  for (const std::string compiled : {"burning", "creeping_grip", "pull_back"}) {
+    const JointType* const info = find_coordinate_effect(compiled);
+    ASSERT_TRUE(info) << compiled;
+    const OwnType own = add_own_type(CDOT_SOURCE_DIR "/tests/runtime/own/specs/" + compiled + ".effect");
+    ASSERT_EQ(own.name, compiled + "#2") << own.problems;
+    const int runs = expect_same_on_coordinate<Planar<double>>(compiled, own.name) +
+                     expect_same_on_coordinate<Planar<float>>(compiled, own.name) +
+                     expect_same_on_coordinate<Spatial<double>>(compiled, own.name);
+    EXPECT_GT(runs, 20) << compiled;
+  }
+  EXPECT_TRUE(find_joint_type(Dimension::planar, "pull_back")) << "it acts between bodies, too";
+}
+
+// A weight on a cord that burns: its strength of 101 N falls to the weight of 20 N after 0.802 s.
+TEST(Own, AJointBreaksByAnEffectOfAProgram) {
+  World<double> world(settings(Solver::direct, Drift::projection, -10));
+  BodyDefinition d;
+  d.y = -1, d.mass = 2, d.inertia = 1;
+  const int weight = world.add_body(d);
+  const int cord = world.add_joint({"distance", {weight, world.ground()}, {{"pa", {0, 0}}, {"pb", {0, 0}}}, {}});
+  add_effect(world, cord, SpecEffect{"burning", {{"strength", {101}}, {"life", {1}}}});
+  for (int k = 1; k <= 90; ++k) {
+    world.step(0.01);
+    EXPECT_EQ(world.broken(cord), k >= 81) << k;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Own, InFolder, testing::Values("planar", "spatial"));
 
 // A motor acts on the coordinate of a joint without a compiler, in the plane and beyond half a turn in space.

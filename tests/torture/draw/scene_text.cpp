@@ -114,6 +114,13 @@ bool is_damper(const CoordinateSpring& spring) {
   return !spring.softness.by_frequency && spring.softness.stiffness == 0 && spring.rest == 0.0;
 }
 
+std::string table_of_numbers(const SpecEffect& spec) {
+  std::string numbers;
+  for (const NamedValue& value : spec.parameters)
+    numbers += fmt::format("{}{} = {}", numbers.empty() ? "" : ", ", value.name, value.numbers[0]);
+  return fmt::format("{{ {} }}", numbers);
+}
+
 void write_effects(const CoordinateEffects& effects, Lines lines) {
   const auto key = [&](std::string_view effect) { return fmt::format("{}.{}", effects.coordinate, effect); };
   if (const auto& limit = effects.limit) {
@@ -126,12 +133,7 @@ void write_effects(const CoordinateEffects& effects, Lines lines) {
     lines.raw(key("motor"), motor->max_force == unlimited
                                 ? fmt::format("{{ speed = {} }}", motor->speed)
                                 : fmt::format("{{ speed = {}, max = {} }}", motor->speed, motor->max_force));
-  for (const SpecEffect& spec : effects.specs) {
-    std::string numbers;
-    for (const NamedValue& value : spec.parameters)
-      numbers += fmt::format("{}{} = {}", numbers.empty() ? "" : ", ", value.name, value.numbers[0]);
-    lines.raw(key(spec.type), fmt::format("{{ {} }}", numbers));
-  }
+  for (const SpecEffect& spec : effects.specs) lines.raw(key(spec.type), table_of_numbers(spec));
   for (const CoordinateSpring& spring : effects.springs) {
     if (is_damper(spring)) lines.number(key("damper"), spring.softness.damping);
     else
@@ -154,7 +156,7 @@ void write_joint(const Scene& scene, const SceneJoint& joint, Lines lines) {
   }
   for (const CoordinateEffects& effects : joint.effects) write_effects(effects, lines);
   if (joint.definition.soft) lines.raw("soft", fmt::format("{{ {} }}", softness(*joint.definition.soft)));
-  if (joint.breaking) lines.number("breaking", *joint.breaking);
+  for (const SpecEffect& bond : joint.bonds) lines.raw(bond.type, table_of_numbers(bond));
 }
 
 void write_spring(const Scene& scene, const SpringDefinition& spring, Lines lines) {

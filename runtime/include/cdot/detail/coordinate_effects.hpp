@@ -19,7 +19,18 @@ struct FunctionsOnCoordinate {
   std::function<void(double C, const double* parameters, double time, RowBounds<double>&)> bounds;  // empty: no bounds
   // True if force and energy are finite at rest; empty: it has bounds.
   std::function<bool(double C, const double* parameters, double time)> has_value;
+  // Of an effect on a joint itself: the distance from breaking it, at most 0 where it breaks. `load` is the norm of its
+  // row forces. Such an effect has no other of these but default_value.
+  std::function<double(const double* parameters, double time, double load)> breaks;
 };
+
+template <class Effect>
+double distance_from_breaking(const double* parameters, double time, double load) {
+  double distance;
+  Effect::breaks(*reinterpret_cast<const typename Effect::template Parameters<double>*>(parameters), time, load,
+                 distance);
+  return distance;
+}
 
 std::vector<JointType>& registered_coordinate_effects();
 std::vector<FunctionsOnCoordinate>& functions_on_coordinates();
@@ -31,7 +42,8 @@ using BoundedOnCoordinate = std::tuple_element_t<0, typename Effect::Bounded>;
 
 template <class S, class Effect>
 constexpr const Law<S>* law_on_coordinate() {
-  if constexpr (requires { typename Effect::Bounded; })
+  if constexpr (requires { Effect::on_joint; }) return nullptr;
+  else if constexpr (requires { typename Effect::Bounded; })
     return &bounded_law<S, Effect, BoundedOnCoordinate<Effect>, ParametersAt::row>;
   else if constexpr (requires { requires Effect::linear; }) return &linear_law<S, Effect>;
   else return &effect_law<S, Effect, ParametersAt::row>;
@@ -51,8 +63,10 @@ FunctionsOnCoordinate functions_on_coordinate() {
                                     }
                                   },
                                   {},
+                                  {},
                                   {}};
-  if constexpr (requires { typename Effect::Bounded; })
+  if constexpr (requires { Effect::on_joint; }) functions.breaks = distance_from_breaking<Effect>;
+  else if constexpr (requires { typename Effect::Bounded; })
     functions.bounds = [](double C, const double* parameters, double time, RowBounds<double>& B) {
       const double value[1] = {C};
       BoundedOnCoordinate<Effect>::bounds(value, *reinterpret_cast<const Numbers*>(parameters), time, B);

@@ -38,6 +38,7 @@ JointType describe_joint() {
     type.coordinate_unit = Joint::coordinate_unit;
     type.coordinate_uses.assign(Joint::coordinate_uses.begin(), Joint::coordinate_uses.end());
   }
+  if constexpr (requires { Joint::on_joint; }) type.explicit_time |= Joint::in_time;
   if constexpr (requires { typename Joint::Bounded; }) {
     [&]<class... Rows>(std::type_identity<std::tuple<Rows...>>) {
       type.explicit_time |= (Rows::in_time || ...);

@@ -246,7 +246,7 @@ TEST(ComposedRattle, NeedsAReversibleMotion) {
   effects.springs.clear();
   effects.motor = Motor{1, 2};
   EXPECT_FALSE(changed([&](Scene& scene) { scene.joints[0].effects = {effects}; }));
-  EXPECT_FALSE(changed([](Scene& scene) { scene.joints[0].breaking = 10; }));
+  EXPECT_FALSE(changed([](Scene& scene) { scene.joints[0].bonds = {{"breaking", {{"strength", {10}}}}}; }));
   EXPECT_FALSE(changed([](Scene& scene) { scene.joints[0].definition.soft = Softness{true, 2, 0.5, 0, 0}; }));
   EXPECT_FALSE(changed([](Scene& scene) { scene.bodies[0].definition.linear_damping = 0.1; }));
   EXPECT_FALSE(changed([](Scene& scene) { scene.joints[0].definition.type = "max_distance"; }));

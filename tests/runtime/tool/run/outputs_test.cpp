@@ -90,7 +90,7 @@ TEST_P(Outputs, ChangeNoBit) {
   expect_same_bits(scene_of("spatial/gyroscope", 0.5, 0.01));
   expect_same_bits(scene_of("spatial/three_bodies", 1, 0.01));
   Scene breaking = scene_of("chain_10", 1, 0.01);
-  breaking.joints[4].breaking = 100;
+  breaking.joints[4].bonds = {{"breaking", {{"strength", {100}}}}};
   expect_same_bits(breaking);
 }
 

@@ -169,7 +169,9 @@ TEST(Format, EffectsOnCoordinates) {
   EXPECT_EQ(effects.springs[1].softness.damping, 0.25);
   EXPECT_EQ(effects.friction->max_force, 3);
   EXPECT_EQ(effects.load->force, -2);
-  EXPECT_EQ(joint.breaking, 500);
+  ASSERT_EQ(joint.bonds.size(), 1u);
+  EXPECT_EQ(joint.bonds[0].type, "breaking");
+  EXPECT_EQ(joint.bonds[0].parameters[0].numbers, std::vector<double>{500});
   EXPECT_TRUE(joint.definition.soft->by_frequency);
   EXPECT_EQ(joint.definition.soft->frequency, 4);
 }

@@ -155,5 +155,51 @@ TEST(OwnTypes, EffectsInTheWrongPlaceAreToldWhereTheyGo) {
     EXPECT_NE(run.err.find(words), std::string::npos) << words << "\n" << run.err;
 }
 
+// A weight of 20 N hangs on a cord whose strength of 100 N falls to nothing in 10 s: it breaks after 8 s.
+constexpr const char* cord = R"(effect burning joint
+  "A cord that burns, until what is left of its strength is too little."
+  scalar strength [J/any] above 0
+  scalar life [s] above 0
+  bond: joint, until load(bond) >= strength*(1 - time/life)
+)";
+constexpr const char* weight = R"(duration = 9
+solver = "direct"
+step = 0.01
+gravity = [0, -10]
+[[body]]
+name = "weight"
+mass = 2
+inertia = 0.1
+position = [0, -1]
+[[joint]]
+type = "distance"
+bodies = ["weight", "world"]
+pa = [0, 0]
+pb = [0, 0]
+burning = { strength = 100, life = 10 }
+)";
+
+TEST(OwnTypes, AJointBreaksByASpecOfItsOwn) {
+  const TemporaryFolder folder;
+  write(folder / "burning.effect", cord);
+  write(folder / "scene.toml", weight);
+  const std::string scene = folder / "scene.toml", csv_path = folder / "run.csv";
+  const CommandResult run = cdot_run(fmt::format("simulate '{}' -o '{}'", scene, csv_path));
+  ASSERT_EQ(run.status, 0) << run.out << run.err;
+  EXPECT_NE(run.out.find("broken          \"joint1\""), std::string::npos) << run.out;
+  double t = 0, x = 0, y = 0;
+  ASSERT_EQ(std::sscanf(last_line(csv_path).c_str(), "%lf,%lf,%lf", &t, &x, &y), 3);
+  EXPECT_NEAR(y, -1 - 5 * 1 * 1, 0.11);  // falls for a second, less a step
+}
+
+TEST(OwnTypes, AnEffectOnACoordinateIsNoneOfTheJoint) {
+  const TemporaryFolder folder;
+  write(folder / "burning.effect", stiction);
+  write(folder / "scene.toml", weight);
+  const CommandResult run = cdot_run(fmt::format("simulate '{}'", (folder / "scene.toml").string()));
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("burning.effect acts on a coordinate of a joint"), std::string::npos) << run.err;
+}
+
 }  // namespace
 }  // namespace cdot::test::own_types_test
