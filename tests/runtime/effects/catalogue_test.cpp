@@ -173,7 +173,10 @@ void expect_closed(const Scene& scene, double gravity) {
   };
   for (const IntegratorRow& row : integrator_rows) {
     const double coarse = unaccounted(row.integrator, 1. / 256), fine = unaccounted(row.integrator, 1. / 512);
-    EXPECT_LT(coarse, row.order < 2 ? 0.15 : scene.kind == Kind::event ? 1e-2 : 2e-3) << scene.name << " by " << row.name;
+    EXPECT_LT(coarse, row.order < 2               ? 0.15
+                      : scene.kind == Kind::event ? 1e-2
+                                                  : 2e-3)
+        << scene.name << " by " << row.name;
     EXPECT_TRUE(fine < 1e-3 || fine < 0.7 * coarse) << scene.name << " by " << row.name << ": " << coarse / fine;
   }
   const double tolerance = scene.kind == Kind::event ? 1e-6 : 1e-9;

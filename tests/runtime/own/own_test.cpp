@@ -181,8 +181,8 @@ TEST(Own, EveryEffectOnACoordinateActsAsCompiled) {
   EXPECT_GT(runs, 20 * effects);
 }
 
-// Effects that the build compiled into this program (cdot_add_joints): on coordinates, on the coordinates of the effect's
-// own bodies too, and on a joint itself. They act as those of the catalogue.
+// Effects that the build compiled into this program (cdot_add_joints): on coordinates, on the coordinates of the
+// effect's own bodies too, and on a joint itself. They act as those of the catalogue.
 TEST(Own, EffectsOfAProgramActOnCoordinates) {
   for (const std::string compiled : {"burning", "creeping_grip", "pull_back"}) {
     const JointType* const info = find_coordinate_effect(compiled);

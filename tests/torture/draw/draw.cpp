@@ -268,9 +268,9 @@ void add_effects(Random& random, const Scales& scales, Scene& scene) {
             random_effects(random, scales, coordinate, world.coordinate(static_cast<int>(j), coordinate.name)));
     if (random.chance(0.1)) joint.definition.soft = random_softness(random, scales, false);
     if (random.chance(0.05))
-      joint.bonds = {{"breaking",
-                      {{"strength", {scales.mass * scales.length * scales.rate * scales.rate *
-                                     random.log_between(1, 100)}}}}};
+      joint.bonds = {
+          {"breaking",
+           {{"strength", {scales.mass * scales.length * scales.rate * scales.rate * random.log_between(1, 100)}}}}};
   }
   if (random.chance(0.3)) add_point_spring(random, scales, scene);
   for (SceneBody& body : scene.bodies)
