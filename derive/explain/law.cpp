@@ -21,9 +21,8 @@ std::vector<Chain> law_chains(const Lecture& lecture) {
 // The norm of the multipliers is the load: with C in metres that of a force, with C in radians that of a torque.
 static void explain_breaking(Lecture& lecture, Step& step) {
   const BoundedRow& row = lecture.joint.law->bounded.front();
-  step.say(row.name + ", `" + row.text +
-           "`: the rows of the joint act until the event, and never again. The load of " + row.name +
-           " is the norm of the forces along all these rows.");
+  step.say(row.name + ", `" + row.text + "`: the rows of the joint act until the event, and never again. The load of " +
+           row.name + " is the norm of the forces along all these rows.");
   step.say("The event happens where D is not above 0, a share of what the condition compares:");
   const std::map<const Node*, Expr> load = {
       {row.own_load ? &*row.own_load : nullptr, lecture.joint.pool->symbol("load(" + row.name + ")", Role::given)}};

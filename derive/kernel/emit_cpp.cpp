@@ -252,7 +252,7 @@ class KernelWriter {
     for (const OnCoordinate::Use use : on.uses)
       uses += (uses.empty() ? "CoordinateUse::" : ", CoordinateUse::") + std::string(words[use]);
     line("");
-    line(on.unit == "joint"            ? "// On any joint."
+    line(on.unit == "joint"           ? "// On any joint."
          : joint_.on_any_coordinate() ? "// On the coordinate of any joint."
                                       : "// On the coordinate of any joint in this unit, and the parameters there.",
          1);

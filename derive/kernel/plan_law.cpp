@@ -109,7 +109,8 @@ KernelBound plan_bound(const Joint& joint, const BoundedRow& row, const DerivedB
     others.push_back({"by_load", "what each unit of the load adds to the bounds", assemble(outputs), false, {}});
     outputs.clear();
   }
-  for (const auto& [name, distance] : {std::pair("after", row.after), std::pair(joint.law->on_joint ? "breaks" : "until", row.until)}) {
+  for (const auto& [name, distance] :
+       {std::pair("after", row.after), std::pair(joint.law->on_joint ? "breaks" : "until", row.until)}) {
     if (!distance) continue;
     add("D", distance);
     others.push_back({name, "the distance from that event, at most 0 where it happens", assemble(outputs), false, {}});

@@ -82,8 +82,9 @@ bool Elaborator::event(Source& source, const ConditionAst& condition, BoundedRow
     }
     if (std::ranges::all_of(leaves_of(std::span<const Expr>(&value->e, 1)), known)) continue;
     d.error(ast->where,
-            joint_.law->on_joint ? "the event that breaks a joint depends on parameters, time and its load alone"
-                         : "an event depends on parameters, time, the coordinate of its row, its rate and its load alone",
+            joint_.law->on_joint
+                ? "the event that breaks a joint depends on parameters, time and its load alone"
+                : "an event depends on parameters, time, the coordinate of its row, its rate and its load alone",
             "load(" + row.name + ") is the size of the force of the row");
     return false;
   }

@@ -76,8 +76,7 @@ void Elaborator::check_free(Source& spec) {
   Diagnostics& d = spec.diagnostics;
   if (!of_coordinate_) return;
   if (!law.free)
-    return d.error(spec.ast.name.where, "the effect names no coordinate that it acts on",
-                   "write coordinate s [any]");
+    return d.error(spec.ast.name.where, "the effect names no coordinate that it acts on", "write coordinate s [any]");
   const auto placed =
       std::ranges::find_if(joint_.parameters, [](const Parameter& p) { return p.kind != ParameterKind::scalar; });
   if (!bodies_.empty() || placed != joint_.parameters.end())

@@ -99,9 +99,9 @@ struct StatementAst {
   bool velocity = false;  // row; coordinate: declared by its rate
   std::string relation;   // "=", "<=", ">="
   Span relation_where;
-  Ast left, right;      // row; energy, force: the expression is `left`
-  bool torque = false;  // force: `torque on BODY`
-  Word bounded;         // bound: the coordinate. `left` is its prescribed rate, if `of_rate`
+  Ast left, right;                           // row; energy, force: the expression is `left`
+  bool torque = false;                       // force: `torque on BODY`
+  Word bounded;                              // bound: the coordinate. `left` is its prescribed rate, if `of_rate`
   bool of_rate = false, of_joint = false;    // of_joint: the row is those of the joint, `bounded` is empty
   std::optional<Ast> lower, upper;           // bound: of the coordinate, or of the force that prescribes its rate
   std::vector<RateAst> across;               // bound: further rates, which one force of at most `upper` prescribes

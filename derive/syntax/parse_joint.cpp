@@ -205,7 +205,8 @@ class JointParser {
     s.declared.unit = p_.unit();
     if (keyword == "let" && s.declared.unit)
       p_.fail(s.declared.unit->where, "a let takes its unit from its expression", "remove the unit here");
-    const bool of_any_joint = keyword == "coordinate" && (joint_.dimension == "coordinate" || joint_.dimension == "joint");
+    const bool of_any_joint =
+        keyword == "coordinate" && (joint_.dimension == "coordinate" || joint_.dimension == "joint");
     if (!p_.failed() && !p_.at_symbol("=") && !of_any_joint)
       p_.fail(p_.peek().where, "`=` is missing after `" + keyword + " " + s.declared.name.text + "`: " + p_.found(),
               "write " + keyword + " " + s.declared.name.text + " = ...");

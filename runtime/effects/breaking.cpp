@@ -73,8 +73,7 @@ void find_overloads(WorldData<S>& world, double h) {
     const JointRecord& record = world.joints[bond.joint];
     const int island = world.island_of[movable_body(world, record)];
     if (record.broken || world.islands[island].asleep) continue;
-    const double distance =
-        bond.distance(bond.parameters.data(), double(world.time) + h, force_of(world, record, h));
+    const double distance = bond.distance(bond.parameters.data(), double(world.time) + h, force_of(world, record, h));
     if (distance <= 0) overloads.push_back({island, distance, bond.joint});
   }
   std::sort(overloads.begin(), overloads.end());
@@ -122,7 +121,7 @@ void set_breaking_load(BasicWorld<S>& world, int joint, double load) {
   add_bond(world, {joint, distance_from_breaking<Effect>, {load}, Effect::in_time});
 }
 
-#define CDOT_INSTANTIATE(S)                           \
+#define CDOT_INSTANTIATE(S)                            \
   template void add_bond(BasicWorld<S>&, const Bond&); \
   template void set_breaking_load(BasicWorld<S>&, int, double);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)

@@ -89,7 +89,7 @@ struct Model {
   std::array<double, 3> origin{};  // [m] origin of the poses
   int ground = -1;
   std::vector<Drag<S>> drags;
-  std::vector<int> turning;                            // bodies whose inertia tensor turns with them
+  std::vector<int> turning;  // bodies whose inertia tensor turns with them
   std::vector<Bond> bonds;
   std::vector<Hook> after_substep;
   std::vector<Note> notes;

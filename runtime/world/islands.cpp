@@ -234,7 +234,7 @@ void prepare_topology(WorldData<S>& world) {
   world.prepared = true;
 }
 
-#define CDOT_INSTANTIATE(S)                          \
+#define CDOT_INSTANTIATE(S)                 \
   template void watch_bonds(WorldData<S>&); \
   template void prepare_topology(WorldData<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)

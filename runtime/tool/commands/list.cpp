@@ -40,8 +40,8 @@ std::string list_text(const JointType& type) {
   const size_t rows = type.row_kinds.size();
   std::string text = type.acts_on_joint() ? fmt::format("{}  (any joint)\n", type.name)
                      : type.is_effect     ? fmt::format("{}  ({} {})\n", type.name, type.bodies, body_or_bodies)
-                                    : fmt::format("{}  ({} {}, {} row{})\n", type.name, type.bodies, body_or_bodies,
-                                                  rows, rows == 1 ? "" : "s");
+                                      : fmt::format("{}  ({} {}, {} row{})\n", type.name, type.bodies, body_or_bodies,
+                                                    rows, rows == 1 ? "" : "s");
   for (const ParameterInfo& parameter : type.parameters) {
     const std::string body = body_name(parameter);
     text += fmt::format("    {:<12} {} [{}]{}{}\n", parameter.name, kind_of(parameter), parameter.unit,

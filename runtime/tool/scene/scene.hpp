@@ -67,7 +67,7 @@ struct SceneJoint {
   JointDefinition definition;  // its bodies are indices into Scene::bodies, or world_body
   std::vector<CoordinateEffects> effects;
   std::vector<SpecEffect> bonds{};  // effects on the joint itself, as `breaking`
-  Span where;  // its header in the file
+  Span where;                       // its header in the file
   std::vector<CoordinateStart> starts;
 };
 
