@@ -29,10 +29,16 @@ double kinetic_energy(const WorldData<S>& world, const Island<S>& island);
 // Of the rows of one joint that are springs.
 template <class S>
 double potential_of(const WorldData<S>& world, const JointRecord& joint, Batch<S>& one_slot);
-// dk/dt C^2 / 2 of the rows of a slot at the velocities `v`: a spring given by its frequency has k = (2 pi f)^2 / K,
-// and K changes with the pose. The spring's force does not do this work. `few` is scratch.
+// Where, and along which motion, a rate of change is found by the difference over 2 `epsilon` seconds.
 template <class S>
-double power_of_stiffness(const WorldData<S>& world, const Batch<S>& batch, int slot, const typename S::Velocity* v,
+struct Along {
+  typename S::Scalar time, epsilon;
+  const typename S::Velocity* v;
+};
+// dk/dt C^2 / 2 of the rows of a slot: a spring given by its frequency has k = (2 pi f)^2 / K, and K changes with the
+// pose. The spring's force does not do this work. `few` is scratch.
+template <class S>
+double power_of_stiffness(const WorldData<S>& world, const Batch<S>& batch, int slot, const Along<S>& motion,
                           Batch<S>& one_slot, Bodies<S>& few);
 // Allocates what an evaluation in `one_slot` needs.
 template <class S>

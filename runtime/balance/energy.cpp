@@ -40,14 +40,12 @@ typename S::Velocity moved_along(const Bodies<S>& all, int body, const typename 
 
 }  // namespace
 
-// By the difference of k over 2 epsilon seconds.
 template <class S>
-double power_of_stiffness(const WorldData<S>& world, const Batch<S>& batch, int slot, const typename S::Velocity* v,
+double power_of_stiffness(const WorldData<S>& world, const Batch<S>& batch, int slot, const Along<S>& motion,
                           Batch<S>& one_slot, Bodies<S>& few) {
   using T = typename S::Scalar;
-  constexpr T epsilon = T(by_precision<T>(1e-3, 1e-6));
+  const auto& [time, epsilon, v] = motion;
   const int bodies = batch.ops->bodies, rows = batch.ops->rows;
-  const T time = T(world.time);
   copy_slot(batch, slot, one_slot);
   batch.ops->evaluate(one_slot, 0, 1, world.bodies, time);
   T C[most_rows];
@@ -60,7 +58,7 @@ double power_of_stiffness(const WorldData<S>& world, const Batch<S>& batch, int 
       few.pose[k] = S::moved(world.bodies.pose[body], S::sum({}, v[body], side ? epsilon : -epsilon));
       few.effective_mass[k] = inverse_mass_at(world, body, few.pose[k]);
     }
-    batch.ops->evaluate(one_slot, 0, 1, few, time);
+    batch.ops->evaluate(one_slot, 0, 1, few, side ? time + epsilon : time - epsilon);
     batch.ops->effective_mass(one_slot, 0, 1, few);
     std::copy_n(C, rows, one_slot.C.data());
     energy[side] = batch.law->energy(one_slot, 0);
@@ -133,13 +131,13 @@ Energy energy_of(const WorldData<S>& world, Batch<S>& one_slot) {
   return energy;
 }
 
-#define CDOT_INSTANTIATE(S)                                                                                    \
-  template double power_of_stiffness(const WorldData<S>&, const Batch<S>&, int, const S::Velocity*, Batch<S>&, \
-                                     Bodies<S>&);                                                              \
-  template void reserve(const WorldData<S>&, Batch<S>&);                                                       \
-  template double potential_of(const WorldData<S>&, const JointRecord&, Batch<S>&);                            \
-  template double small_energy(const WorldData<S>&);                                                           \
-  template double kinetic_energy(const WorldData<S>&, const Island<S>&);                                       \
+#define CDOT_INSTANTIATE(S)                                                                                 \
+  template double power_of_stiffness(const WorldData<S>&, const Batch<S>&, int, const Along<S>&, Batch<S>&, \
+                                     Bodies<S>&);                                                           \
+  template void reserve(const WorldData<S>&, Batch<S>&);                                                    \
+  template double potential_of(const WorldData<S>&, const JointRecord&, Batch<S>&);                         \
+  template double small_energy(const WorldData<S>&);                                                        \
+  template double kinetic_energy(const WorldData<S>&, const Island<S>&);                                    \
   template Energy energy_of(const WorldData<S>&, Batch<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

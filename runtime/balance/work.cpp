@@ -174,16 +174,36 @@ void work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S
   }
 }
 
+// A duration in which no body moves by more than a small share of the mechanism's size, or of 1 rad: third derivatives
+// do not count in a difference over it, nor does round-off.
+template <class S>
+typename S::Scalar moment_of(const Island<S>& island, const typename S::Velocity* v) {
+  using T = typename S::Scalar;
+  constexpr T longest = T(by_precision<T>(1e-3, 1e-6)), way = T(by_precision<T>(4e-3, 1e-6));
+  const T size = island.size;
+  T fastest = 0;
+  for (int i : island.bodies) {
+    T numbers[S::freedom];
+    S::write(v[i], numbers);
+    for (int k = 0; k < S::freedom; ++k)
+      fastest = std::max<T>(fastest, std::abs(numbers[k]) / (k < S::lengths ? size : T(1)));
+  }
+  return fastest * longest > way ? way / fastest : longest;
+}
+
 // Springs given by their frequency: their stiffness changes with the pose.
 template <class S>
-void work_of_stiffness(WorldData<S>& world, const Island<S>& island, const typename S::Velocity* v, double h,
-                       Work& work) {
+void work_of_stiffness(WorldData<S>& world, const Island<S>& island, typename S::Scalar time,
+                       const typename S::Velocity* v, double h, Work& work) {
+  const auto has_springs = [](const Segment<S>& segment) { return segment.batch->law && segment.batch->law->by_mass; };
+  if (std::ranges::none_of(island.segments, has_springs)) return;
+  const Along<S> motion{time, moment_of(island, v), v};
   for (const Segment<S>& segment : island.segments) {
+    if (!has_springs(segment)) continue;
     const Batch<S>& batch = *segment.batch;
-    if (!batch.law || !batch.law->by_mass) continue;
     for (int slot = segment.begin; slot < segment.end; ++slot)
       if (batch.law->by_mass(batch, slot))
-        work.put(batch.source, h * power_of_stiffness(world, batch, slot, v, world.one_slot, world.few));
+        work.put(batch.source, h * power_of_stiffness(world, batch, slot, motion, world.one_slot, world.few));
   }
 }
 
@@ -280,7 +300,7 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
       },
       springs_of(impulses), impulses == Impulses::dampers, kick_of(impulses), island.evaluated_at, double(h), work);
   if (impulses == Impulses::rattle_start || impulses == Impulses::rattle_end)
-    work_of_stiffness(world, island, start.data(), double(h), work);
+    work_of_stiffness(world, island, island.evaluated_at, start.data(), double(h), work);
   if (!of_rows) work_of_drives(island, double(h), work);
   add(world, work);
 }
@@ -301,7 +321,7 @@ void find_power(WorldData<S>& world, Island<S>& island, typename S::Scalar time,
         return batch.rate.data();
       },
       Springs::whole, false, Kick::only, time, 1, work);
-  work_of_stiffness(world, island, v, 1, work);
+  work_of_stiffness(world, island, time, v, 1, work);
   work_of_drives(island, 1, work);
   power[0] = T(work.put_in), power[1] = T(work.taken);
   std::copy(world.work_by_source.begin(), world.work_by_source.end(), power + 2);

@@ -37,7 +37,7 @@ class Trial {
 
   Verdict run();
   // The largest rotation of a row in one step.
-  double most_turned() const;
+  double most_turned();
 
  private:
   using T = typename S::Scalar;
@@ -82,7 +82,7 @@ class Trial {
 template <class S>
 BasicWorld<S> Trial<S>::started() const {
   BasicWorld<S> world = build_world_in<S>(*scene_);
-  if (scene_->project) world.project(start_tolerance<T>);
+  if (scene_->project) world.project(by_precision<T>(1e-5, 1e-12));
   world.prepare();
   return world;
 }
@@ -135,8 +135,7 @@ std::optional<Verdict> Trial<S>::look_at_momentum(const Motion& now, const Basic
 
 template <class S>
 std::optional<Verdict> Trial<S>::look_at_energy(double energy, int k) const {
-  const double bound = accounts_->order_error() + accounts_->round_off_energy();
-  const double rise = energy - start_energy_;
+  const double bound = accounts_->order_error() + accounts_->round_off_energy(), rise = energy - start_energy_;
   if (k < 2 || sweeps_only()) return {};
   const bool sweeps = scene_->settings.solver == Solver::iterative;
   if (laws_.energy_falls && !(rise <= bound)) return verdict(Outcome::broken, "energy rises", "", rise, bound, k);
@@ -202,10 +201,11 @@ const char* Trial<S>::excuse(BasicWorld<S>& world) const {
 template <class S>
 std::optional<Verdict> Trial<S>::look_at_joints(BasicWorld<S>& world, const Gap& gap, int k) const {
   if (scene_->settings.drift != Drift::projection || scene_->settings.solver != Solver::direct) return {};
-  const bool apart = !(gap.share <= held_tolerance<T>);
+  const double held = held_tolerance<T> + round_off_of_poses(world, sizes_.length);
+  const bool apart = !(gap.share <= held);
   const double share = apart ? gap.share : passed_share(world);
   const bool may_pass = !apart && works_on_accelerations(scene_->settings.integrator);
-  const double bound = may_pass ? just_passed<T> : held_tolerance<T>;
+  const double bound = may_pass ? just_passed<T> : held;
   if (share <= bound) return {};
   const char* why = excuse(world);
   const std::string of(!apart          ? world.worst_passed_end().effect
@@ -349,16 +349,16 @@ Verdict Trial<S>::run() {
 }
 
 template <class S>
-double Trial<S>::most_turned() const {
+double Trial<S>::most_turned() {
   BasicWorld<S> world = started();
-  const double length = row_sizes(world).length;
+  sizes_ = row_sizes(world);  // push() needs them, too
   SystemMatrix before = system_matrix(world);
   double most = 0;
   for (int k = 1; k <= steps_; ++k) {
     push(world, k);
     if (!step(world, k)) break;
     SystemMatrix now = system_matrix(world);
-    most = std::max(most, turned(before, now, length));
+    most = std::max(most, turned(before, now, sizes_.length));
     before = std::move(now);
   }
   return most;

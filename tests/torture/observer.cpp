@@ -159,6 +159,21 @@ void Accounts::add_round_off(const Motion& now, double operations) {
   angular_ += operations * epsilon_ * now.angular_size;
 }
 
+// The error of springs in a step. Each further order is one more derivative, a factor `rough`, or the change of the
+// spring's own rate in the step relative to the largest so far: a stretch may wave more quickly than the bodies move.
+// So may a stiffness.
+double Accounts::work_missed(const std::vector<SpringRow>& springs, double dv, double rough) {
+  largest_rates_.resize(springs.size(), 0);
+  double sum = 0;
+  for (std::size_t k = 0; k < springs.size(); ++k) {
+    const SpringRow &s = springs_[k], &e = springs[k];
+    largest_rates_[k] = std::max({largest_rates_[k], std::abs(s.rate), std::abs(e.rate)});
+    const double bend = largest_rates_[k] > 0 ? std::abs(e.rate - s.rate) / largest_rates_[k] : 0;
+    sum += missed_work(s, e, step_, dv) * std::pow(std::max({rough, bend, stiffened(s, e)}), order_ - 1);
+  }
+  return sum;
+}
+
 // Per step: (|dv| (|dv| + |h F|) + missed_work) rho^(p-1), where rho is the change of acceleration in a step relative
 // to the largest so far. dv does not show joint forces against the turning of a tensor, so the larger dv, with or
 // without that turning, counts.
@@ -173,7 +188,7 @@ void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double en
   const double size = std::sqrt(square(now, d));
   const double done = std::max(
       {size, std::sqrt(square(now, d, turning(last_, step_))), order_ == 1 ? parts_of_change(last_, now, d, h) : 0});
-  const double first_order = done * (done + pushed_) + missed_work(springs_, springs, step_, size);
+  const double first_order = done * (done + pushed_);
   largest_change_ = std::max(largest_change_, size);
   largest_speed_ = std::max(largest_speed_, std::sqrt(2 * now.kinetic));
   largest_energy_ = std::max({largest_energy_, now.kinetic, std::abs(energy - start_energy_)});
@@ -183,12 +198,12 @@ void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double en
     const double noise = 1000 * epsilon_ * largest_speed_;
     const double rough = largest_change_ > noise ? std::sqrt(square(now, d, *change_)) / largest_change_ : 0;
     const double rho = std::pow(std::max(rough, rough_before_), order_ - 1);
-    add_error(now, (first_order + pending_) * rho);
+    add_error(now, (first_order + pending_) * rho + work_missed(springs, size, std::max(rough, rough_before_)));
     roughest_ = std::max(roughest_, rough);
     rough_before_ = rough;
     pending_ = 0;
   } else {
-    pending_ = first_order;  // of the first step
+    pending_ = first_order + work_missed(springs, size, 1);  // of the first step
   }
   // An error of local_error in every pose and velocity, at the end of each step taken.
   add_error(now, double(taken - taken_) * local_error_ *

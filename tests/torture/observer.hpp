@@ -92,6 +92,20 @@ Gap gap_of(const BasicWorld<S>& world, const Scene& scene, const RowSizes& sizes
   return gap;
 }
 
+// Round-off of poses in C, as a share of what a displacement by `length` and a turn of 1 rad make of it: places and
+// angles of two bodies are off by half a unit in the last place each, and as much again in the arms.
+template <class S>
+double round_off_of_poses(const BasicWorld<S>& world, double length) {
+  double farthest = 0;
+  for (int body = 0; body < world.body_count(); ++body) {
+    const auto q = world.place(body);
+    if constexpr (S::dimension == Dimension::planar)
+      farthest = std::max(farthest, std::hypot(q.x, q.y) / length + std::abs(q.angle));
+    else farthest = std::max(farthest, std::hypot(q.x, q.y, q.z) / length);
+  }
+  return 2 * std::numeric_limits<typename S::Scalar>::epsilon() * farthest;
+}
+
 // The speed across the rows marked in `counts`, in the metric of the masses: sqrt((J v)' K^-1 (J v)). v: by column.
 double speed_across(const SystemMatrix& system, const std::vector<double>& v, const std::vector<char>& counts);
 
@@ -154,6 +168,7 @@ class Accounts {
 
  private:
   void add_error(const Motion& now, double energy);
+  double work_missed(const std::vector<SpringRow>& springs, double dv, double rough);
   void add_round_off(const Motion& now, double operations);
 
   double order_, epsilon_, start_energy_, local_error_;
@@ -162,7 +177,8 @@ class Accounts {
                               // metric of the masses
   double step_, substep_;
   std::vector<SpringRow> springs_;
-  double farthest_;  // from the origin, or the longest arm [m]
+  std::vector<double> largest_rates_;  // of the springs
+  double farthest_;                    // from the origin, or the longest arm [m]
   long long taken_ = 0;
   Motion last_;
   double across_;

@@ -16,7 +16,8 @@ struct SpringRow {
   double c = 0, rate = 0;  // stretch and its rate
   double force = 0;        // without damping
   double stiffness = 0;
-  double mass = 0;  // K of the row: |M^-1 J'|^2 in the metric of the masses; 0: broken
+  double mass = 0;            // K of the row: |M^-1 J'|^2 in the metric of the masses; 0: broken
+  bool by_frequency = false;  // the stiffness changes with the pose
 };
 
 // Forces of a slot's rows at rest next to C, which tells their stiffness; on the other side where there is no force, as
@@ -54,13 +55,15 @@ void add_spring_rows(const WorldData<S>& state, const Batch<S>& batch, std::vect
     const int joint = rows.joint[static_cast<std::size_t>(slot)];
     const double whole = state.joints[static_cast<std::size_t>(joint)].broken ? 0 : 1;
     rows.law->force(rows, slot, no_rate.data(), force.data());
+    const bool by_frequency = rows.law->by_mass && rows.law->by_mass(rows, slot);
     const std::vector<double> ways = find_ways_to(rows, slot, no_rate, further);
     for (int r = 0; r < count; ++r) {
       const auto of_row = static_cast<std::size_t>(r);
       const auto i = static_cast<std::size_t>(slot * count + r);
       const auto k = static_cast<std::size_t>(slot * rows.triangle() + r * (r + 1) / 2 + r);
       springs.push_back({joint, double(rows.C[i]), double(rows.rate[i]), whole * double(force[of_row]),
-                         double(further[of_row] - force[of_row]) / ways[of_row], whole * double(rows.factor[k])});
+                         double(further[of_row] - force[of_row]) / ways[of_row], whole * double(rows.factor[k]),
+                         by_frequency});
     }
   }
 }
@@ -89,19 +92,21 @@ inline double push_of(const std::vector<SpringRow>& springs, double h) {
 //   h J v f - (f0 + f1) (c1 - c0) / 2, at most |c1 - c0| |f1 - f0| / 2 + |beta| (|f0| + 2 |f1| + k |beta|),
 //   beta = (c1 - c0) - h J v0 - h J dv, |J dv| <= sqrt(K) |dv|.
 // A bent law leaves its tangent by e = |f1 - f0 + k0 (c1 - c0)|, and an implicit step takes the tangent. The law is
-// between tangent and chord: + |c1 - c0| (e + e / 2).
-inline double missed_work(const std::vector<SpringRow>& before, const std::vector<SpringRow>& now, double h,
-                          double dv) {
-  double sum = 0;
-  for (std::size_t k = 0; k < now.size(); ++k) {
-    const SpringRow &s = before[k], &e = now[k];
-    if (e.mass == 0) continue;
-    const double way = e.c - s.c, bent = std::abs(e.force - s.force + s.stiffness * way);
-    const double beta = std::abs(way - h * s.rate) + h * std::sqrt(s.mass) * dv;
-    sum += std::abs(way) * (std::abs(e.force - s.force) / 2 + 1.5 * bent) +
-           beta * (std::abs(s.force) + 2 * std::abs(e.force) + std::abs(e.stiffness) * beta);
-  }
-  return sum;
+// between tangent and chord: + |c1 - c0| (e + e / 2). The work of a stiffness that changes is c^2 (k1 - k0) / 2.
+inline double missed_work(const SpringRow& s, const SpringRow& e, double h, double dv) {
+  if (e.mass == 0) return 0;
+  const double way = e.c - s.c, bent = std::abs(e.force - s.force + s.stiffness * way);
+  const double beta = std::abs(way - h * s.rate) + h * std::sqrt(s.mass) * dv;
+  const double stretch = std::max(std::abs(s.c), std::abs(e.c));
+  return std::abs(way) * (std::abs(e.force - s.force) / 2 + 1.5 * bent) +
+         (e.by_frequency ? stretch * stretch * std::abs(e.stiffness - s.stiffness) / 2 : 0) +
+         beta * (std::abs(s.force) + 2 * std::abs(e.force) + std::abs(e.stiffness) * beta);
+}
+
+// The change of a stiffness in a step, relative.
+inline double stiffened(const SpringRow& s, const SpringRow& e) {
+  const double most = std::max(std::abs(s.stiffness), std::abs(e.stiffness));
+  return e.by_frequency && most > 0 ? std::abs(e.stiffness - s.stiffness) / most : 0;
 }
 
 }  // namespace cdot::torture

@@ -264,23 +264,32 @@ TEST(Balance, ASpringByFrequencyPutsInWhatItsStiffnessChanges) {
   }
 }
 
-// The stiffness follows the effective mass, and with it an inertia tensor that turns with its body.
-TEST(Balance, ASpringByFrequencyFollowsATurningTensor) {
+// A body on a soft joint by frequency, with time in units of `second`.
+BalanceWatch on_a_soft_joint(const std::string& joint, std::vector<NamedValue> parameters, double second) {
   Settings s;
   s.integrator = Integrator::dop853;
   SpatialWorld<double> world(s);
-  SpatialBodyDefinition body{.wx = 3, .wy = -2, .wz = 1, .mass = 1};
+  SpatialBodyDefinition body{.wx = 3 / second, .wy = -2 / second, .wz = 1 / second, .mass = 1};
   body.inertia = {0.2, 0.6, 0.7, 0.05, 0, 0};
   const int top = world.add_body(body);
-  world.add_joint({"spherical",
-                   {world.ground(), top},
-                   {{"pa", {0.3, 0.1, 0}}, {"pb", {0.3, 0, 0.2}}},
-                   Softness{.by_frequency = true, .frequency = 1}});
-  BalanceWatch seen;
-  for (int k = 0; k < 200; ++k) {
-    ASSERT_TRUE(world.step(0.01));
-    seen.look(world.balance());
+  world.add_joint(
+      {joint, {world.ground(), top}, std::move(parameters), Softness{.by_frequency = true, .frequency = 1 / second}});
+  return watch(world, 2 * second, 0.01 * second);
+}
+
+// The stiffness follows the effective mass, and with it an inertia tensor that turns with its body, however fast.
+TEST(Balance, ASpringByFrequencyFollowsATurningTensor) {
+  for (const double second : {1.0, 1e-5}) {
+    const BalanceWatch seen = on_a_soft_joint("spherical", {{"pa", {0.3, 0.1, 0}}, {"pb", {0.3, 0, 0.2}}}, second);
+    EXPECT_GT(std::abs(seen.last.put_in) * second * second, 5e-3) << second;
+    EXPECT_LT(seen.energy.share(), 1e-7) << second;
   }
+}
+
+// A stretch that follows time is that of each stage.
+TEST(Balance, ASpringByFrequencyFollowsADrive) {
+  const BalanceWatch seen =
+      on_a_soft_joint("driven", {{"pa", {0.3, 0.1, 0}}, {"pb", {0.3, 0, 0.2}}, {"fa", {0, 0, 1}}, {"rate", {4}}}, 1);
   EXPECT_GT(std::abs(seen.last.put_in), 0.01);
   EXPECT_LT(seen.energy.share(), 1e-7);
 }
