@@ -55,6 +55,10 @@ constexpr const char* momentum_functions = R"(
     g.momentum = scenes::choose(now, L, g.momentum), g.spin = scenes::choose(now, spin, g.spin);
     v.wx = select(now, spin.x, v.wx), v.wy = select(now, spin.y, v.wy), v.wz = select(now, spin.z, v.wz);
   }
+  static void carry(const Pose& q, Velocity& v, const Tensor<T>& I) {
+    const Vector<T> w = q.I * (I * Vector<T>{v.wx, v.wy, v.wz});
+    v.wx = w.x, v.wy = w.y, v.wz = w.z;
+  }
   template <class Moments>
   static void wind(Pose& q, const Velocity& v, Gyroscope& g, const Moments& I, const Moments& inverse) {
     g.spin = {v.wx, v.wy, v.wz};
@@ -86,7 +90,7 @@ std::string pose_argument(const Mechanism& mechanism) {
 
 std::string gyroscopes_of(const Mechanism& mechanism, const std::vector<std::string>& names) {
   if (!has_gyroscopes(mechanism)) return {};
-  std::string weigh, wind, follow, drift;
+  std::string weigh, wind, follow, drift, carry;
   int count = 0;
   for (std::size_t b = 0; b < names.size(); ++b) {
     const Body& body = mechanism.bodies[b];
@@ -96,6 +100,7 @@ std::string gyroscopes_of(const Mechanism& mechanism, const std::vector<std::str
     const std::string inverse = moments(body.inverse_inertia), I = moments(body.inertia);
     weigh += fmt::format("    q[{0}].I = scenes::choose(now, turned<T>(q[{0}], {1}), q[{0}].I);\n", names[b], inverse);
     wind += fmt::format("    wind(s.q[{0}], s.v[{0}], s.g[{1}], {2}, {3});\n", names[b], count, I, inverse);
+    carry += fmt::format("    carry(to[{0}], v[{0}], turned<T>(from[{0}], {1}));\n", names[b], I);
     follow += fmt::format("    follow(s.q[{0}], s.v[{0}], s.g[{1}], {2}, {3}, now);\n", names[b], count++, I, inverse);
   }
   if (mechanism.on_accelerations())
@@ -104,7 +109,9 @@ std::string gyroscopes_of(const Mechanism& mechanism, const std::vector<std::str
            weigh + "  }\n";
   return momentum_functions + ("  static void wind(State& s) {\n" + wind + "  }\n") +
          "  static void follow(State& s, const Mask& now) {\n" + follow +
-         "  }\n  static void drift(State& s, const Pose (&q)[bodies], const T& h) {\n" + drift +
+         "  }\n  // Velocities at one pose as those of the same angular momentum at another.\n"
+         "  static void carry(const Pose (&from)[bodies], const Pose (&to)[bodies], Velocity (&v)[bodies]) {\n" +
+         carry + "  }\n  static void drift(State& s, const Pose (&q)[bodies], const T& h) {\n" + drift +
          "    turn(s.q);\n  }\n";
 }
 

@@ -72,7 +72,13 @@ class HeaderWriter {
             .looks = !equations_.effect_of.empty(),
             .finishes = equations_.finishes,
             .exerts = equations_.exerts,
+            .carries = carries(),
             .foresees = !equations_.apply.outputs.empty()};
+  }
+  bool carries() const {
+    const auto drags = [](const Body& body) { return body.inertia_turns && body.angular_drag != 0; };
+    return by_rattle() && has_gyroscopes(mechanism_) &&
+           (!equations_.effect_of.empty() || std::ranges::any_of(mechanism_.bodies, drags));
   }
   bool has_rows() const { return has().rows; }
   bool has_effects() const { return has().effects || has().bounded; }

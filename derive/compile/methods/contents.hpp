@@ -14,6 +14,7 @@ struct Contents {
   // By RATTLE: effects act by their rates at the start; rates at the end are looked for; the end solves for more than
   // the joints, and so does the start of a run.
   bool rattle = false, dampens = false, looks = false, finishes = false, exerts = false;
+  bool carries = false;   // by RATTLE, forces at the end read the spin of a body whose inertia turns
   bool foresees = false;  // the multipliers of the next projection, by those of the last steps
   bool closes() const { return rows || ends; }
   bool pulls() const { return rattle && (rows || bounded); }  // a State has its joints' accelerations

@@ -141,9 +141,13 @@ constexpr const char* round_ends =
 )";
 
 // Forces of the second kick are those at the end's velocity, to second order: 2 v_half - v_start.
-constexpr const char* second_kick = R"(    for (int i = 0; i < bodies; ++i) before[i] = T(2) * s.v[i] - before[i];
+constexpr const char* notes_start = R"(    Pose start_q[bodies];
+    for (int i = 0; i < bodies; ++i) start_q[i] = s.q[i];
+)";
+
+constexpr const char* second_kick = R"({1}    for (int i = 0; i < bodies; ++i) before[i] = T(2) * s.v[i] - before[i];
     fall($ss.q, s.time, before, a);
-{}    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + half * a[i];
+{0}    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + half * a[i];
 )";
 
 constexpr const char* joints_end = R"(    T rate[rows];
@@ -296,13 +300,14 @@ std::string start_of(const Contents& has) {
 std::string rattle(double tolerance, const Contents& has) {
   std::string text = fmt::format(begins, has.exerts ? "    start(s, h);\n" : "");
   text += has.dampens ? dampens : notes_velocities;
+  if (has.carries) text += notes_start;
   if (has.foresees) text += guesses;
   text += fmt::format(first_kick, has.foresees ? "(a[i] + pull[i])" : has.pulls() ? "(a[i] + s.pull[i])" : "a[i]");
   text += has.closes() ? closing(tolerance, has) : drifts(has, "s") + "    s.time = s.time + h;\n";
   if (has.gyroscopes) text += follows;
   text += "$C";
   if (has.rows) text += evaluates;
-  text += fmt::format(second_kick, has.looks ? looks : "");
+  text += fmt::format(second_kick, has.looks ? looks : "", has.carries ? "    carry(start_q, s.q, before);\n" : "");
   text += has.finishes ? finishing(has) : has.rows ? joints_end : "";
   if (has.foresees) text += remembers;
   if (has.events) text += "    latch(s);\n";

@@ -46,7 +46,7 @@ void refuse_joint(const SceneJoint& joint, const Scene& scene, Refusals& refusal
   const auto has = [&](RowKind kind) {
     return type && std::ranges::find(type->row_kinds, kind) != type->row_kinds.end();
   };
-  if (has(RowKind::velocity) && scene.settings.integrator == Integrator::rattle)
+  if (has(RowKind::velocity) && !type->is_effect && scene.settings.integrator == Integrator::rattle)
     refuse(fmt::format("rows of velocities by rattle, as {} has", type->name));
   if (has(RowKind::inequality) && !is_rope(*type))
     refuse(fmt::format("inequality beside other rows, as {} has", type->name));

@@ -13,6 +13,7 @@
 #include "tests/derive/compile/beside_world.hpp"
 #include "thrown_rattle.hpp"
 #include "torsion_rattle.hpp"
+#include "tumbling_rattle.hpp"
 #include "van_der_pol_rattle.hpp"
 
 namespace {
@@ -26,6 +27,7 @@ TEST(CompiledRattle, MovesWithSmoothEffectsAsTheWorld) {
   cdot::runs_as_the_world<effects_rattle<double>>(scenes + "effects.toml", Integrator::rattle);
   cdot::runs_as_the_world<thrown_rattle<double>>(scenes + "thrown.toml", Integrator::rattle);
   cdot::runs_as_the_world<torsion_rattle<double>>(scenes + "torsion.toml", Integrator::rattle);
+  cdot::runs_as_the_world<tumbling_rattle<double>>(scenes + "tumbling.toml", Integrator::rattle);
   cdot::runs_as_the_world<tailgate_rattle<double>>(shared + "tailgate.toml", Integrator::rattle);
   cdot::runs_as_the_world<van_der_pol_rattle<double>>(shared + "gallery/van_der_pol.toml", Integrator::rattle);
 }
@@ -72,6 +74,7 @@ TEST(CompiledRattle, KeepsItsOrderWithSmoothEffects) {
   is_of_second_order<effects_rattle<double>>();
   is_of_second_order<thrown_rattle<double>>();
   is_of_second_order<torsion_rattle<double>>();
+  is_of_second_order<tumbling_rattle<double>>();
   is_of_second_order<tailgate_rattle<double>>();
 }
 
