@@ -18,8 +18,11 @@ bool rows_may_work(const Island<S>& island) {
 
 template <class S>
 bool is_driven(const Island<S>& island) {
-  for (const Segment<S>& segment : island.segments)
-    if (!segment.batch->law && segment.batch->explicit_time()) return true;
+  for (const Segment<S>& segment : island.segments) {
+    const Batch<S>& batch = *segment.batch;
+    const bool ends_move = batch.law && batch.law->guard && batch.law->error && batch.driven();
+    if (ends_move || (!batch.law && batch.explicit_time())) return true;
+  }
   return false;
 }
 

@@ -137,6 +137,7 @@ void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& 
     const double done = double(lambda(i)) * double(batch.rate[i]) + before;
     if (kick == Kick::first) batch.error[i] = typename S::Scalar(done);
     else if (moves) work_of_rate(batch, guards[r], done, work);
+    else if (batch.driven() && !batch.drives_of(slot).empty()) work.give(batch.source, done);
     else if (batch.explicit_time()) work.put(batch.source, done);
     else if (guards[r].one_sided()) work.take(batch.source, done);
     else if (batch.law->distance) work.give(batch.source, done);

@@ -177,7 +177,7 @@ int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, con
   const std::vector<NamedValue> given = at_time(effect.parameters, data.time);
   const auto constants = complete(index, given, world.coordinate(joint, coordinate), data.time);
   const Law<S>* const law = &law_of<S>(index).law;
-  check_functions<S>(type, given, std::span(&law, law->guard ? 1 : 0));
+  check_functions(type, given);
   note_change(data);
   const int number = add_coordinate_row(data, joint, coordinate, law, constants, type.name);
   if (number >= 0) add_drives(data, joint, number, type, given);

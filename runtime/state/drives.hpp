@@ -1,7 +1,6 @@
 // Numbers of joints and effects that follow functions of time: checked, and noted in the Model.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include <cdot/joints.hpp>
@@ -21,10 +20,8 @@ void refuse_functions(const std::vector<NamedValue>& given, const char* where);
 // JointDrive.
 void refuse_driven(const JointModel& joint, const JointType& type, int place, const std::vector<NamedValue>& given);
 
-// Throws Error if these values of a joint or an effect of this type cannot follow their functions. The laws are those
-// of its bounded rows.
-template <class S>
-void check_functions(const JointType& type, const std::vector<NamedValue>& given, std::span<const Law<S>* const> laws);
+// Throws Error if these values of a joint or an effect of this type cannot follow their functions.
+void check_functions(const JointType& type, const std::vector<NamedValue>& given);
 
 // Notes them; of a joint its points in the world lie relative to the origin.
 template <class S>

@@ -184,7 +184,9 @@ void stop_what_hits(WorldData<S>& world, Island<S>& island) {
       });
   const double before = kinetic_energy(world, island);
   solve(world, island, world.bodies.velocity.data());
-  take(world, Source::limit, before - kinetic_energy(world, island));
+  const double lost = before - kinetic_energy(world, island);
+  if (lost >= 0) take(world, Source::limit, lost);
+  else put_in(world, Source::limit, -lost);  // by an end that moves
   for (const Segment<S>& segment : island.segments)
     for (int i = segment.begin * segment.batch->ops->rows; i < segment.end * segment.batch->ops->rows; ++i)
       segment.batch->correction[i] += segment.batch->lambda[i];

@@ -69,6 +69,16 @@ void look_at_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h
   }
 }
 
+// Of ends that move: where they are at the end of the step says how far they moved.
+template <class S>
+void forget_rates_of_ends(Batch<S>& batch, int begin, int end) {
+  Guard<typename S::Scalar> guard[most_rows];
+  for (int slot = begin; slot < end; ++slot) {
+    batch.law->guard(batch, slot, guard);
+    for (int r = 0; r < batch.ops->rows; ++r) batch.bias[slot * batch.ops->rows + r] += guard[r].rate;
+  }
+}
+
 // The error of bounded rows in the step, as a rate into Batch::impulse, and the bounds of their impulse. Motors and
 // friction (`of_rate`) are asked at the middle: the mean velocity has the speed of a motor. Limits are asked at the
 // end, which must not pass theirs.
@@ -83,6 +93,7 @@ void find_misses_of_bounded(WorldData<S>& world, Island<S>& island, typename S::
       if (!of_rate) batch.bias[i] = 0;
     });
     batch.law->fill(batch, begin, end, h, world.settings);
+    if (!of_rate && batch.driven()) forget_rates_of_ends(batch, begin, end);
     each_row(batch, begin, end, [&](int i) {
       std::swap(batch.impulse[i], batch.bias[i]);
       if (of_rate) batch.impulse[i] += batch.rate[i];

@@ -203,9 +203,7 @@ int BasicWorld<S>::add_joint(const JointDefinition& definition) {
   for (int body : record.bodies) poses.push_back(InDoubles::placed(place_in_world(*data_, body)));
   const std::vector<NamedValue> given = at_time(definition.parameters, data_->time);
   auto numbers = parameter_numbers<InDoubles>(record.type, given, poses.data(), data_->time);
-  std::vector<const Law<S>*> laws;
-  for (const BoundedEntry<S>& row : joint_entries<S>()[record.type].bounded) laws.push_back(row.law);
-  check_functions<S>(*type, given, laws);
+  check_functions(*type, given);
   move_world_points(
       *type, record.bodies, [&](int body) { return body == data_->ground; }, data_->origin, -1, numbers);
   record.parameters = numbers;

@@ -99,6 +99,8 @@ class EffectReader {
     else if (law.by_load) refuse_(source, fmt::format("{}: bounds that grow with a load", effect.name));
     else if (law.distance && mechanism_.on_accelerations()) refuse_(source, fmt::format("{}: events", effect.name));
     else if (law.distance && by_own_force(place)) refuse_(source, fmt::format("{}: events by a force", effect.name));
+    else if (law.error && !effect.in_time.empty())
+      refuse_(source, fmt::format("{}: ends that follow functions of time", effect.name));
     else if (mechanism_.method == Method::rattle && effect.law == Effect::bound && !law.error &&
              !effect.in_time.empty())
       refuse_(source, fmt::format("{}: a rate of a spec that follows a function of time by rattle", effect.name));

@@ -373,12 +373,6 @@ TEST(InTime, NumbersThatCannotFollowAreRefused) {
   expect_refused(world,
                  {"brake", {body, ground}, {in_time("torque", {table({0, 1}, {3, -1}, Interpolation::linear)})}, {}},
                  "follows values from -1 to 3 [kg*m^2/s^2]. Likely fix: numbers above 0");
-  expect_refused(world,
-                 {"end_stops",
-                  {body, ground},
-                  {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {1, 0}}, {"lower", {-1}}, in_time("upper", {f})},
-                  {}},
-                 "the ends of a coordinate stand still");
   SpatialWorld<double> space;
   const int sphere = space.add_body(brick(0, 0, 1));
   expect_refused(space, {"rolling_sphere", {sphere, space.ground()}, {{"fa", {0, 0, 1}}, in_time("radius", {f})}, {}},

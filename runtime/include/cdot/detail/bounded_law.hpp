@@ -43,18 +43,25 @@ struct BoundedLaw {
     effect_of<Row>(batch).bounds(reinterpret_cast<const T(&)[1]>(batch.C[slot]),
                                  parameters_of<S, Effect, where>(batch, slot), batch.time, B);
     if (!(B.upper > B.lower)) B.upper = B.lower;
-    if (batch.driven() && !batch.drives_of(slot).empty()) B.acceleration = acceleration_in_time(batch, slot);
     return B;
   }
 
-  // The derivative of the prescribed rate where its parameters follow functions of time.
-  [[gnu::noinline]] static T acceleration_in_time(const Batch<S>& batch, int slot) {
+  static bool is_driven(const Batch<S>& batch, int slot) { return batch.driven() && !batch.drives_of(slot).empty(); }
+
+  // The bounds with their derivatives, where their parameters follow functions of time.
+  [[gnu::noinline]] static RowBounds<Jet<T>> bounds_in_time(const Batch<S>& batch, int slot) {
     using Jets = typename Effect::template Parameters<Jet<T>>;
     const Jet<T> C[1] = {batch.C[slot]};
     RowBounds<Jet<T>> B;
     effect_of<Row>(batch).bounds(C, jets_of<Jets>(batch, slot, where == ParametersAt::row),
                                  Jet<T>{batch.time, T(1), T(0)}, B);
-    return B.rate.first;
+    return B;
+  }
+  // How the end that the row serves moves: its first and second derivative.
+  static Jet<T> motion_of_end(const Batch<S>& batch, int slot) {
+    if (!is_driven(batch, slot)) return T(0);
+    const RowBounds<Jet<T>> B = bounds_in_time(batch, slot);
+    return batch.C[slot] - B.lower.value < B.upper.value - batch.C[slot] ? B.lower : B.upper;
   }
 
   static constexpr bool may_wait = requires { &Row::template after<T>; };
@@ -118,6 +125,7 @@ struct BoundedLaw {
       return;
     }
     RowBounds<T> B = bounds(batch, slot);
+    if (is_driven(batch, slot)) B.acceleration = bounds_in_time(batch, slot).rate.first;
     if (has_load && batch.law->by_load) {
       T lower, upper;
       by_load(batch, slot, &lower, &upper);
@@ -142,6 +150,7 @@ struct BoundedLaw {
         batch.bias[i] += share * (batch.C[i] - B.lower);
       } else if (low) batch.bias[i] += unilateral_bias(batch.C[i] - B.lower, h, settings);
       else batch.bias[i] -= unilateral_bias(B.upper - batch.C[i], h, settings);
+      if (is_driven(batch, i)) batch.bias[i] -= motion_of_end(batch, i).first;
     }
   }
 
@@ -160,6 +169,9 @@ struct BoundedLaw {
     else if (B.lower == B.upper) *guard = {C - B.lower, T(0), T(-unbounded), T(unbounded)};
     else if (nearer_to_lower(C, B)) *guard = {C - B.lower, T(0), T(0), T(unbounded)};
     else *guard = {C - B.upper, T(0), T(-unbounded), T(0)};
+    if (!is_driven(batch, slot) || !acts(batch, slot)) return;
+    const Jet<T> end = motion_of_end(batch, slot);
+    guard->rate = end.first, guard->acceleration = end.second;
   }
 };
 
