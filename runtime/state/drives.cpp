@@ -14,13 +14,17 @@ const ParameterInfo& info_of(const JointType& type, const NamedValue& value) {
   return *std::ranges::find(type.parameters, value.name, &ParameterInfo::name);
 }
 
+}  // namespace
+
+#ifndef CDOT_EXTENDED
+namespace {
+
 std::string named(const JointType& type, const std::string& parameter) {
   return fmt::format("`{}` of {} `{}`", parameter, type.is_effect ? "effect" : "joint", type.name);
 }
 
 }  // namespace
 
-#ifndef CDOT_EXTENDED
 std::vector<NamedValue> at_time(std::vector<NamedValue> given, double time) {
   for (NamedValue& value : given)
     for (const auto& [number, profile] : value.in_time) {
