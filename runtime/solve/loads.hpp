@@ -130,21 +130,26 @@ bool settle_loads(Island<S>& island, Solve solve, Lambda lambda, Solution soluti
   using T = typename S::Scalar;
   constexpr int rounds = 80, careful_rounds = 20;
   constexpr T enough = T(by_precision<T>(1e-6, 1e-13)), by_round_off = T(by_precision<T>(1e-3, 1e-9));
-  constexpr T fine = T(by_precision<T>(1e-2, 1e-6));  // of a corner that turns to and fro
+  constexpr T fine = T(by_precision<T>(1e-2, 1e-6)), rough = T(by_precision<T>(1e-2, 1e-4));  // of corners that turn
+  const auto tolerance = [](int round) {
+    return round < careful_rounds ? enough : round < rounds ? by_round_off : round < 2 * rounds ? fine : rough;
+  };
   const auto restart = [&] { island.load_search.begin([](size_t) { return T(1); }); };
   restart();
   start_loads(island, lambda);
   const bool turns = turns_cones(island);
-  for (int round = 0; round < (turns ? 2 : 1) * rounds; ++round) {
+  for (int round = 0; round < (turns ? 3 : 1) * rounds; ++round) {
     bound_by_loads(island);
     solve();
     for (LoadedRow<S>& row : island.loads) row.found = carried(island, row, lambda);
     find_corners(island, solution);
-    if (!(find_load_changes(island) > (round < careful_rounds ? enough : round < rounds ? by_round_off : fine))) {
+    if (!(find_load_changes(island) > tolerance(round))) {
       take_corners(island);
       return true;
     }
     const bool plain = turns && round >= 2 * careful_rounds;
+    if (plain && round >= rounds)
+      for (T& change : island.load_changes) change *= T(0.5);
     const bool found = plain || island.load_search.next(island.load_changes.data());
     if (!move_on(island) || !found) restart();
   }

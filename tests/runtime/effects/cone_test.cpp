@@ -1,4 +1,6 @@
 // Friction across a plane in space: one force of bounded size along two rows, by closed forms with every integrator.
+#include <random>
+
 #include "tests/runtime/effects/spatial_effects.hpp"
 
 namespace cdot::test::in_space {
@@ -209,6 +211,38 @@ TEST(Cones, TheBalanceOfATableOnThreeFeetCloses) {
     EXPECT_LT(norm(velocity_of(world, table)), 1e-8) << row.name;
     EXPECT_LT(std::abs(world.velocity(table).wz), 1e-8) << row.name;
   }
+}
+
+// Tables on three and four feet, whose corners turn to and fro where they come to rest: no step may fail, and all stop.
+TEST(Cones, TablesSlideToRestByEveryMethod) {
+  std::mt19937 source(7);
+  const auto between = [&](double a, double b) { return a + (b - a) * source() / 4294967296.0; };
+  for (const int feet : {3, 4})
+    for (const double mu : {0.6, 0.8, 1.5})
+      for (int start = 0; start < 6; ++start) {
+        const Start at{.x = {0, 0, 0.1},
+                       .v = {between(-2, 2), between(-2, 2), 0},
+                       .w = {0, 0, between(-4, 4)},
+                       .mass = 4,
+                       .inertia = 0.3};
+        for (const IntegratorRow& row : integrator_rows) {
+          SpatialWorld<double> world(down(row.integrator));
+          const int table = ball(world, at);
+          for (int foot = 0; foot < feet; ++foot) {
+            const double angle = 2 * pi * foot / feet + 0.2;
+            world.add_joint({"rough_plane",
+                             {table, world.ground()},
+                             {{"pa", {0.4 * std::cos(angle), 0.4 * std::sin(angle), -0.1}},
+                              {"pb", {0, 0, 0}},
+                              {"f", {0, 0, 1}},
+                              {"mu", {mu}}},
+                             {}});
+          }
+          for (int k = 0; k < 240; ++k)
+            ASSERT_TRUE(world.step(0.005)) << row.name << ", " << feet << " feet, mu " << mu << ", start " << start;
+          EXPECT_LT(norm(velocity_of(world, table)), 1e-6) << row.name;
+        }
+      }
 }
 
 // Painlevé's rod, along a heading between the axes of the plane: it jams, and no step may sink, gain energy or fail.
