@@ -68,6 +68,27 @@ inline void sin_cos(const T& angle, T& s, T& c) {
   c = select(m > T(0.5) || m < T(-1.5), -c_0, c_0);
 }
 
+// s and c of to.angle, from those of an angle beside it: their sum formulas, with series up to a quarter of a radian.
+template <class Pose>
+inline void sin_cos_beside(const Pose& from, Pose& to) {
+  using T = decltype(to.angle + to.angle);
+  const T d = to.angle - from.angle, z = d * d;
+  const auto is_near = z < T(0.0625);
+  const T sine =
+      d - d * z *
+              (T(1.0 / 6) -
+               z * (T(1.0 / 120) - z * (T(1.0 / 5040) - z * (T(1.0 / 362880) - z * T(1.0 / 39916800)))));
+  const T versine =
+      z * (T(0.5) -
+           z * (T(1.0 / 24) -
+                z * (T(1.0 / 720) - z * (T(1.0 / 40320) - z * (T(1.0 / 3628800) - z * T(1.0 / 479001600))))));
+  to.s = from.s + (from.c * sine - from.s * versine), to.c = from.c - (from.s * sine + from.c * versine);
+  if (!any(!is_near)) return;
+  T s, c;
+  sin_cos(to.angle, s, c);
+  to.s = select(is_near, to.s, s), to.c = select(is_near, to.c, c);
+}
+
 }  // namespace cdot::scenes
 #endif
 

@@ -46,7 +46,16 @@ std::string BodyTexts::turn(const std::set<std::string>& turning) const {
     else if (turning.contains(name)) text += fmt::format("    sin_cos(q[{0}].angle, q[{0}].s, q[{0}].c);\n", name);
     else text += fmt::format("    q[{0}].c = T(1), q[{0}].s = T(0);  // read by no joint\n", name);
   });
-  return text + "  }\n";
+  return text + "  }\n" + (mechanism.on_accelerations() && !mechanism.spatial() ? turn_beside(turning) : "");
+}
+
+std::string BodyTexts::turn_beside(const std::set<std::string>& turning) const {
+  std::string text =
+      "  // Those of poses beside others.\n  static void turn(Pose (&q)[bodies], const Pose (&from)[bodies]) {\n";
+  each([&](const Body&, const std::string& name) {
+    if (turning.contains(name)) text += fmt::format("    sin_cos_beside(from[{0}], q[{0}]);\n", name);
+  });
+  return text + "    (void)q, (void)from;\n  }\n";
 }
 
 std::string BodyTexts::push() const {

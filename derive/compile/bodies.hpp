@@ -23,6 +23,9 @@ struct BodyTexts {
   std::string weighed() const;
   std::string energy(bool has_effects) const;
 
+  // turn() of poses beside turned ones, in the plane.
+  std::string turn_beside(const std::set<std::string>& turning) const;
+
   // f(body, its name) for those that move.
   template <class F>
   void each(F f) const {

@@ -288,7 +288,7 @@ constexpr const char* solves_bounded = R"(
 std::string corrections_of(double tolerance, const Contents& has, const std::string& renew) {
   std::string text;
   if (has.closes()) {
-    if (has.foresees) text += foresight();
+    if (has.foresees) text += foresight(has.rattle);
     text += fmt::format(close_begins, has.foresees ? " and multipliers to those foreseen" : "",
                         has.foresees ? "Mask foreseen, " : "", has.foresees ? ", T (&total)[rows]" : "");
     text += has.foresees ? moves_as_foreseen : "    for (int i = 0; i < bodies; ++i) moves[i] = still();\n";

@@ -126,7 +126,7 @@ class HeaderWriter {
   long state_bytes() const {
     long of_bodies = 0;
     for (const Body& body : mechanism_.bodies) of_bodies += numbers_of(mechanism_, body, has().pulls());
-    const long of_rows = long{has().foresees ? 1 + foreseen_by : 1} * long(equations_.rows.size()) +
+    const long of_rows = long{has().foresees ? 1 + foreseen_by(by_rattle()) : 1} * long(equations_.rows.size()) +
                          long(equations_.stored.size()) + (has().closes() ? 1 : 0) + (has().foresees ? 1 : 0) +
                          (has().exerts ? 1 : 0) + (has().events ? 3 * long(mechanism_.bounded.size()) : 0);
     return long{sizeof(double)} * (1 + of_bodies + of_rows + long(mechanism_.bounded.size()) +
@@ -219,7 +219,7 @@ class HeaderWriter {
                        mechanism_.method == Method::euler ? "impulses before the correction" : "forces"));
     if (has().foresees)
       line(fmt::format("    Multipliers past[{}];  // the last {}\n    T known;  // so many of them form a series",
-                       foreseen_by,
+                       foreseen_by(by_rattle()),
                        by_rattle() ? "forces of first halves" : "corrections' multipliers by the step's square"));
     if (has().bounded)
       line("    T hold[bounded];  // of the rows with bounds: -1 at the lower one, 1 at the upper one, 0 between");

@@ -16,7 +16,8 @@ std::set<std::string> taken_names() {
       "next_angles "
       "to pull scenes std still choose rate_of larger foresee remember exert apply aim Aim Multipliers is_pack "
       "orient weigh wind follow drift spin dot cross times root half_turn turned to_world to_body turn_by free_turn "
-      "inverse_root wide_half_turn whole newton_step mean_spin sin_cos magnitude any single epsilon smallest is_rate "
+      "inverse_root wide_half_turn whole newton_step mean_spin sin_cos sin_cos_beside magnitude any single epsilon "
+      "smallest is_rate "
       "settle part_and_settle");
   std::set<std::string> names;
   for (std::string word; words >> word;) names.insert(word);

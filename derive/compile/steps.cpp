@@ -143,6 +143,7 @@ std::string runge_kutta(const Method& method, const char* title, const Contents&
     text += "    for (int i = 0; i < bodies; ++i) move(at.q[i], s.q[i], h * now.rate(i));\n";
     text += "    for (int i = 0; i < bodies; ++i) v[i] = s.v[i] + h * now.acceleration(i);\n";
     text += fmt::format("    at.time = s.time + T({}) * h;\n", double(method.c[stage]));
+    text += has.spatial ? "    turn(at.q);\n" : "    turn(at.q, s.q);\n";
     text += fmt::format("    slope($sat, v, {}k[{}]);\n", rows ? "s.J, forces, " : "", stage);
   }
   return text +

@@ -29,9 +29,8 @@ inline constexpr const char* guards = R"(
 )";
 
 inline constexpr const char* slope = R"(
-  // The rates of change at a stage of a Runge-Kutta method.
+  // The rates of change at a stage of a Runge-Kutta method, whose poses are turned.
   static void slope($dEvaluated& at, const Velocity (&v)[bodies], Jacobian& J, T (&forces)[rows], Slope& k) {
-    turn(at.q);
 $w    evaluate($pat.q, at.time, J);
     Velocity a[bodies];
     accelerate($pat.q, at.time, v, J, forces, a);
@@ -41,9 +40,8 @@ $w    evaluate($pat.q, at.time, J);
 
 // Without joints.
 inline constexpr const char* free_slope = R"(
-  // The rates of change at a stage of a Runge-Kutta method.
+  // The rates of change at a stage of a Runge-Kutta method, whose poses are turned.
   static void slope($dEvaluated& at, const Velocity (&v)[bodies], Slope& k) {
-    turn(at.q);
 $w    Velocity a[bodies];
     fall($pat.q, at.time, v, a);
     for (int i = 0; i < bodies; ++i) k.set(i, rate_of(at.q[i], v[i]), a[i]);

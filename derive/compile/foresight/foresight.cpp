@@ -54,13 +54,14 @@ constexpr const char* aiming = R"(      if (round == 1) {{
 
 // As long as the step is the same, multipliers are a smooth series. The binomial coefficients extrapolate its last k
 // numbers by a polynomial: sum over j of (-1)^j (k over j + 1) past[j].
-std::string foresight() {
+std::string foresight(bool rattle) {
+  const int count = foreseen_by(rattle);
   std::string weights, sum = "weight[0] * s.past[0].of[i]";
-  for (int j = 1; j < foreseen_by; ++j) {
+  for (int j = 1; j < count; ++j) {
     weights += fmt::format("    weight[{0}] = T(-1.0 / {2}) * (s.known - T({0})) * weight[{1}];\n", j, j - 1, j + 1);
     sum += fmt::format(" + weight[{0}] * s.past[{0}].of[i]", j);
   }
-  return solves_either + fmt::format(foresees, foreseen_by, weights, sum, foreseen_by - 1);
+  return solves_either + fmt::format(foresees, count, weights, sum, count - 1);
 }
 
 // In space the way of the rounds counts for large angles, which are not foreseen: they take those of the World.

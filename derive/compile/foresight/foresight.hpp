@@ -6,11 +6,12 @@
 
 namespace cdot::compile {
 
-// So many multipliers of the last steps foretell the next ones.
-inline constexpr int foreseen_by = 6;
+// So many multipliers of the last steps foretell the next ones. A number more doubles what Newton left in them: RATTLE
+// goes on to round-off.
+constexpr int foreseen_by(bool rattle) { return rattle ? 6 : 5; }
 
 // foresee() and remember(); solve() on K, or on another matrix in the lanes that aim.
-std::string foresight();
+std::string foresight(bool rattle);
 
 // --- in close() ---
 

@@ -1,6 +1,7 @@
 // The numbers of bodies as inputs of kernels: places, velocities, masses; of immovable ones as constants.
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <span>
 
 #include <cdot/rotation.hpp>
@@ -32,6 +33,7 @@ std::map<std::string, double> members_of(const std::vector<double>& pose) {
 }  // namespace
 
 void RowBlocks::note_start(Constants& constants) const {
+  constants.at_start["T(64 * epsilon)"] = 64 * std::numeric_limits<double>::epsilon();  // as in pivot()
   for (std::size_t b = 0; b < mechanism_.bodies.size(); ++b) {
     const Body& body = mechanism_.bodies[b];
     const std::string& name = names_.bodies[b];

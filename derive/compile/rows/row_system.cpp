@@ -1,5 +1,6 @@
 #include "derive/compile/rows/row_system.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "derive/compile/rows/components.hpp"
@@ -100,26 +101,52 @@ int RowSystem::inverse_pivot(Algebra& algebra, std::size_t j, int D, int diagona
                           name);
 }
 
+// In the plane, where most blocks have two rows: of the second one, without waiting for the division of the first: with
+// D_1 = det / d,
+//   det = d S - U^2,   1/D_1 = d (1 / det).
+// S: its diagonal entry after the rows before both. Where d is round-off, 1/D_1 = 1/S.
+int RowSystem::inverse_second_pivot(Algebra& algebra, std::size_t j, int d, int U, int S) const {
+  const int one = algebra.value(1), before = K(order_[j - 1], order_[j - 1]), diagonal = K(order_[j], order_[j]);
+  const int counts = algebra.sum({{d, algebra.times(algebra.input("T(64 * epsilon)"), before)}, {1, -1}});
+  const int determinant = algebra.sum({{algebra.times(d, S), algebra.product({U}, {2})}, {1, -1}});
+  const int scale = algebra.function(Fn::select, {counts, d, one});
+  const int pivot = algebra.function(Fn::select, {counts, determinant, S});
+  return algebra.times(scale, algebra.function(Fn::pivot, {pivot, algebra.times(diagonal, scale)}),
+                       "inv_D_" + std::to_string(j));
+}
+
 void RowSystem::factor(Algebra& algebra, const Store& store) {
   const std::size_t n = order_.size();
   std::vector<double> noise(n);  // of the pivots at the start
   std::vector<std::vector<int>> U(n, std::vector<int>(n, -1)), L(U);
+  std::vector<int> D(n, -1);  // of rows whose pivot is not that of a second row
+  // K_ij without what the places before m take of it.
+  const auto reduced = [&](std::size_t i, std::size_t j, std::size_t m, const std::string& name) {
+    Summands terms;
+    if (const int k = K(order_[i], order_[j]); k >= 0) terms.add(1, k);
+    for (std::size_t k = 0; k < m; ++k)
+      if (U[i][k] >= 0 && L[j][k] >= 0) terms.add(-1, algebra.times(U[i][k], L[j][k]));
+    return algebra.sum(terms, name);
+  };
   for (std::size_t j = 0; j < n; ++j) {
     const std::string at = std::to_string(j);
     int inverse = -1;
     for (std::size_t i = j; i < n; ++i) {
-      Summands terms;
-      if (const int k = K(order_[i], order_[j]); k >= 0) terms.add(1, k);
-      for (std::size_t k = 0; k < j; ++k)
-        if (U[i][k] >= 0 && L[j][k] >= 0) terms.add(-1, algebra.times(U[i][k], L[j][k]));
-      if (terms.args.empty()) continue;
       const std::string place = i == j ? at : fmt::format("{}_{}", i, j);
-      const int entry = algebra.sum(terms, (i == j ? "D_" : "U_") + place);
+      const int entry = reduced(i, j, j, (i == j ? "D_" : "U_") + place);
       if (i == j) {
         const int diagonal = K(order_[j], order_[j]);
         noise[j] += dense::pivot_noise<double> * algebra.at_start(diagonal);
         redundant_.push_back(!(algebra.at_start(entry) > noise[j]));
-        inverse = inverse_pivot(algebra, j, entry, diagonal);
+        const bool second = !rows_.mechanism().spatial() && j > 0 && D[j - 1] >= 0 && U[j][j - 1] >= 0 &&
+                            !redundant_[j - 1] && !redundant_[j] && order_[j] == order_[j - 1] + 1 &&
+                            std::ranges::find(first_, order_[j]) == first_.end();
+        if (second) {
+          inverse = inverse_second_pivot(algebra, j, D[j - 1], U[j][j - 1], reduced(j, j, j - 1, ""));
+        } else {
+          D[j] = entry;
+          inverse = inverse_pivot(algebra, j, entry, diagonal);
+        }
         store("inv_D_" + at, inverse);
         continue;
       }

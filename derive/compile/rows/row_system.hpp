@@ -50,6 +50,7 @@ class RowSystem {
   void order_rows();
   bool share_a_body(std::size_t i, std::size_t k) const;
   void couple(Algebra& algebra, std::size_t i, std::size_t k);
+  int inverse_second_pivot(Algebra& algebra, std::size_t j, int d, int U, int S) const;
   int K(std::size_t i, std::size_t j) const { return K_[std::max(i, j)][std::min(i, j)]; }
 
   const RowBlocks& rows_;
