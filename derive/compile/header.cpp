@@ -12,6 +12,7 @@
 #include "derive/compile/identifiers.hpp"
 #include "derive/compile/methods/events.hpp"
 #include "derive/compile/methods/rattle.hpp"
+#include "derive/compile/methods/state.hpp"
 #include "derive/compile/methods/tables.hpp"
 #include "derive/compile/space.hpp"
 #include "derive/compile/steps.hpp"
@@ -205,35 +206,7 @@ class HeaderWriter {
       line("    T began[bounded], ended[bounded], acts[bounded];");
       line("  };");
     }
-    line("  // What a run is made of: a copy is a snapshot. After a change of poses or velocities call begin().");
-    line("  struct State {");
-    line("    T time;  // [s]");
-    line("    Pose q[bodies];");
-    line("    Velocity v[bodies];");
-    if (has().gyroscopes && !on_accelerations())
-      line(fmt::format("    Gyroscope g[{}];", std::ranges::count_if(mechanism_.bodies, &Body::inertia_turns)));
-    if (on_accelerations()) line("    Velocity a[bodies];");
-    if (has().pulls()) line("    Velocity pull[bodies];  // accelerations by the joints and motors");
-    if (has_rows())
-      line(fmt::format("    T lambda[rows];  // {} of the joints",
-                       mechanism_.method == Method::euler ? "impulses before the correction" : "forces"));
-    if (has().foresees)
-      line(fmt::format("    Multipliers past[{}];  // the last {}\n    T known;  // so many of them form a series",
-                       foreseen_by(by_rattle()),
-                       by_rattle() ? "forces of first halves" : "corrections' multipliers by the step's square"));
-    if (has().bounded)
-      line("    T hold[bounded];  // of the rows with bounds: -1 at the lower one, 1 at the upper one, 0 between");
-    if (has_inputs()) line("    Inputs p;");
-    if (has().angles) line("    Angles angles;");
-    if (has().events) line("    Events events;");
-    if (has().exerts) line("    T begins;        // 1 before the first step");
-    if (has().closes()) line("    T residual;      // the largest |C| [m], [rad]");
-    if (has_rows()) line("    Jacobian J;      // of the poses q");
-    line("  };");
-    line("  struct Evaluated {  // where J was evaluated");
-    line("    T time;");
-    line("    Pose q[bodies];");
-    line("  };");
+    text_ += state_of(mechanism_, has(), has_inputs());
   }
 
   void write_start() {

@@ -1,0 +1,63 @@
+#include "derive/compile/methods/state.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "derive/compile/foresight/foresight.hpp"
+
+namespace cdot::compile {
+namespace {
+
+constexpr const char* state_begins =
+    R"(  // What a run is made of: a copy is a snapshot. After a change of poses or velocities call begin().
+  struct State {
+    T time;  // [s]
+    Pose q[bodies];
+    Velocity v[bodies];
+)";
+
+constexpr const char* state_ends = R"(  };
+  struct Evaluated {  // where J was evaluated
+    T time;
+    Pose q[bodies];
+  };
+)";
+
+std::string of_bodies(const Mechanism& mechanism, const Contents& has) {
+  std::string text;
+  if (has.gyroscopes && !mechanism.on_accelerations())
+    text += fmt::format("    Gyroscope g[{}];\n", std::ranges::count_if(mechanism.bodies, &Body::inertia_turns));
+  if (mechanism.on_accelerations()) text += "    Velocity a[bodies];\n";
+  if (has.pulls()) text += "    Velocity pull[bodies];  // accelerations by the joints and motors\n";
+  return text;
+}
+
+std::string of_rows(const Mechanism& mechanism, const Contents& has) {
+  std::string text;
+  if (has.rows)
+    text += fmt::format("    T lambda[rows];  // {} of the joints\n",
+                        mechanism.method == Method::euler ? "impulses before the correction" : "forces");
+  if (has.foresees)
+    text += fmt::format("    Multipliers past[{}];  // the last {}\n    T known;  // so many of them form a series\n",
+                        foreseen_by(mechanism.method == Method::rattle),
+                        mechanism.method == Method::rattle ? "forces of first halves"
+                                                           : "corrections' multipliers by the step's square");
+  if (has.bounded)
+    text += "    T hold[bounded];  // of the rows with bounds: -1 at the lower one, 1 at the upper one, 0 between\n";
+  return text;
+}
+
+}  // namespace
+
+std::string state_of(const Mechanism& mechanism, const Contents& has, bool inputs) {
+  std::string text = state_begins + of_bodies(mechanism, has) + of_rows(mechanism, has);
+  if (inputs) text += "    Inputs p;\n";
+  if (has.angles) text += "    Angles angles;\n";
+  if (has.events) text += "    Events events;\n";
+  if (has.exerts) text += "    T begins;        // 1 before the first step\n";
+  if (has.closes()) text += "    T residual;      // the largest |C| [m], [rad]\n";
+  if (has.rows) text += "    Jacobian J;      // of the poses q\n";
+  return text + state_ends;
+}
+
+}  // namespace cdot::compile
