@@ -1,4 +1,5 @@
 // A lane of a pack has the bits that it has alone, whatever the other lanes do.
+#include <cmath>
 #include <cstring>
 #include <gtest/gtest.h>
 
@@ -73,6 +74,21 @@ TEST(CompiledLanes, OfDoublesAreAsAlone) {
 TEST(CompiledLanes, OfFloatsAreAsAlone) {
   lanes_are_as_alone<slider_crank_euler, float, 8>();
   lanes_are_as_alone<slider_crank_rk4, float, 4>();
+}
+
+// Of an angle in both halves of the turn, from one beside it and from one too far for the series.
+TEST(CompiledArithmetic, TurnsBesideAnotherAngle) {
+  struct Pose {
+    double angle, c, s;
+  };
+  for (int k = -400; k < 400; ++k) {
+    const double from = 0.37 * k, to = from + 0.001 * k;
+    const Pose start{from, std::cos(from), std::sin(from)};
+    Pose end{to, 0, 0};
+    sin_cos_beside(start, end);
+    EXPECT_NEAR(end.s, std::sin(to), 4e-16) << from << ", " << to;
+    EXPECT_NEAR(end.c, std::cos(to), 4e-16) << from << ", " << to;
+  }
 }
 
 // A State is a snapshot: its bytes are the whole run.

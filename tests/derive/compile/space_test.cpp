@@ -103,4 +103,17 @@ TEST(CompiledSpace, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<cdot::scenes::hinges_euler>();
 }
 
+// The series of all lengths against the functions.
+TEST(CompiledSpace, RotationsAreExactToRoundOff) {
+  for (double angle = 1e-6; angle < 3; angle *= 1.003) {
+    double c;
+    const double s = cdot::scenes::half_turn(angle * angle, c);
+    EXPECT_NEAR(c, std::cos(angle / 2), 3e-16) << angle;
+    EXPECT_NEAR(s * angle / std::sin(angle / 2), 1, 6e-16) << angle;
+  }
+  for (double x = 1e-12; x < 1; x *= 1.1)
+    for (const double length : {1 + x, 1 - 0.9 * x})
+      EXPECT_NEAR(cdot::scenes::inverse_root(length) * std::sqrt(length), 1, 4e-16) << length;
+}
+
 }  // namespace
