@@ -95,11 +95,11 @@ std::string trial_scene(const std::string& spec) {
   std::string text = fmt::format("title    = \"{}\"\n{}duration = 10\nproject  = true\n\n", name,
                                  in_space ? "dimension = 3\ngravity  = [3, 0, -9.81]\n" : "gravity  = [3, -9.81]\n");
   if (type.bodies == 0) {
-    const bool turns = type.acts_on("rad");
-    const char* const coordinate = turns ? "angle" : "slide";
+    const bool turns = type.acts_on_joint() || type.acts_on("rad");
+    const char* const of = type.acts_on_joint() ? "" : turns ? "angle." : "slide.";
     return text + body_text(1, false) +
-           fmt::format("[[joint]]\ntype   = \"{}\"\nbodies = [\"world\", \"body1\"]\nat     = [0.5, 0.1]\n{}.{} = {}\n",
-                       turns ? "revolute" : "prismatic", coordinate, name, on_coordinate(type));
+           fmt::format("[[joint]]\ntype   = \"{}\"\nbodies = [\"world\", \"body1\"]\nat     = [0.5, 0.1]\n{}{} = {}\n",
+                       turns ? "revolute" : "prismatic", of, name, on_coordinate(type));
   }
   // One stands still, as specs see it: in the plane b, whose curve a follows; in space a.
   std::vector<std::string> bodies;

@@ -9,6 +9,10 @@ namespace {
 constexpr double round_off = 1e-15;  // of what is compared
 constexpr double far = 1;            // a size or a radian: larger distances say nothing about errors
 
+// Of the distance: an energy that is off by less says nothing about the motion. A motor keeps a wheel's energy whatever
+// its angle is.
+constexpr double witness = 1e-5;
+
 // Errors grow at least with time. From this share of the run on, the distance of two runs is taken to grow by the power
 // of time with which it grew over the second half up to then. The run that comes next expects a little more.
 constexpr double tells = 0.25, most_growth = 2, further_growth = 0.5;
@@ -33,7 +37,8 @@ Distance distance(const Yardstick& yardstick, const Attempt& coarse, const Attem
 double sure_gain(const Attempt& coarse, const Attempt& fine, double apart) {
   if (fine.knob.adaptive() && apart > far) return 1;
   const bool rescued = coarse.result.counts.rescued > 0 || fine.result.counts.rescued > 0;
-  const double of_energy = coarse.energy_share / std::max(round_off, fine.energy_share);
+  const bool tells_of_energy = coarse.energy_share >= witness * apart;
+  const double of_energy = tells_of_energy ? coarse.energy_share / std::max(round_off, fine.energy_share) : 1;
   return sure_gain(fine.knob.row(), gain(coarse.knob, fine.knob, rescued), of_energy);
 }
 
