@@ -57,7 +57,7 @@ struct Drag {
   T linear, angular;  // [1/s]
 };
 
-// What breaks a joint (FunctionsOnCoordinate::breaks).
+// An effect that ends its joint (FunctionsOnCoordinate::breaks).
 struct Bond {
   int joint;
   std::function<double(const double* parameters, double time, double load)> distance;

@@ -9,7 +9,7 @@ namespace cdot::compile {
 namespace {
 
 constexpr const char* state_begins =
-    R"(  // What a run is made of: a copy is a snapshot. After a change of poses or velocities call begin().
+    R"(  // All of a run: a copy is a snapshot. After a change of poses or velocities call begin().
   struct State {
     T time;  // [s]
     Pose q[bodies];
