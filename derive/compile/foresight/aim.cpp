@@ -73,7 +73,9 @@ Program Aim::factor(Constants& constants, std::vector<std::string>& stored) {
     return algebra.sum(terms, name);
   };
   for (std::size_t j = 0; j < n; ++j) {
-    const int inverse = system().inverse_pivot(algebra, j, left(j, j, j, fmt::format("D_{}", j)), B[j][j]);
+    // A row that moves nothing has no entry: bodies that cannot turn.
+    const int own = B[j][j] >= 0 ? B[j][j] : algebra.value(0);
+    const int inverse = system().inverse_pivot(algebra, j, left(j, j, j, fmt::format("D_{}", j)), own);
     store(algebra, constants, diagonal(j), inverse);
     for (std::size_t i = j + 1; i < n; ++i) {
       const int below = left(i, j, j, ""), beside = left(j, i, j, "");

@@ -77,4 +77,20 @@ TEST(CompileCommand, HeaderBuildsFreestanding) {
   std::filesystem::remove_all(folder);
 }
 
+// A scene compiles, or is refused at a line: no other end.
+TEST(CompileCommand, EveryHardCaseCompilesOrIsRefused) {
+  int compiled = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(CDOT_SOURCE_DIR "/tests/hard_cases")) {
+    if (entry.path().extension() != ".toml") continue;
+    for (const char* method : {"euler", "rattle"}) {
+      const Outcome outcome = compile(fmt::format("'{}' --step 0.001 --integrator {}", entry.path().string(), method));
+      EXPECT_TRUE(outcome.status == 0 || (outcome.status == 2 && outcome.text.find("error: ") != std::string::npos))
+          << entry.path() << " " << method << ": status " << outcome.status << "\n"
+          << outcome.text.substr(0, 2000);
+      compiled += outcome.status == 0;
+    }
+  }
+  EXPECT_GT(compiled, 100);
+}
+
 }  // namespace

@@ -45,6 +45,8 @@
 #include "slider_crank_dop853.hpp"
 #include "slider_crank_euler.hpp"
 #include "slider_crank_rk4.hpp"
+#include "unturned_euler.hpp"
+#include "unturned_rattle.hpp"
 // clang-format on
 
 namespace {
@@ -60,6 +62,13 @@ TEST(CompiledScene, MovesByEulerAsTheWorld) {
   CDOT_EACH_SCENE(CDOT_RUN, euler)
   runs_as_the_world<cdot::scenes::slider_crank_euler<double>>("specs/scenes/slider_crank.toml", Integrator::euler,
                                                               2e-9);
+}
+
+// K is 0 for the rows that hold angles.
+TEST(CompiledScene, OfBodiesThatCannotTurnMovesAsTheWorld) {
+  const char* const scene = "tests/derive/compile/scenes/unturned.toml";
+  runs_as_the_world<cdot::scenes::unturned_euler<double>>(scene, Integrator::euler);
+  runs_as_the_world<cdot::scenes::unturned_rattle<double>>(scene, Integrator::rattle);
 }
 
 TEST(CompiledScene, MovesByRk4AsTheWorld){CDOT_EACH_SCENE(CDOT_RUN, rk4) CDOT_RUN(slider_crank, rk4)}
