@@ -45,6 +45,7 @@ TEST(CompiledRattle, MovesWithEndsAsTheWorld) {
   cdot::runs_as_the_world<bounds_rattle<double>>(scenes + "bounds.toml", Integrator::rattle, 1e-10, 0.37);
   cdot::runs_as_the_world<bounds_rattle<double>>(scenes + "bounds.toml", Integrator::rattle, 1e-3, 1.5);
   cdot::runs_as_the_world<ends_rattle<double>>(scenes + "ends.toml", Integrator::rattle, 1e-3);
+  cdot::runs_as_the_world<hinges_rattle<double>>(scenes + "hinges.toml", Integrator::rattle, 1e-10, 0.2);
   cdot::runs_as_the_world<hinges_rattle<double>>(scenes + "hinges.toml", Integrator::rattle, 1e-6);
 }
 
