@@ -58,7 +58,7 @@ TEST(CompiledWays, MoveAsAWorld) {
   expect_the_trajectory_of_a_world("specs/scenes/spatial/gyroscope.toml", Integrator::rattle);
 }
 
-Outcome accuracy(const std::string& scene, const std::string& options, const std::string& setting = {}) {
+ShellResult accuracy(const std::string& scene, const std::string& options, const std::string& setting = {}) {
   return run(fmt::format("cd {} && {} {} accuracy {} --until 0.5 --rounds 1 -o $(mktemp -u) {}", CDOT_SOURCE_DIR,
                          setting, CDOT_RUN_PROGRAM, scene, options));
 }
@@ -90,17 +90,17 @@ TEST(CompiledWays, StandInTheReport) {
 
 TEST(CompiledWays, AreLeftOutWithAReason) {
   const std::string pendulum = "specs/scenes/simple_pendulum.toml";
-  const Outcome none = accuracy(pendulum, "--only rk4 --levels 2", "CXX=/no/such/compiler");
+  const ShellResult none = accuracy(pendulum, "--only rk4 --levels 2", "CXX=/no/such/compiler");
   EXPECT_EQ(none.status, 0) << none.text;
   EXPECT_NE(none.text.find("not compiled\n    there is no compiler /no/such/compiler. Fix: install g++, or set CXX\n"),
             std::string::npos)
       << none.text;
-  const Outcome only = accuracy(pendulum, "--only compiled", "CXX=/no/such/compiler");
+  const ShellResult only = accuracy(pendulum, "--only compiled", "CXX=/no/such/compiler");
   EXPECT_EQ(only.status, 2);
   EXPECT_NE(only.text.find("no way is left: there is no compiler /no/such/compiler. Fix: install g++, or set CXX"),
             std::string::npos)
       << only.text;
-  const Outcome brake = accuracy("specs/scenes/robot_arm.toml", "--only 'rk4, direct' --levels 2");
+  const ShellResult brake = accuracy("specs/scenes/robot_arm.toml", "--only 'rk4, direct' --levels 2");
   EXPECT_NE(brake.text.find("not compiled\n    rk4: "), std::string::npos) << brake.text;
   EXPECT_NE(brake.text.find("robot_arm.toml:46:1: error: wrist: cdot compile does not know wrist.angle.brake by rk4"),
             std::string::npos)

@@ -61,8 +61,8 @@ TEST(Bill, AnEffectNotCalledForCostsNoInstructionAndNoByte) {
   const std::string scene = "tests/derive/compile/scenes/thrown.toml";
   const std::string copy = without_block(scene, "[[joint]]\nname   = \"air\"");
   for (const std::string method : {"euler", "rattle", "rk4"}) {
-    const cdot::Outcome with = cdot::compile("--bill " + scene + " --integrator " + method);
-    const cdot::Outcome never = cdot::compile("--bill " + copy + " --integrator " + method);
+    const cdot::ShellResult with = cdot::compile("--bill " + scene + " --integrator " + method);
+    const cdot::ShellResult never = cdot::compile("--bill " + copy + " --integrator " + method);
     ASSERT_EQ(with.status, 0) << with.text;
     ASSERT_EQ(never.status, 0) << never.text;
     const Line whole = line_of(with.text, "whole step"), saved = line_of(with.text, "effect air");
@@ -96,7 +96,7 @@ TEST(Bill, BytesOfStateAreThoseOfTheStruct) {
 }
 
 TEST(Bill, SaysWhatItCannotMeasure) {
-  const cdot::Outcome bill = cdot::compile("--bill specs/scenes/tailgate.toml", "CXX=no_compiler");
+  const cdot::ShellResult bill = cdot::compile("--bill specs/scenes/tailgate.toml", "CXX=no_compiler");
   EXPECT_EQ(bill.status, 0);
   EXPECT_NE(bill.text.find("there is no compiler no_compiler. Fix: install g++, or set CXX"), std::string::npos)
       << bill.text;
@@ -109,7 +109,7 @@ TEST(Bill, SaysWhatItCannotMeasure) {
 TEST(Bill, IsPrintedAsJson) {
   const std::string tailgate = "--bill specs/scenes/tailgate.toml";
   const Line brake = line_of(cdot::compile(tailgate, "CXX=no_compiler").text, "effect brake");
-  const cdot::Outcome json = cdot::compile(tailgate + " --json", "CXX=no_compiler");
+  const cdot::ShellResult json = cdot::compile(tailgate + " --json", "CXX=no_compiler");
   EXPECT_EQ(json.status, 0);
   const std::string expected = fmt::format(
       R"("name": "effect brake", "alone": {{"operations": {}, "bytes": {}}}, "saved": {{"operations": {}, "bytes": {}, )"
@@ -120,7 +120,7 @@ TEST(Bill, IsPrintedAsJson) {
     return text;
   };
   EXPECT_NE(without_spaces(json.text).find(without_spaces(expected)), std::string::npos) << json.text;
-  const cdot::Outcome alone = cdot::compile("specs/scenes/tailgate.toml --json");
+  const cdot::ShellResult alone = cdot::compile("specs/scenes/tailgate.toml --json");
   EXPECT_EQ(alone.status, 2);
   EXPECT_NE(alone.text.find("Fix: give --bill"), std::string::npos) << alone.text;
 }
@@ -128,7 +128,7 @@ TEST(Bill, IsPrintedAsJson) {
 // A part's angles go with it: the bill of a scene in space compiles every variant.
 TEST(Bill, OfAnglesInSpaceNumbersThoseThatAreLeft) {
   const std::string torsion = "--bill tests/derive/compile/scenes/torsion.toml --integrator euler";
-  const cdot::Outcome bill = cdot::compile(torsion, "CXX=no_compiler");
+  const cdot::ShellResult bill = cdot::compile(torsion, "CXX=no_compiler");
   EXPECT_EQ(bill.status, 0) << bill.text;
   EXPECT_EQ(line_of(bill.text, "effect axle.angle.spring")[3], 2 * long{sizeof(double)});
   EXPECT_EQ(line_of(bill.text, "effect axle.angle.load")[3], 2 * long{sizeof(double)});

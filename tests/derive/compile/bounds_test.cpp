@@ -48,7 +48,7 @@ TEST(CompiledBounds, LanesAreAsAlone) {
 }
 
 TEST(CompiledBounds, OtherMethodsRefuseThem) {
-  const cdot::Outcome arm = cdot::compile("specs/scenes/robot_arm.toml --integrator rk4");
+  const cdot::ShellResult arm = cdot::compile("specs/scenes/robot_arm.toml --integrator rk4");
   EXPECT_EQ(arm.status, 2);
   EXPECT_NE(arm.text.find("robot_arm.toml:46:1: error: wrist: cdot compile does not know wrist.angle.brake by rk4"),
             std::string::npos)

@@ -8,12 +8,12 @@
 
 namespace cdot {
 
-using Outcome = test::ShellResult;
+using test::ShellResult;
 
-inline Outcome run(const std::string& command) { return test::shell(command + " 2>&1"); }
+inline ShellResult run(const std::string& command) { return test::shell(command + " 2>&1"); }
 
 // In the folder of the sources; `setting`: variables of the environment, "CXX=clang++".
-inline Outcome compile(const std::string& arguments, const std::string& setting = {}) {
+inline ShellResult compile(const std::string& arguments, const std::string& setting = {}) {
   return run(fmt::format("cd {} && {} {} compile {}", CDOT_SOURCE_DIR, setting, CDOT, arguments));
 }
 

@@ -7,12 +7,12 @@
 
 namespace {
 
-using cdot::compile, cdot::Outcome, cdot::run;
+using cdot::compile, cdot::ShellResult, cdot::run;
 
 const std::string source = CDOT_SOURCE_DIR;
 
 TEST(CompileCommand, WritesTheSameBytesOnEveryRun) {
-  const Outcome first = compile("specs/scenes/slider_crank.toml --integrator rk4");
+  const ShellResult first = compile("specs/scenes/slider_crank.toml --integrator rk4");
   EXPECT_EQ(first.status, 0);
   EXPECT_NE(first.text.find("cdot compile slider_crank.toml --integrator rk4\n"), std::string::npos);
   EXPECT_NE(first.text.find("const T A_ra_x_1 = q[crank].c * T(A_pa_x);"), std::string::npos);
@@ -21,25 +21,25 @@ TEST(CompileCommand, WritesTheSameBytesOnEveryRun) {
 }
 
 TEST(CompileCommand, RefusesPartsThatItDoesNotKnowWithTheirLines) {
-  const Outcome effects = compile("specs/scenes/machine.toml");
+  const ShellResult effects = compile("specs/scenes/machine.toml");
   EXPECT_EQ(effects.status, 2);
   EXPECT_NE(effects.text.find(
                 "specs/scenes/machine.toml:58:1: error: axle: cdot compile does not know axle.angle.motor by rk4"),
             std::string::npos)
       << effects.text;
-  const Outcome gear = compile("tests/torture/found/motor_without_motion.toml --integrator euler");
+  const ShellResult gear = compile("tests/torture/found/motor_without_motion.toml --integrator euler");
   EXPECT_EQ(gear.status, 2);
   EXPECT_NE(gear.text.find("motor_without_motion.toml:19:1: error: j6: cdot compile knows no rows that count whole "
                            "turns, as gear has"),
             std::string::npos)
       << gear.text;
-  const Outcome implicit = compile("specs/scenes/catenary_100.toml");
+  const ShellResult implicit = compile("specs/scenes/catenary_100.toml");
   EXPECT_EQ(implicit.status, 2);
   EXPECT_NE(implicit.text.find("no integrator implicit"), std::string::npos) << implicit.text;
 }
 
 TEST(CompileCommand, LeavesSleepOutWithANote) {
-  const Outcome awakened = compile("tests/hard_cases/awakened/planar.toml --integrator euler");
+  const ShellResult awakened = compile("tests/hard_cases/awakened/planar.toml --integrator euler");
   EXPECT_EQ(awakened.status, 0);
   EXPECT_TRUE(awakened.text.starts_with("note: Compiled bodies do not sleep: sleep_after is left out.\n"));
   EXPECT_NE(awakened.text.find("// Compiled bodies do not sleep: sleep_after is left out.\n#pragma once"),
@@ -50,7 +50,7 @@ TEST(CompileCommand, ReportsWrongUsage) {
   EXPECT_EQ(compile("").status, 2);
   EXPECT_EQ(compile("nowhere.toml").status, 2);
   EXPECT_EQ(compile("specs/scenes/chain_10.toml --integrator heun").status, 2);
-  const Outcome help = compile("--help");
+  const ShellResult help = compile("--help");
   EXPECT_EQ(help.status, 0);
   EXPECT_NE(help.text.find("--integrator"), std::string::npos);
 }
@@ -69,9 +69,9 @@ TEST(CompileCommand, HeaderBuildsFreestanding) {
       "{} -std=c++20 -O1 -Wall -Wextra -Werror -ffreestanding -fno-exceptions -fno-rtti -nostdinc -nostdinc++ "
       "-I{} -I{} -c {}/step.cpp -o {}/step.o",
       CDOT_CXX, folder.string(), CDOT_COMPILED, folder.string(), folder.string());
-  const Outcome built = run(compiler);
+  const ShellResult built = run(compiler);
   EXPECT_EQ(built.status, 0) << built.text;
-  const Outcome needs = run(fmt::format("nm -u {}/step.o", folder.string()));
+  const ShellResult needs = run(fmt::format("nm -u {}/step.o", folder.string()));
   EXPECT_EQ(needs.text.find("Znw"), std::string::npos) << needs.text;
   EXPECT_EQ(needs.text.find("malloc"), std::string::npos) << needs.text;
   std::filesystem::remove_all(folder);
@@ -83,7 +83,8 @@ TEST(CompileCommand, EveryHardCaseCompilesOrIsRefused) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(CDOT_SOURCE_DIR "/tests/hard_cases")) {
     if (entry.path().extension() != ".toml") continue;
     for (const char* method : {"euler", "rattle"}) {
-      const Outcome outcome = compile(fmt::format("'{}' --step 0.001 --integrator {}", entry.path().string(), method));
+      const ShellResult outcome =
+          compile(fmt::format("'{}' --step 0.001 --integrator {}", entry.path().string(), method));
       EXPECT_TRUE(outcome.status == 0 || (outcome.status == 2 && outcome.text.find("error: ") != std::string::npos))
           << entry.path() << " " << method << ": status " << outcome.status << "\n"
           << outcome.text.substr(0, 2000);

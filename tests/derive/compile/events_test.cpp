@@ -54,7 +54,7 @@ TEST(CompiledEvents, LanesAreAsAlone) {
 }
 
 TEST(CompiledEvents, OtherMethodsRefuseThem) {
-  const cdot::Outcome refused = cdot::compile(events + " --integrator dop853");
+  const cdot::ShellResult refused = cdot::compile(events + " --integrator dop853");
   EXPECT_EQ(refused.status, 2);
   EXPECT_NE(refused.text.find("error: hinge: cdot compile does not know hinge.angle.latch: events"), std::string::npos)
       << refused.text;

@@ -58,7 +58,7 @@ TEST(CompiledInputs, MoveAsASceneWithTheseNumbers) {
 }
 
 TEST(CompiledInputs, MisspeltNamesAreToldTheRightOne) {
-  const cdot::Outcome wrong =
+  const cdot::ShellResult wrong =
       cdot::compile("specs/scenes/robot_arm.toml --integrator euler --input wrist.angle.brake.torqe");
   EXPECT_EQ(wrong.status, 2);
   EXPECT_NE(wrong.text.find("no number of this scene is called wrist_angle_brake_torqe (did you mean "

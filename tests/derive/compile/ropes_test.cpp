@@ -43,7 +43,7 @@ TEST(CompiledRopes, LanesAreAsAlone) {
 }
 
 TEST(CompiledRopes, OtherMethodsRefuseThem) {
-  const cdot::Outcome ropes = cdot::compile(planar + " --integrator rk4");
+  const cdot::ShellResult ropes = cdot::compile(planar + " --integrator rk4");
   EXPECT_EQ(ropes.status, 2);
   EXPECT_NE(ropes.text.find("error: left: cdot compile does not know left by rk4"), std::string::npos) << ropes.text;
 }
