@@ -43,10 +43,12 @@ void bind_setup(Type<S>& type) {
            "Adds an effect to a free coordinate of a joint; returns its number. `type` is limit, motor, spring, "
            "damper, friction, load, a spec of specs/coordinate or the path of an .effect file; keywords are its "
            "numbers.")
+      .def("add_effect", &World::end_by_effect, py::arg("joint"), py::arg("type"),
+           "Adds an effect to the joint itself, one that ends it, as `breaking`; keywords are its numbers.")
       .def("set_effect", &World::set_effect, py::arg("joint"), py::arg("number"), py::arg("type"),
            "Changes the numbers of an effect from the next step on.")
       .def("set_breaking_load", &World::set_breaking_load, py::arg("joint"), py::arg("load"),
-           "The joint breaks after a step whose row forces exceed the load [N, N m].")
+           "The joint breaks where its row forces reach the load [N, N m].")
       .def("set_parameters", &World::set_parameters, py::arg("joint"),
            "Changes the parameters given by keyword; the next step projects the bodies onto the new C = 0.")
       .def("remove_joint", &World::remove_joint, py::arg("joint"), "The bodies are free of it from the next step on.")

@@ -143,6 +143,11 @@ int NamedWorld<S>::add_effect(const py::handle& which, const std::string& coordi
 }
 
 template <class S>
+void NamedWorld<S>::end_by_effect(const py::handle& which, const std::string& type, const py::kwargs& keywords) {
+  cdot::add_effect(world(), joint(which), SpecEffect{type_named(type), parameters_of(keywords)});
+}
+
+template <class S>
 void NamedWorld<S>::set_effect(const py::handle& which, int number, const std::string& type,
                                const py::kwargs& keywords) {
   const int of = joint(which);

@@ -47,6 +47,7 @@ class NamedWorld {
   int add_joint(const std::string& name, const std::string& type, const py::sequence& of, const py::kwargs& keywords);
   int add_effect(const py::handle& joint, const std::string& coordinate, const std::string& type,
                  const py::kwargs& keywords);
+  void end_by_effect(const py::handle& joint, const std::string& type, const py::kwargs& keywords);
   void set_effect(const py::handle& joint, int number, const std::string& type, const py::kwargs& keywords);
   void set_breaking_load(const py::handle& joint, double load);
   void set_parameters(const py::handle& joint, const py::kwargs& keywords);

@@ -193,8 +193,8 @@ void add_effect(BasicWorld<S>& world, int joint, const SpecEffect& effect) {
   if (!type.acts_on_joint())
     throw Error(fmt::format("effect `{}` acts on a coordinate of a joint: name the coordinate", type.name));
   refuse_functions(effect.parameters, "an effect on a joint itself");
-  add_bond(world, {joint, functions_on_coordinates()[index].breaks, complete(index, effect.parameters, 0, time),
-                   type.explicit_time});
+  add_bond(world, {joint, std::string(type.name), functions_on_coordinates()[index].breaks,
+                   complete(index, effect.parameters, 0, time), type.explicit_time});
 }
 
 template <class S>

@@ -110,23 +110,14 @@ class Ranges {
   bool in_steps_ = true, own_ = false, follows_ = false;
 };
 
-// The breakable joints of each island.
 template <class S>
-std::vector<std::vector<int>> find_breakable(const WorldData<S>& world) {
-  std::vector<std::vector<int>> by_island(world.islands.size());
-  for (const Bond& bond : world.bonds)
-    by_island[world.island_of[movable_body(world, world.joints[bond.joint])]].push_back(bond.joint);
-  return by_island;
-}
-
-template <class S>
-std::vector<Block::Range> ranges_of(WorldData<S>& world, int index, const std::vector<int>& breakable) {
+std::vector<Block::Range> ranges_of(WorldData<S>& world, int index) {
   Ranges ranges(world.block);
   Island<S>& island = world.islands[index];
   const auto& bodies = island.bodies;
-  const bool breaks = !breakable.empty();
+  const bool breaks = !island.bonds.empty();
   ranges.item("joints.broken", -1, true);
-  for (int joint : breakable) ranges(world.joints[joint].broken);
+  for (int bond : island.bonds) ranges(world.joints[world.bonds[bond].joint].broken);
   for (std::size_t k = 0, next; k < bodies.size(); k = next) {  // runs of consecutive bodies
     for (next = k + 1; next < bodies.size() && bodies[next] == bodies[next - 1] + 1;) ++next;
     ranges.take(bodies[k], bodies[next - 1] + 1, world.bodies.pose.size());
@@ -163,9 +154,8 @@ void settle_state(WorldData<S>& world) {
   world.block.heir.reset();
   world.before.assign(world.block.bytes.size(), std::byte{0});
   world.block.islands.clear();
-  const std::vector<std::vector<int>> breakable = find_breakable(world);
   for (std::size_t k = 0; k < world.islands.size(); ++k)
-    world.block.islands.push_back(ranges_of(world, static_cast<int>(k), breakable[k]));
+    world.block.islands.push_back(ranges_of(world, static_cast<int>(k)));
 }
 
 #define CDOT_INSTANTIATE(S) template void settle_state(WorldData<S>&);

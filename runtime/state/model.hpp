@@ -60,6 +60,7 @@ struct Drag {
 // An effect that ends its joint (FunctionsOnCoordinate::breaks).
 struct Bond {
   int joint;
+  std::string type;
   std::function<double(const double* parameters, double time, double load)> distance;
   std::vector<double> parameters;
   bool in_time;
@@ -68,6 +69,7 @@ struct Bond {
 template <class S>
 struct IslandModel {
   std::vector<int> bodies;  // movable ones
+  std::vector<int> bonds;   // into Model::bonds
   std::vector<Drag<S>> drags;
   std::vector<int> gyroscopes;  // into Model::turning
   bool restless = false;        // depends on t: never sleeps

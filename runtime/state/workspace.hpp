@@ -1,7 +1,6 @@
 // Intermediate results of a step: J, K, factors, stages. A step computes them from the State.
 #pragma once
 
-#include <compare>
 #include <limits>
 #include <vector>
 
@@ -104,19 +103,10 @@ struct IslandWorkspace {
   const System<S>& at_work() const { return stiffened && rescue.built() ? rescue : system; }
 };
 
-// A joint that breaks, and Bond::distance.
-struct Overload {
-  int island;
-  double distance;
-  int joint;
-  auto operator<=>(const Overload&) const = default;
-};
-
 struct Workspace {
   // Of accelerations, counted as StepCounts::evaluations: beyond them fall_back() finishes every step.
   double most_evaluations = std::numeric_limits<double>::infinity();
   std::vector<int> awake;  // islands, in order
-  std::vector<Overload> overloads;
 };
 
 }  // namespace cdot

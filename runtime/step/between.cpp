@@ -107,7 +107,7 @@ bool go_to(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
 
 template <class S>
 bool passed_event(const Flow<S>& flow) {
-  return flow.guarded > 0 && furthest(flow.margins_chosen, flow.margins) < passed;
+  return !flow.margins.empty() && furthest(flow.margins_chosen, flow.margins) < passed;
 }
 
 template <class S>

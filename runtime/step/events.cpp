@@ -8,6 +8,7 @@
 
 #include "runtime/balance/balance.hpp"
 #include "runtime/motion/motion.hpp"
+#include "runtime/solve/bonds.hpp"
 #include "runtime/solve/cones.hpp"
 #include "runtime/solve/latch.hpp"
 #include "runtime/solve/projection.hpp"
@@ -292,8 +293,11 @@ void count_guarded_rows(Island<S>& island) {
     if (segment.batch->law && segment.batch->law->guard)
       flow.guarded += (segment.end - segment.begin) * segment.batch->ops->rows;
   const auto rows = static_cast<size_t>(flow.guarded);
-  for (auto* margins : {&flow.row_rates, &flow.margins, &flow.margins_chosen}) margins->assign(rows, infinite<T>);
-  for (auto* margins : {&flow.low, &flow.high}) margins->assign(rows, infinite<T>);
+  // Sweeps share the load among redundant joints only where asked (RowSolver::share): bonds wait for the step's end.
+  const size_t bonds = island.solver->exact ? island.bonds.size() : 0;
+  flow.row_rates.assign(rows, infinite<T>);
+  for (auto* margins : {&flow.margins, &flow.margins_chosen}) margins->assign(rows + bonds, infinite<T>);
+  for (auto* margins : {&flow.low, &flow.high}) margins->assign(rows + bonds, infinite<T>);
   flow.resolution.resize(rows);
 }
 
@@ -339,8 +343,8 @@ bool forces_make_events(WorldData<S>& world, Island<S>& island) {
 template <class S>
 void choose_modes(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   do choose_modes_once(world, island, time, h);
-  while (island.flow.guarded > 0 && forces_make_events(world, island));
-  measure_margins(island);
+  while ((island.flow.guarded > 0 && forces_make_events(world, island)) || break_by_forces(world, island, time));
+  measure_margins(world, island, time);
   island.flow.margins_chosen = island.flow.margins;
 }
 
@@ -356,7 +360,7 @@ void note_rates(WorldData<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void measure_margins(Island<S>& island) {
+void measure_margins(const WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   using T = typename S::Scalar;
   size_t k = 0;
   each_guarded_row(
@@ -365,6 +369,7 @@ void measure_margins(Island<S>& island) {
         ++k;
       });
   measure_margins_of_cones(island);
+  measure_margins_of_bonds(world, island, double(time));
 }
 
 template <class S>
@@ -380,7 +385,7 @@ void drop_modes(Island<S>& island) {
   template void count_guarded_rows(Island<S>&);                                \
   template void choose_modes(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar); \
   template void note_rates(WorldData<S>&, Island<S>&);                         \
-  template void measure_margins(Island<S>&);                                   \
+  template void measure_margins(const WorldData<S>&, Island<S>&, S::Scalar);   \
   template void drop_modes(Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

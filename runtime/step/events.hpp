@@ -7,12 +7,13 @@
 
 namespace cdot {
 
-// Allocates the numbers of the island's guarded rows.
+// Allocates the numbers of the island's guarded rows and of its bonds, the joints that may break.
 template <class S>
 void count_guarded_rows(Island<S>& island);
 
 // Chooses the mode of each guarded row, after drop_modes(), for steps of about h. C and J must be those of the present
-// poses. Impacts stop rows by impulses. Leaves consistent velocities, accelerations and margins.
+// poses. Impacts stop rows by impulses. Joints that carry too much break, one after the other. Leaves consistent
+// velocities, accelerations and margins.
 template <class S>
 void choose_modes(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h);
 
@@ -21,9 +22,9 @@ template <class S>
 void note_rates(WorldData<S>& world, Island<S>& island);
 
 // Writes each row's distance from its next event to Flow::margins, in units of the resolution. off: C - end. held:
-// distance of the force from its bounds. pushed: the missing rate.
+// distance of the force from its bounds. pushed: the missing rate. Then each bond's from its event.
 template <class S>
-void measure_margins(Island<S>& island);
+void measure_margins(const WorldData<S>& world, Island<S>& island, typename S::Scalar time);
 
 // Sets all modes to `bounded`, as the other integrators need them.
 template <class S>

@@ -199,7 +199,7 @@ void project(WorldData<S>& world, Island<S>& island, typename S::Scalar time, bo
 template <class S>
 void project_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
   project(world, island, time, false);
-  measure_margins(island);
+  measure_margins(world, island, time);
   read_rates(world, island, method.stages, time);
 }
 

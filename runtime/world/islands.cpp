@@ -188,18 +188,17 @@ void build_systems(const WorldData<S>& world, Island<S>& island, Bodies<S>& at) 
   if (!island.stiffened && !tensions.empty()) island.rescue.build(island.segments, world.bodies, tensions);
 }
 
-}  // namespace
-
 template <class S>
-void watch_bonds(WorldData<S>& world) {
-  world.overloads.reserve(world.bonds.size());
-  for (const Bond& bond : world.bonds) {
-    const JointRecord& record = world.joints[bond.joint];
+void list_bonds(WorldData<S>& world) {
+  for (std::size_t k = 0; k < world.bonds.size(); ++k) {
+    const JointRecord& record = world.joints[world.bonds[k].joint];
     Island<S>& island = world.islands[world.island_of[movable_body(world, record)]];
-    island.restless |= bond.in_time && !record.broken;
-    for (System<S>* system : {&island.system, &island.rescue}) system->share_loads();
+    island.bonds.push_back(static_cast<int>(k));
+    island.restless |= world.bonds[k].in_time && !record.broken;
   }
 }
+
+}  // namespace
 
 template <class S>
 void prepare_topology(WorldData<S>& world) {
@@ -207,6 +206,7 @@ void prepare_topology(WorldData<S>& world) {
   for (JointRecord& joint : world.joints) joint.left_out = bool(joint.broken);
   for (Island<S>& island : world.islands) book_work(world, island);
   number_islands(world);
+  list_bonds(world);
   // The direct solver has its own order, so each type of joint is one run, in the order of add_joint().
   const std::vector<int> places =
       sweeps(world.settings.solver) ? sweep_places(world) : std::vector<int>(world.joints.size(), 0);
@@ -224,19 +224,18 @@ void prepare_topology(WorldData<S>& world) {
     island.solver = &solver_of<S>(world.settings.solver);
     island.stiffened = row_of(world.settings.integrator).stiffens;
     if (world.needs_systems()) build_systems(world, island, at);
+    if (!island.bonds.empty())  // among redundant joints
+      for (System<S>* system : {&island.system, &island.rescue}) system->share_loads();
     list_loads(world, island);
     stepper_of<S>(world.settings.integrator).prepare(island);
     world.awake.push_back(i);
   }
-  watch_bonds(world);
   watch_events(world);
   settle_state(world);
   world.prepared = true;
 }
 
-#define CDOT_INSTANTIATE(S)                 \
-  template void watch_bonds(WorldData<S>&); \
-  template void prepare_topology(WorldData<S>&);
+#define CDOT_INSTANTIATE(S) template void prepare_topology(WorldData<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

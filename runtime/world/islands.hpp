@@ -10,10 +10,6 @@ namespace cdot {
 template <class S>
 void prepare_topology(WorldData<S>& world);
 
-// Lets the solvers of islands whose joints may break share forces among redundant joints. Allocates.
-template <class S>
-void watch_bonds(WorldData<S>& world);
-
 // Island::size and ::scale, from the present poses.
 template <class S>
 void measure_size(WorldData<S>& world, Island<S>& island);

@@ -6,6 +6,7 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/motion/motion.hpp"
+#include "runtime/solve/bonds.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/step/integrators.hpp"
 
@@ -32,18 +33,6 @@ void copy_awake(const WorldData<S>& world, const std::vector<std::byte>& from, s
 }
 
 }  // namespace
-
-template <class S>
-void find_rows(WorldData<S>& world, Island<S>& island) {
-  const auto broken = [&](const Batch<S>& batch, int slot) { return bool(world.joints[batch.joint[slot]].broken); };
-  for (Segment<S>& segment : island.segments) {
-    Batch<S>& batch = *segment.batch;
-    for (int slot = segment.begin; slot < segment.whole_end; ++slot) batch.slot_of[batch.home[slot]] = slot;
-    segment.end = segment.begin;
-    while (segment.end < segment.whole_end && !broken(batch, segment.end)) ++segment.end;
-  }
-  island.system.find_rows(broken);
-}
 
 template <class S>
 void compute_again(WorldData<S>& world, Island<S>& island) {
@@ -112,7 +101,6 @@ void adopt_state(WorldData<S>& world, const std::vector<std::byte>& bytes) {
   template void save_island(WorldData<S>&, int);                           \
   template void roll_back_island(WorldData<S>&, int);                      \
   template void adopt_state(WorldData<S>&, const std::vector<std::byte>&); \
-  template void find_rows(WorldData<S>&, Island<S>&);                      \
   template void compute_again(WorldData<S>&, Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -21,9 +21,6 @@ void roll_back_island(WorldData<S>& world, int index);
 template <class S>
 void adopt_state(WorldData<S>& world, const std::vector<std::byte>& bytes);
 
-// Updates the places of rows from BatchState::home and the broken joints, after slots changed places.
-template <class S>
-void find_rows(WorldData<S>& world, Island<S>& island);
 // Recomputes the Workspace that the last step left for the next one: J and, for methods that begin with it, the factor.
 template <class S>
 void compute_again(WorldData<S>& world, Island<S>& island);

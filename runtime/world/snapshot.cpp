@@ -60,7 +60,7 @@ std::uint64_t hash_of_joints(const WorldData<S>& world) {
   for (const JointRecord& joint : world.joints) hash.add(joint.added);
   for (const Drag<S>& drag : world.drags) hash.add(drag.body), hash.add(drag.linear), hash.add(drag.angular);
   for (const Bond& bond : world.bonds) {
-    hash.add(bond.joint);
+    hash.add(bond.joint), hash.bytes(bond.type.data(), bond.type.size());
     for (const double number : bond.parameters) hash.add(number);
   }
   hash.add(S::gravity(world.settings)), hash.add(world.origin);

@@ -85,9 +85,10 @@ int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, con
 template <class S>
 int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const SpecEffect& effect);
 
-// The same of an effect on the joint itself, as `breaking`. The joint breaks after the first step whose end the event
-// of the spec has reached. The direct solver shares a load among redundant joints; of several joints that would break
-// and are connected, one breaks per substep. Parameters are constants.
+// The same of an effect on the joint itself, as `breaking`. The Runge-Kutta methods locate its event within the step;
+// by the others, and by sweeps, the joint breaks after the first step whose end the event has reached. The direct
+// solver shares a load among redundant joints; of several joints that would break and are connected, the most
+// overloaded one breaks first. Parameters are constants.
 template <class S>
 void add_effect(BasicWorld<S>& world, int joint, const SpecEffect& effect);
 
@@ -100,8 +101,7 @@ void set_effect(BasicWorld<S>& world, int joint, int number, const SpecEffect& e
 template <class S, class Effect>
 void set_effect(BasicWorld<S>& world, int joint, int number, const Effect& effect);
 
-// The short form of `breaking`: the joint breaks after the first step in which the norm of its row forces reaches the
-// load [N, N m].
+// The short form of `breaking`: the joint breaks where the norm of its row forces reaches the load [N, N m].
 template <class S>
 void set_breaking_load(BasicWorld<S>& world, int joint, double load);
 

@@ -14,7 +14,7 @@ package = f"{source}/derive/python"
 
 
 def members_of(stub, name):
-    """Functions of a class of the stubs, with those of its bases: name -> names of the arguments."""
+    """Functions of a class of the stubs, with those of its bases: name -> names of the arguments, by overload."""
     node = stub[name]
     found = {}
     for base in node.bases:
@@ -22,16 +22,18 @@ def members_of(stub, name):
             found.update(members_of(stub, base.id))
     for each in node.body:
         if isinstance(each, ast.FunctionDef):
-            found[each.name] = [argument.arg for argument in each.args.args if argument.arg != "self"]
+            arguments = [argument.arg for argument in each.args.args if argument.arg != "self"]
+            found.setdefault(each.name, []).append(arguments)
         elif isinstance(each, ast.AnnAssign):
             found[each.target.id] = []
     return found
 
 
 def arguments_of(function):
-    """The names of the arguments by the first line that pybind11 writes: f(self: T, h: float = 1, **kwargs) -> T"""
-    inside = re.search(r"\((.*)\) -> ", function.__doc__.splitlines()[0]).group(1)
-    return [name for name in re.findall(r"(?:^|, )(\w+):", inside) if name != "self"]
+    """The names of the arguments, by overload, in the lines that pybind11 writes: f(self: T, h: float = 1) -> T"""
+    lines = [line for line in function.__doc__.splitlines() if re.match(rf"(\d+\. )?{function.__name__}\(", line)]
+    inside = [re.search(r"\((.*)\) -> ", line) for line in lines]
+    return [[name for name in re.findall(r"(?:^|, )(\w+):", each.group(1)) if name != "self"] for each in inside if each]
 
 
 class Package(unittest.TestCase):

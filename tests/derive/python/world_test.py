@@ -83,6 +83,17 @@ class Motion(unittest.TestCase):
         self.assertEqual(own, turned("motor", "brake"))
         self.assertGreater(own[1][2], 0.1)
 
+    def test_an_effect_ends_a_joint(self):
+        specs = pathlib.Path(__file__).parents[3] / "specs"
+        for breaking in ("breaking", str(specs / "coordinate/breaking.effect")):
+            for strength, broken in ((1.9 * g, ["rod"]), (2.1 * g, [])):
+                world = pendulum()  # the rod carries 2 g
+                world.add_effect("rod", breaking, strength=strength)
+                world.step(1e-3, count=2)
+                self.assertEqual(world.broken(), broken)
+        with self.assertRaisesRegex(cdot.Error, "name the coordinate"):
+            pendulum().add_effect("rod", "motor", speed=1)
+
     def test_joints_change_and_break(self):
         world = pendulum()
         world.set_parameters("rod", l=1.5)

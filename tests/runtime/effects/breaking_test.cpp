@@ -174,5 +174,56 @@ TEST(BreakingLoad, OfJointsInARowOneBreaks) {
   }
 }
 
+// A weight falls on a rod of length l from the horizontal. The rod carries 3 m g sin(angle) (Newton's law along the
+// rod, with m v^2 / 2 = m g l sin(angle)) and breaks at sin(angle) = strength / (3 m g). From there on the weight keeps
+// its speed sideways, v sin(angle).
+struct WeightOnARod {
+  explicit WeightOnARod(Integrator integrator, double local_error = 0) : world(method(integrator, local_error)) {
+    weight = world.add_body({.x = 1, .mass = 2, .inertia = 1});
+    distance(world, world.ground(), weight, 1);
+    set_breaking_load(world, 0, strength);
+  }
+  static Settings method(Integrator integrator, double local_error) {
+    Settings s = settings(Solver::direct, Drift::projection, -10);
+    s.integrator = integrator, s.local_error = local_error;
+    return s;
+  }
+  double error() {
+    EXPECT_TRUE(world.broken(0));
+    const double sine = strength / (3 * 2 * 10), speed = std::sqrt(2 * 10 * sine);
+    return std::abs(world.velocity(weight).x + speed * sine);
+  }
+  static constexpr double strength = 33;
+  World<double> world;
+  int weight;
+};
+
+// Methods that locate events find the moment, to 3e-10 of the load (`just_passed` in runtime/step/between.cpp). The
+// others break the rod after the step, an error of first order.
+TEST(BreakingLoad, IsLocatedWithinTheStep) {
+  for (const double h : {0.05, 0.02}) {
+    WeightOnARod adaptive(Integrator::dop853, 1e-12), stiff(Integrator::radau5, 1e-12), fixed(Integrator::dop853);
+    WeightOnARod rattle(Integrator::rattle);
+    for (WeightOnARod* run_by : {&adaptive, &stiff, &fixed, &rattle}) run(run_by->world, 0.6, h);
+    EXPECT_LT(adaptive.error(), 3e-9) << h;
+    EXPECT_LT(stiff.error(), 1e-8) << h;
+    EXPECT_LT(fixed.error(), 1e-6) << h;
+    EXPECT_GT(rattle.error(), 1e-4) << h;
+    EXPECT_LT(rattle.error(), 20 * h) << h;
+    EXPECT_NEAR(adaptive.world.energy(), 0, 1e-9) << h;
+  }
+}
+
+// Of two rods in a row the upper one breaks, of its load; the lower one then carries nothing, at once.
+TEST(BreakingLoad, IsLocatedForTheMostOverloadedJointAlone) {
+  WeightOnARod below(Integrator::dop853, 1e-10);
+  const int lower = below.world.add_body({.x = 2, .mass = 2, .inertia = 1});
+  const int rod = distance(below.world, below.weight, lower, 1);
+  set_breaking_load(below.world, rod, WeightOnARod::strength);
+  run(below.world, 0.6, 0.05);
+  EXPECT_TRUE(below.world.broken(0));
+  EXPECT_FALSE(below.world.broken(rod));
+}
+
 }  // namespace
 }  // namespace cdot::test::breaking_test

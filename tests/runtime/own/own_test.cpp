@@ -198,17 +198,36 @@ TEST(Own, EffectsOfAProgramActOnCoordinates) {
 }
 
 // A weight on a cord that burns: its strength of 101 N falls to the weight of 20 N after 0.802 s.
-TEST(Own, AJointBreaksByAnEffectOfAProgram) {
-  World<double> world(settings(Solver::direct, Drift::projection, -10));
+World<double> weight_on_a_cord(const Settings& settings, const std::string& burning = "burning") {
+  World<double> world(settings);
   BodyDefinition d;
   d.y = -1, d.mass = 2, d.inertia = 1;
   const int weight = world.add_body(d);
   const int cord = world.add_joint({"distance", {weight, world.ground()}, {{"pa", {0, 0}}, {"pb", {0, 0}}}, {}});
-  add_effect(world, cord, SpecEffect{"burning", {{"strength", {101}}, {"life", {1}}}});
+  add_effect(world, cord, SpecEffect{burning, {{"strength", {101}}, {"life", {1}}}});
+  return world;
+}
+
+TEST(Own, AJointBreaksByAnEffectOfAProgram) {
+  World<double> world = weight_on_a_cord(settings(Solver::direct, Drift::projection, -10));
   for (int k = 1; k <= 90; ++k) {
     world.step(0.01);
-    EXPECT_EQ(world.broken(cord), k >= 81) << k;
+    EXPECT_EQ(world.broken(0), k >= 81) << k;
   }
+  Settings located = settings(Solver::direct, Drift::projection, -10);
+  located.integrator = Integrator::dop853;
+  World<double> falls = weight_on_a_cord(located);
+  for (int k = 0; k < 9; ++k) falls.step(0.1);
+  EXPECT_NEAR(falls.velocity(0).y, -10 * (0.9 - (1 - 20.0 / 101)), 1e-8);
+}
+
+// Two effects with the same numbers are two mechanisms.
+TEST(Own, ASnapshotKnowsWhichEffectBreaksAJoint) {
+  const Settings direct = settings(Solver::direct, Drift::projection, -10);
+  const OwnType other = add_own_type(CDOT_SOURCE_DIR "/tests/runtime/own/specs/burning.effect");
+  World<double> world = weight_on_a_cord(direct);
+  EXPECT_NO_THROW(world.restore(weight_on_a_cord(direct).snapshot()));
+  EXPECT_THROW(world.restore(weight_on_a_cord(direct, other.name).snapshot()), Error);
 }
 
 INSTANTIATE_TEST_SUITE_P(Own, InFolder, testing::Values("planar", "spatial"));

@@ -1,0 +1,30 @@
+// Joints that break by effects of specs (Bond). These add no rows: they read the load on the joint's own rows.
+#pragma once
+
+#include "runtime/state/world_data.hpp"
+
+namespace cdot {
+
+// The joint of the island that carries most beyond its strength, by its impulses over the last substep of h, which ends
+// at `time`; -1 if none breaks.
+template <class S>
+int overloaded_joint(const WorldData<S>& world, const Island<S>& island, double time, double h);
+
+// Takes the rows of the joint out of its island. It does not allocate. Evaluate anew afterwards.
+template <class S>
+void break_joint(WorldData<S>& world, Island<S>& island, int joint);
+
+// Breaks the joint that carries most beyond its strength, by its present forces, which Batch::lambda holds at
+// acceleration level, and evaluates the others. False if none breaks.
+template <class S>
+bool break_by_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar time);
+
+// Updates the places of rows from BatchState::home and the broken joints, after slots changed places.
+template <class S>
+void find_rows(WorldData<S>& world, Island<S>& island);
+
+// Flow::margins of the island's bonds, after those of its guarded rows.
+template <class S>
+void measure_margins_of_bonds(const WorldData<S>& world, Island<S>& island, double time);
+
+}  // namespace cdot
