@@ -43,8 +43,11 @@ constexpr const char* errors_of_rows = R"(      T C[rows];
 // Ends that are passed take part from then on.
 constexpr const char* errors_of_ends = R"(      T over[bounded];
       past($ss.q, s.time, over);
-      const T worst = select(largest(over) > of_joints, largest(over), of_joints);
+{}      const T worst = select(largest(over) > of_joints, largest(over), of_joints);
 )";
+
+constexpr const char* leaves_out_free_rows =
+    "      for (int i = 0; i < bounded; ++i) over[i] = select(active[i], over[i], T(0));\n";
 
 constexpr const char* ends_join = R"(      auto more = T(1) < T(0);
       for (int i = 0; i < bounded; ++i) {
@@ -124,15 +127,32 @@ constexpr const char* moves_poses_in_space = R"(      if (is_pack) {
       }
 )";
 
-constexpr const char* project = R"(
+constexpr const char* project_begins = R"(
   // Velocities onto J v = -dC/dt.
   static void project(State& s) {
-    T rate[rows], lambda[rows];
+)";
+
+constexpr const char* projects_rows = R"(    T rate[rows], lambda[rows];
     rates(s.J, s.v, rate);
     Velocity d[bodies];
     solve($qs.J, rate, lambda, d);
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] - d[i];
-  }
+)";
+
+// A lane without a held row keeps its bits.
+constexpr const char* projects_held_rows = R"(    Mask held[bounded], some = T(1) < T(0);
+    for (int i = 0; i < bounded; ++i) held[i] = magnitude(s.hold[i]) < T(0.5), some = some || held[i];
+    if (!any(some)) return;
+    Bounded B;
+    Guards G;
+    T mu[bounded];
+    reach($ss.q, s.time, {}B);
+    guard($ss.q, s.time, s.v, G);
+    for (T& of_row : mu) of_row = T(0);
+    divide(B.S, held, G.missing, mu);
+    for (int e = 0; e < bounded; ++e) {{
+      for (int i = 0; i < bodies; ++i) s.v[i] = choose(some, s.v[i] + mu[e] * B.g[e][i], s.v[i]);
+    }}
 )";
 
 constexpr const char* bounded_type = R"(
@@ -294,16 +314,18 @@ std::string corrections_of(double tolerance, const Contents& has, const std::str
     text += has.foresees ? moves_as_foreseen : "    for (int i = 0; i < bodies; ++i) moves[i] = still();\n";
     text += when(has.ends,
                  "    Bounded B;\n    bool reached = false;  // B is that of `at`\n    Mask active[bounded];\n"
-                 "    for (Mask& of_row : active) of_row = T(1) < T(0);\n");
+                 "    for (int i = 0; i < bounded; ++i) ") +
+            when(has.ends, has.modes ? "active[i] = magnitude(s.hold[i]) < T(0.5);\n" : "active[i] = T(1) < T(0);\n");
     text += "    for (int round = 0;; ++round) {\n";
     text += has.rows ? errors_of_rows : "      const T of_joints = T(0);\n";
-    text += has.ends ? errors_of_ends : "      const T worst = of_joints;\n";
+    text += has.ends ? fmt::format(errors_of_ends, has.modes ? leaves_out_free_rows : "")
+                     : "      const T worst = of_joints;\n";
     text +=
         fmt::format(round_begins, tolerance, has.foresees ? "(first ? select(foreseen, T(-1), goal) : goal)" : "goal");
-    text += when(has.ends, ends_join);
+    text += when(has.ends && !has.modes, ends_join);
     text += when(has.foresees, takes_back);
     text += fmt::format(
-        renews, has.ends ? "!more && " : "",
+        renews, has.ends && !has.modes ? "!more && " : "",
         when(has.rows, "        evaluate($sat.q, at.time, s.J);\n") + when(has.ends, "        reached = false;\n"),
         renew, has.foresees ? aims(has.spatial) : "");
     text += has.rows ? fmt::format(moves_of_rows, has.foresees ? "B, aimed, " : "") : no_moves;
@@ -312,7 +334,9 @@ std::string corrections_of(double tolerance, const Contents& has, const std::str
     if (has.ends) text += fmt::format(moves_of_ends, has.rows ? "s.J, " : "");
     text += fmt::format(moves_bodies, has.spatial ? moves_poses_in_space : moves_poses);
   }
-  if (has.rows) text += project;
+  if (has.projects()) text += project_begins + when(has.rows, projects_rows);
+  if (has.modes) text += fmt::format(projects_held_rows, has.rows ? "s.J, " : "");
+  if (has.projects()) text += "  }\n";
   return text;
 }
 

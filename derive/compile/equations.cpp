@@ -35,11 +35,12 @@ class EquationWriter {
       write_rates();
       write_solve();
     }
-    if (mechanism_.on_accelerations() && system().size() > 0)
+    const bool accelerates = mechanism_.on_accelerations(), modes = accelerates && !mechanism_.bounded.empty();
+    if (accelerates && (system().size() > 0 || modes))
       out_.accelerate = accelerations_of(blocks_, joints_, out_.constants);
-    else if (mechanism_.on_accelerations() || mechanism_.method == Method::rattle)
+    if (modes || mechanism_.method == Method::rattle || (accelerates && system().size() == 0))
       out_.fall = fall_of(blocks_, out_.constants);
-    else if (!mechanism_.effects.empty() || !mechanism_.bounded.empty())
+    if (mechanism_.method == Method::euler && (!mechanism_.effects.empty() || !mechanism_.bounded.empty()))
       out_.kick = kick_of(blocks_, joints_, out_.constants);
     if (!mechanism_.effects.empty() || !mechanism_.bounded.empty())
       out_.potential = potential_of(blocks_, out_.constants);
@@ -129,6 +130,10 @@ class EquationWriter {
       out_.has_ends |= has_ends(blocks_, b), out_.has_events |= has_events(blocks_, b);
     }
     if (out_.has_events) out_.distances = distances_of(blocks_, out_.constants);
+    if (mechanism_.on_accelerations() && !mechanism_.bounded.empty()) {
+      out_.has_ends = true;  // held rows, whose ends and rates a projection keeps
+      out_.guard = guard_of(blocks_, out_.constants), out_.resolve = resolve_of(blocks_, out_.constants);
+    }
     if (!out_.has_ends) return;
     out_.reach = reach_of(blocks_, joints_, out_.constants);
     out_.past = past_of(blocks_, out_.constants);
@@ -157,9 +162,9 @@ class EquationWriter {
 }  // namespace
 
 std::vector<const Program*> programs_of_equations(const Equations& e) {
-  return {&e.evaluate,    &e.errors, &e.rates,  &e.accelerate, &e.solve,  &e.apply, &e.aim,
-          &e.solve_aimed, &e.fall,   &e.kick,   &e.potential,  &e.reach,  &e.past,  &e.along,
-          &e.angles,      &e.dampen, &e.notice, &e.look,       &e.finish, &e.exert, &e.distances};
+  return {&e.evaluate, &e.errors, &e.rates,     &e.accelerate, &e.solve,     &e.apply, &e.aim,    &e.solve_aimed,
+          &e.fall,     &e.kick,   &e.potential, &e.reach,      &e.past,      &e.along, &e.angles, &e.dampen,
+          &e.notice,   &e.look,   &e.finish,    &e.exert,      &e.distances, &e.guard, &e.resolve};
 }
 
 std::set<std::string> functions_of(const Program& program) {

@@ -47,6 +47,8 @@ struct Equations {
   Program past;       // q, time -> past: errors
   Program along;      // q, v, time -> along: J v
   Program distances;  // q, v, time -> after, until: distances from events
+  Program guard;      // by Runge-Kutta methods (methods/modes.hpp): q, v, time -> B
+  Program resolve;    // q, v, time, a, force, h -> of_value, of_rate, of_force: resolutions
 };
 std::vector<const Program*> programs_of_equations(const Equations& equations);
 // Those of <cmath> that it calls.

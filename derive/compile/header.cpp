@@ -11,6 +11,7 @@
 #include "derive/compile/gyroscopes.hpp"
 #include "derive/compile/identifiers.hpp"
 #include "derive/compile/methods/events.hpp"
+#include "derive/compile/methods/modes.hpp"
 #include "derive/compile/methods/rattle.hpp"
 #include "derive/compile/methods/state.hpp"
 #include "derive/compile/methods/tables.hpp"
@@ -74,6 +75,7 @@ class HeaderWriter {
             .finishes = equations_.finishes,
             .exerts = equations_.exerts,
             .carries = carries(),
+            .modes = !mechanism_.bounded.empty() && on_accelerations(),
             .foresees = !equations_.apply.outputs.empty()};
   }
   bool carries() const {
@@ -86,29 +88,9 @@ class HeaderWriter {
 
   bool has_inputs() const { return !equations_.constants.inputs.empty(); }
 
-  // Functions take the inputs and the angles: "$d" declares them, "$s" passes those of a State, "$p" those of the
-  // caller; "$C" counts the turns of the angles. Functions that weigh take poses where inertias turn: "$g" declares
-  // them, "$q" passes those of a State, "$t" those of the caller. Poses get their inertias by "$w" at a stage, by "$W"
-  // at the end of a step.
   std::string with_arguments(std::string text) const {
-    const bool inputs = has_inputs(), angles = has().angles, events = has().events, turns = has().gyroscopes;
-    const std::pair<std::string_view, std::string> marks[] = {
-        {"$C", angles ? "    Angles next_angles;\n    count($ss.q, s.time, next_angles.angle, next_angles.turns);\n    "
-                        "s.angles = next_angles;\n"
-                      : ""},
-        {"$d", std::string(inputs ? "const Inputs& p, " : "") + (angles ? "const Angles& angles, " : "") +
-                   (events ? "const Events& events, " : "")},
-        {"$s", std::string(inputs ? "s.p, " : "") + (angles ? "s.angles, " : "") + (events ? "s.events, " : "")},
-        {"$p", std::string(inputs ? "p, " : "") + (angles ? "angles, " : "") + (events ? "events, " : "")},
-        {"$g", pose_argument(mechanism_)},
-        {"$q", turns ? "s.q, " : ""},
-        {"$t", turns ? "q, " : ""},
-        {"$w", turns ? "    weigh(at.q, T(0) < T(1));\n" : ""},
-        {"$W", turns ? "    weigh(s.q, T(0) < T(1));\n" : ""}};
-    for (const auto& [mark, argument] : marks)
-      for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos;)
-        text.replace(at, mark.size(), argument);
-    return text;
+    return compile::with_arguments(
+        std::move(text), {has_inputs(), has().angles, has().events, has().gyroscopes, pose_argument(mechanism_)});
   }
 
   void line(const std::string& line = {}) { text_ += line + "\n"; }
@@ -129,7 +111,8 @@ class HeaderWriter {
     for (const Body& body : mechanism_.bodies) of_bodies += numbers_of(mechanism_, body, has().pulls());
     const long of_rows = long{has().foresees ? 1 + foreseen_by(by_rattle()) : 1} * long(equations_.rows.size()) +
                          long(equations_.stored.size()) + (has().closes() ? 1 : 0) + (has().foresees ? 1 : 0) +
-                         (has().exerts ? 1 : 0) + (has().events ? 3 * long(mechanism_.bounded.size()) : 0);
+                         (has().exerts ? 1 : 0) + (has().modes ? 1 + 6 * long(mechanism_.bounded.size()) : 0) +
+                         (has().events ? 3 * long(mechanism_.bounded.size()) : 0);
     return long{sizeof(double)} * (1 + of_bodies + of_rows + long(mechanism_.bounded.size()) +
                                    long(equations_.constants.inputs.size()) + 2 * mechanism_.angles);
   }
@@ -243,7 +226,7 @@ class HeaderWriter {
     if (has().angles && head.find("$d") != std::string::npos) line("    (void)angles;");
     if (has().events && head.find("$d") != std::string::npos) line("    (void)events;");
     for (const std::string argument :
-         {"q", "v", "time", "J", "B", "b", "h", "lambda", "C", "rate", "K", "guess", "given", "end"})
+         {"q", "v", "a", "time", "J", "B", "b", "h", "lambda", "force", "C", "rate", "K", "guess", "given", "end"})
       if (reads(arguments, argument)) line(fmt::format("    (void){};", argument));
     line("  }");
   }
@@ -264,6 +247,7 @@ class HeaderWriter {
   void write_equations() {
     const std::string at = "$dconst Pose (&q)[bodies], const T& time", moving = "const Velocity (&v)[bodies]";
     text_ += guards + tables_of(mechanism_);
+    if (has().modes) text_ += "  static constexpr double slight = single ? 1e-4 : 1e-9;  // a relative resolution\n";
     text_ += bounded_of(equations_.is_rate, has());
     if (has().looks)
       text_ += damping_of(equations_.effect_of.size(), equations_.effect_of.back() + 1, equations_.triangle);
@@ -352,23 +336,38 @@ class HeaderWriter {
   }
 
   void write_accelerations(const std::string& at, const std::string& moving) {
-    if (!has_rows()) {
-      write_function("Accelerations", "fall(" + at + ", " + moving + ", Velocity (&a)[bodies])", equations_.fall);
+    if (!has_rows() || has().modes)
+      write_function("Accelerations without joints", "fall(" + at + ", " + moving + ", Velocity (&a)[bodies])",
+                     equations_.fall);
+    if (!has_rows() && !has().modes) {
       text_ += free_slope;
       return;
     }
+    write_function("M a = f + J^T lambda with J a = gamma = -Jdot v - d/dt(dC/dt)",
+                   "accelerate(" + at + ", " + moving + (has_rows() ? ", const Jacobian& J, T (&lambda)[rows]" : "") +
+                       ", Velocity (&a)[bodies]" + (has().modes ? ", Bounded& B)" : ")"),
+                   equations_.accelerate);
+    if (has().modes) write_modes(at, moving);
+    else text_ += slope;
+  }
+
+  void write_modes(const std::string& at, const std::string& moving) {
+    write_function("Ends, rates and bounds of rows with bounds", "guard(" + at + ", " + moving + ", Guards& B)",
+                   equations_.guard);
     write_function(
-        "M a = f + J^T lambda with J a = gamma = -Jdot v - d/dt(dC/dt)",
-        "accelerate(" + at + ", " + moving + ", const Jacobian& J, T (&lambda)[rows], Velocity (&a)[bodies])",
-        equations_.accelerate);
-    text_ += slope;
+        "Their resolutions, in units of the relative one",
+        "resolve(" + at + ", " + moving +
+            ", const Velocity (&a)[bodies], const T (&force)[bounded], const T& h, T (&of_value)[bounded], T "
+            "(&of_rate)[bounded], T (&of_force)[bounded])",
+        equations_.resolve);
+    text_ += modes_of(has(), equations_.waits);
   }
 
   void write_step() {
     std::string step = step_of(mechanism_, has());
+    if (breaks(mechanism_) || has().modes) text_ += replaces;
     if (breaks(mechanism_)) {
-      const std::string_view head = "step(State& s, T h = T(default_step))";
-      step.replace(step.find(head), head.size(), "advance(State& s, const T& h)");
+      step.replace(step.find(step_head), step_head.size(), "advance(State& s, const T& h)");
       step += step_in_parts(mechanism_.method, has());
     }
     text_ += step;

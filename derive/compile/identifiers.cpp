@@ -18,7 +18,9 @@ std::set<std::string> taken_names() {
       "orient weigh wind follow drift spin dot cross times root half_turn turned to_world to_body turn_by free_turn "
       "inverse_root wide_half_turn whole newton_step mean_spin sin_cos sin_cos_beside magnitude any single epsilon "
       "smallest is_rate "
-      "settle part_and_settle");
+      "settle part_and_settle Guards Modes modes guard resolve force slight smaller gap stride replace furthest "
+      "first_event go_to_event choose_modes decide stop_what_hits find_margins raise_resolutions hold_passed_ends "
+      "has_one_end is_equation is_endless of_value of_rate of_force latch events Events distances after until");
   std::set<std::string> names;
   for (std::string word; words >> word;) names.insert(word);
   return names;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "derive/compile/methods/modes.hpp"
 #include "derive/compile/methods/rattle.hpp"
 #include "runtime/step/runge_kutta_tables.hpp"
 
@@ -117,6 +118,14 @@ $W$C    evaluate($ss.q, s.time, s.J);
     return s.residual;
 )";
 
+constexpr const char* ends_in_modes = R"(    Velocity moves[bodies];
+    close(s, at, T(0.5), moves);
+$W$C{0}    project(s);
+    pull($ss.q, s.time, s.v, {1}s.modes.force, s.a);
+    find_margins(s);
+    return s.residual;
+)";
+
 constexpr const char* ends_freely = R"($W$C    fall($ss.q, s.time, s.v, s.a);
     return T(0);
 )";
@@ -144,13 +153,20 @@ std::string runge_kutta(const Method& method, const char* title, const Contents&
     text += "    for (int i = 0; i < bodies; ++i) v[i] = s.v[i] + h * now.acceleration(i);\n";
     text += fmt::format("    at.time = s.time + T({}) * h;\n", double(method.c[stage]));
     text += has.spatial ? "    turn(at.q);\n" : "    turn(at.q, s.q);\n";
-    text += fmt::format("    slope($sat, v, {}k[{}]);\n", rows ? "s.J, forces, " : "", stage);
+    text += fmt::format("    slope($sat, v, {}{}k[{}]);\n", rows ? "s.J, forces, " : "", has.modes ? "s.hold, " : "",
+                        stage);
   }
+  const std::string end =
+      has.modes ? fmt::format(ends_in_modes, rows ? evaluates : "", rows ? "s.J, s.hold, s.lambda, " : "s.hold, ")
+      : rows    ? ends_on_joints
+                : ends_freely;
+  if (has.modes) text.replace(text.find(step_head), step_head.size(), "stride(State& s, const T& h)");
   return text +
-         fmt::format(stages_end, combined(method, method.stages), rows ? ends_on_joints : ends_freely,
+         fmt::format(stages_end, combined(method, method.stages), end,
                      has.gyroscopes
                          ? "    for (int i = 0; i < bodies; ++i) s.q[i].I = at.q[i].I;  // as J, of the last stage\n"
-                         : "");
+                         : "") +
+         (has.modes ? step_by_events : "");
 }
 
 std::string euler(double tolerance, const Contents& has) {
@@ -215,6 +231,7 @@ std::string begin_of(Method method, const Contents& has) {
   text += "$C";
   if (has.events) text += "    latch(s);\n";
   if (has.rows) text += "    for (int i = 0; i < rows; ++i) s.lambda[i] = T(0);\n";
+  if (has.modes) text += "    s.modes = {};\n    hold_passed_ends(s);\n";
   if (has.closes()) text += "    s.residual = T(1e30);\n";
   if (has.rows) text += evaluates;
   if (has.closes())
@@ -222,7 +239,13 @@ std::string begin_of(Method method, const Contents& has) {
         notes_poses(has) + (has.foresees ? std::string(begins_series) + closes_unforeseen : fmt::format(closes, 0.2));
   if (has.closes() && has.gyroscopes) text += accelerates ? "$W" : follows;
   if (has.rows) text += evaluates;
-  if (accelerates && has.rows) text += "    project(s);\n    accelerate($ss.q, s.time, s.v, s.J, s.lambda, s.a);\n";
+  if (has.modes)
+    text += fmt::format(
+        "    for (T& of_row : s.hold) of_row = T(1);\n    project(s);\n    Bounded B;\n"
+        "    accelerate($ss.q, s.time, s.v, {}s.a, B);\n",
+        has.rows ? "s.J, s.lambda, " : "");
+  else if (accelerates && has.rows)
+    text += "    project(s);\n    accelerate($ss.q, s.time, s.v, s.J, s.lambda, s.a);\n";
   else if (method == Method::rattle && has.rows) text += "    project(s);\n";
   else if (accelerates) text += "    fall($ss.q, s.time, s.v, s.a);\n";
   if (has.pulls()) text += "    for (Velocity& of_body : s.pull) of_body = still();\n";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "derive/compile/corrections.hpp"
 #include "derive/compile/scene/mechanism.hpp"
@@ -14,6 +15,9 @@ struct Calls {
   int dampen = 0, notice = 0, look = 0, finish = 0;  // by RATTLE, with one round of Newton
 };
 Calls calls_of(Method method, const Contents& has);
+
+// Of the function that steps a State.
+inline constexpr std::string_view step_head = "step(State& s, T h = T(default_step))";
 
 std::string begin_of(Method method, const Contents& has);
 std::string step_of(const Mechanism& mechanism, const Contents& has);

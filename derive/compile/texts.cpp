@@ -2,6 +2,8 @@
 
 #include <cctype>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 namespace cdot::compile {
 namespace {
@@ -41,6 +43,26 @@ std::string unrolled(const std::string& text, const Counts& counts) {
     lines += here;
   }
   return lines;
+}
+
+std::string with_arguments(std::string text, const Arguments& given) {
+  const auto& [inputs, angles, events, turns, poses] = given;
+  const std::pair<std::string_view, std::string> marks[] = {
+      {"$C", angles ? "    Angles next_angles;\n    count($ss.q, s.time, next_angles.angle, next_angles.turns);\n    "
+                      "s.angles = next_angles;\n"
+                    : ""},
+      {"$d", std::string(inputs ? "const Inputs& p, " : "") + (angles ? "const Angles& angles, " : "") +
+                 (events ? "const Events& events, " : "")},
+      {"$s", std::string(inputs ? "s.p, " : "") + (angles ? "s.angles, " : "") + (events ? "s.events, " : "")},
+      {"$p", std::string(inputs ? "p, " : "") + (angles ? "angles, " : "") + (events ? "events, " : "")},
+      {"$g", poses},
+      {"$q", turns ? "s.q, " : ""},
+      {"$t", turns ? "q, " : ""},
+      {"$w", turns ? "    weigh(at.q, T(0) < T(1));\n" : ""},
+      {"$W", turns ? "    weigh(s.q, T(0) < T(1));\n" : ""}};
+  for (const auto& [mark, argument] : marks)
+    for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos;) text.replace(at, mark.size(), argument);
+  return text;
 }
 
 }  // namespace cdot::compile

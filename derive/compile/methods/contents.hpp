@@ -15,13 +15,24 @@ struct Contents {
   // the joints, and so does the start of a run.
   bool rattle = false, dampens = false, looks = false, finishes = false, exerts = false;
   bool carries = false;   // by RATTLE, forces at the end read the spin of a body whose inertia turns
+  bool modes = false;     // of rows with bounds by Runge-Kutta methods
   bool foresees = false;  // the multipliers of the next projection, by those of the last steps
+  bool projects() const { return rows || modes; }  // velocities
   bool closes() const { return rows || ends; }
   bool pulls() const { return rattle && (rows || bounded); }  // a State has its joints' accelerations
 };
 
 inline constexpr const char* evaluates = "    evaluate($ss.q, s.time, s.J);\n";
 inline constexpr const char* follows = "    follow(s, T(0) < T(1));\n";
+
+// The numbers of another State in the lanes of `now`.
+inline constexpr const char* replaces = R"(
+  static void replace(State& s, const State& from, const Mask& now) {
+    T* const numbers = reinterpret_cast<T*>(&s);
+    const T* const others = reinterpret_cast<const T*>(&from);
+    for (unsigned i = 0; i < sizeof s / sizeof(T); ++i) numbers[i] = select(now, others[i], numbers[i]);
+  }
+)";
 
 // With `moves`.
 inline constexpr const char* closes_unforeseen = R"(    T total[rows];

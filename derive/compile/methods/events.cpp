@@ -31,6 +31,7 @@ constexpr const char* forgets = "    for (Velocity& of_body : s.pull) of_body = 
 std::string latch_of(const std::string& waits, const Contents& has) {
   std::string text = fmt::format(latch_begins, waits);
   text += has.pulls() ? forgets : "    (void)some;\n";
+  if (has.modes) text += "    s.modes.known = select(some, T(0), s.modes.known);\n";
   if (has.exerts) text += "    s.begins = select(some, T(1), s.begins);\n";
   return text + "  }\n";
 }

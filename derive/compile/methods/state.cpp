@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "derive/compile/foresight/foresight.hpp"
+#include "derive/compile/methods/modes.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -50,7 +51,9 @@ std::string of_rows(const Mechanism& mechanism, const Contents& has) {
 }  // namespace
 
 std::string state_of(const Mechanism& mechanism, const Contents& has, bool inputs) {
-  std::string text = state_begins + of_bodies(mechanism, has) + of_rows(mechanism, has);
+  std::string text =
+      std::string(has.modes ? modes_type : "") + state_begins + of_bodies(mechanism, has) + of_rows(mechanism, has);
+  if (has.modes) text += "    Modes modes;\n";
   if (inputs) text += "    Inputs p;\n";
   if (has.angles) text += "    Angles angles;\n";
   if (has.events) text += "    Events events;\n";

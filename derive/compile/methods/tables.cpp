@@ -52,12 +52,6 @@ constexpr const char* breaks_of_table = R"(    {{
 )";
 
 constexpr const char* parts_begin = R"(
-  static void replace(State& s, const State& from, const Mask& now) {
-    T* const numbers = reinterpret_cast<T*>(&s);
-    const T* const others = reinterpret_cast<const T*>(&from);
-    for (unsigned i = 0; i < sizeof s / sizeof(T); ++i) numbers[i] = select(now, others[i], numbers[i]);
-  }
-
   // Goes on from the time of a break, in the lanes of `now`, with the numbers after it: beyond round-off.
   static void pass(State& s, const T& at, const Mask& now) {
     State after = s;
@@ -135,9 +129,10 @@ std::string tables_of(const Mechanism& mechanism) {
 
 std::string step_in_parts(Method method, const Contents& has) {
   std::string text = parts_begin;
-  const bool accelerates = method == Method::rk4 || method == Method::dop853;
-  if (method != Method::euler && has.rows)
-    text += "    evaluate($safter.q, after.time, after.J);\n    project(after);\n";
+  const bool accelerates = (method == Method::rk4 || method == Method::dop853) && !has.modes;
+  if (method != Method::euler && has.rows) text += "    evaluate($safter.q, after.time, after.J);\n";
+  if (method != Method::euler && has.rows && !has.modes) text += "    project(after);\n";
+  if (has.modes) text += "    after.modes.known = T(0);\n";
   if (accelerates && has.rows)
     text += "    accelerate($safter.q, after.time, after.v, after.J, after.lambda, after.a);\n";
   if (accelerates && !has.rows) text += "    fall($safter.q, after.time, after.v, after.a);\n";

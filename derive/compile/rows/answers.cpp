@@ -105,6 +105,16 @@ void BoundedSystem::output_forces(const Values& a, int h) {
   output_S({});
 }
 
+void BoundedSystem::output_accelerations(const Values& a) {
+  const int zero = algebra_.value(0);
+  for (std::size_t b = 0; b < rows_.size(); ++b) {
+    const BoundWriter::Guard guard = rows_[b].guard();
+    const int asked = algebra_.sum({{rows_[b].gamma(), guard.acceleration}, {1, 1}});
+    output_row(b, algebra_.sum({{asked, rows_[b].along(a)}, {1, -1}}), {zero, zero, guard.low, guard.high});
+  }
+  output_S({});
+}
+
 void BoundedSystem::output_row(std::size_t b, int c, const BoundWriter::Kick& kick) {
   algebra_.output("B." + element("c", b), c);
   algebra_.output("B." + element("low", b), kick.low);

@@ -57,6 +57,8 @@ class BoundedSystem {
   void output_S(const std::vector<int>& softness);
   // Of a step of h; halved: the other half acts at the start of the next step.
   void output_bounds(const Values& next, int h, bool halved);
+  // The forces that hold rows, from accelerations a: J a + J g mu = gamma + the derivative of the prescribed rate.
+  void output_accelerations(const Values& a);
   // Forces by which rates become those prescribed in the time h/2, from accelerations a:
   //   J a - gamma + (J v + dC/dt - rate) / (h/2) = 0
   void output_forces(const Values& a, int h);

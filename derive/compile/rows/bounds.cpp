@@ -1,10 +1,14 @@
 #include "derive/compile/rows/bounds.hpp"
 
 #include <cmath>
+#include <fmt/format.h>
 
 #include "derive/kernel/factor.hpp"
 
 namespace cdot::compile {
+
+using derive::element;
+
 namespace {
 
 constexpr double boundless = 1e30;  // in float, too
@@ -33,10 +37,33 @@ Program distances_of(const RowBlocks& blocks, Constants& constants) {
     const BoundWriter row(blocks, algebra, b);
     const bool of_spec = effect.law == Effect::bound;
     const std::optional<Program> none;
-    algebra.output(derive::element("after", b),
-                   row.distance(of_spec ? blocks.law(effect).bounded[effect.row].after : none));
-    algebra.output(derive::element("until", b),
-                   row.distance(of_spec ? blocks.law(effect).bounded[effect.row].until : none));
+    algebra.output(element("after", b), row.distance(of_spec ? blocks.law(effect).bounded[effect.row].after : none));
+    algebra.output(element("until", b), row.distance(of_spec ? blocks.law(effect).bounded[effect.row].until : none));
+  }
+  return algebra.finish();
+}
+
+Program guard_of(const RowBlocks& blocks, Constants& constants) {
+  Algebra algebra(constants);
+  for (std::size_t b = 0; b < blocks.mechanism().bounded.size(); ++b) {
+    const BoundWriter row(blocks, algebra, b);
+    const BoundWriter::Guard guard = row.guard();
+    const int missing = algebra.sum({{guard.rate, row.rate()}, {1, -1}});
+    algebra.output("B." + element("off", b), guard.off);
+    algebra.output("B." + element("missing", b), missing);
+    algebra.output("B." + element("low", b), guard.low);
+    algebra.output("B." + element("high", b), guard.high);
+  }
+  return algebra.finish();
+}
+
+Program resolve_of(const RowBlocks& blocks, Constants& constants) {
+  Algebra algebra(constants);
+  for (std::size_t b = 0; b < blocks.mechanism().bounded.size(); ++b) {
+    const BoundWriter::Resolution resolution = BoundWriter(blocks, algebra, b).resolution();
+    algebra.output(element("of_value", b), resolution.value);
+    algebra.output(element("of_rate", b), resolution.rate);
+    algebra.output(element("of_force", b), resolution.force);
   }
   return algebra.finish();
 }
@@ -113,6 +140,75 @@ int BoundWriter::distance(const std::optional<Program>& event) const {
 BoundWriter::Kick BoundWriter::kick_while_it_acts(int h) const {
   if (effect_.law == Effect::limited) return of_force(h);
   return is_rate() ? of_rate(h) : of_ends(h);
+}
+
+// A row that does not act serves no end, and has no force.
+BoundWriter::Guard BoundWriter::guard() const {
+  Guard guard = guard_while_it_acts();
+  if (!has_events(blocks_, number_)) return guard;
+  for (int* number : {&guard.off, &guard.rate, &guard.low, &guard.high, &guard.acceleration})
+    *number = algebra_.function(Fn::select, {acts(), *number, algebra_.value(0)});
+  return guard;
+}
+
+BoundWriter::Guard BoundWriter::guard_while_it_acts() const {
+  const Values B = bounds();
+  const int zero = algebra_.value(0), least = algebra_.value(-boundless), most = algebra_.value(boundless);
+  const int lower = bound(B, "B.lower", -boundless), upper = law_.most(bound(B, "B.upper", boundless), lower);
+  if (is_rate()) {
+    const int acceleration = effect_.law == Effect::motor ? rate_change() : bound(B, "B.acceleration", 0);
+    return {zero, bound(B, "B.rate", 0), lower, upper, acceleration};
+  }
+  const int C = law_.C()[0], above = algebra_.sum({{C, lower}, {1, -1}}), below = algebra_.sum({{upper, C}, {1, -1}});
+  if (are_equal(lower, upper)) return {above, zero, least, most, zero};
+  const int at_low = algebra_.sum({{below, above}, {1, -1}});
+  return {algebra_.function(Fn::select, {at_low, above, algebra_.sum({{below}, {-1}})}), zero,
+          algebra_.function(Fn::select, {at_low, zero, least}), algebra_.function(Fn::select, {at_low, most, zero}),
+          zero};
+}
+
+// As the World's (runtime/step/events.cpp):
+//   value  c, the largest change of C by a displacement of the mechanism's size or a rotation of 1 rad
+//   rate   the largest of the sum of all |J v|, sqrt(c dJv/dt), and epsilon c / (slight h)
+//   force  (dJv/dt + rate^2 / c) / K
+// dJv/dt: the larger of the sum of all |J dv/dt|, angular accelerations being at least linear / size, and K |force|.
+BoundWriter::Resolution BoundWriter::resolution() const {
+  const Mechanism& all = blocks_.mechanism();
+  const Values J = blocks_.call(algebra_, block_, "dense", in_);
+  const int size = algebra_.value(effect_.size), zero = algebra_.value(0);
+  int c = zero;
+  Summands rates, accelerations, masses;
+  for (std::size_t k = 0; k < block_.bodies->size(); ++k) {
+    const int index = (*block_.bodies)[k];
+    const Body& body = all.bodies[static_cast<std::size_t>(index)];
+    if (!body.moves) continue;
+    masses.add(1, algebra_.value(body.inv_m));
+    int linear = zero;
+    for (std::size_t i = 0; i < all.columns(); ++i) {
+      const auto speed = [&](const char* array) {
+        return algebra_.function(
+            Fn::abs, {algebra_.input(fmt::format("{}[{}].{}", array, blocks_.body_name(index), all.column(i)))});
+      };
+      const bool straight = i < all.linear();
+      const int j = algebra_.function(Fn::abs, {J.at(element(element("D", 0), all.columns() * k + i))}),
+                dv = speed("a");
+      if (straight) linear = law_.most(linear, dv);
+      c = law_.most(c, straight ? algebra_.times(j, size) : j);
+      rates.add(1, algebra_.times(j, speed("v")));
+      const int per_size = algebra_.times(linear, algebra_.value(1 / effect_.size));
+      accelerations.add(1, algebra_.times(j, straight ? dv : law_.most(dv, per_size)));
+    }
+  }
+  c = algebra_.function(Fn::select, {c, c, size});
+  const int K_own = blocks_.call(algebra_, block_, "effective_mass", in_).at(derive::triangle_element("K", 0, 0));
+  const int K = algebra_.function(Fn::select, {K_own, K_own, algebra_.sum(masses)});
+  const int force = algebra_.function(Fn::abs, {algebra_.input(element("force", number_))});
+  const int acceleration = law_.most(algebra_.sum(accelerations), algebra_.times(K, force));
+  const int least = algebra_.product({algebra_.input("T(epsilon / slight)"), c, algebra_.input("h")}, {1, 1, -1});
+  const int rate =
+      law_.most(law_.most(algebra_.sum(rates), algebra_.function(Fn::sqrt, {algebra_.times(acceleration, c)})), least);
+  const int way = algebra_.product({rate, c}, {2, -1});
+  return {c, rate, algebra_.times(algebra_.sum({{acceleration, way}, {1, 1}}), algebra_.function(Fn::inverse, {K}))};
 }
 
 // J v' = rate by a force within its bounds.

@@ -23,6 +23,17 @@ class BoundWriter {
     int bias, softness, low, high;
   };
   Kick kick(int h) const;
+  // On accelerations, as the World's Guard: how far C is from the end that the row serves, the rate that it prescribes
+  // and its derivative, and the bounds of its force.
+  struct Guard {
+    int off, rate, low, high, acceleration;
+  };
+  Guard guard() const;
+  // Resolutions below which its value, its rate and its force count as 0, in units of the relative one.
+  struct Resolution {
+    int value, rate, force;
+  };
+  Resolution resolution() const;
   // The part of C that the projection removes.
   int past() const;
   // The distance from an event, far without one.
@@ -30,6 +41,7 @@ class BoundWriter {
 
  private:
   Kick kick_while_it_acts(int h) const;
+  Guard guard_while_it_acts() const;
   int past_while_it_acts() const;
   int acts() const { return algebra_.input(derive::element("events.acts", number_)); }
   bool is_rate() const;
@@ -57,6 +69,12 @@ bool has_events(const RowBlocks& blocks, std::size_t bounded);
 bool waits(const RowBlocks& blocks, std::size_t bounded);
 // q, v, time -> after, until: the distances from the events of rows with bounds, at most 0 where one happens.
 Program distances_of(const RowBlocks& blocks, Constants& constants);
+// q, v, time -> B: of each row its distance from the end that it serves, what its rate misses of the prescribed one,
+// and the bounds of its force.
+Program guard_of(const RowBlocks& blocks, Constants& constants);
+// q, v, time, a, force, h -> of_value, of_rate, of_force: resolutions of C, its rate and the force of each row, in
+// units of the relative one.
+Program resolve_of(const RowBlocks& blocks, Constants& constants);
 // True for a row with ends, or one that holds a value.
 bool has_ends(const RowBlocks& blocks, std::size_t bounded);
 

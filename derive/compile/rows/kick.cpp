@@ -177,6 +177,11 @@ Program accelerations_of(const RowBlocks& blocks, const JointRows& joints, Const
   each_component(blocks, [&](const Component& component, double, double) {
     algebra.output(component.in("a"), accelerated.end.velocities.at(component.name));
   });
+  if (blocks.mechanism().bounded.empty()) return algebra.finish();
+  BoundedSystem bounded(blocks, algebra);
+  bounded.answer(
+      accelerated.answers, joints.system().size(), [](std::size_t) { return true; }, BoundedSystem::Outputs::impulses);
+  bounded.output_accelerations(accelerated.end.velocities);
   return algebra.finish();
 }
 
@@ -214,7 +219,8 @@ Program reach_of(const RowBlocks& blocks, const JointRows& joints, Constants& co
   for (std::size_t k = 0; k < joints.system().blocks().size(); ++k) answers.add(joints.inputs(algebra, k), {});
   BoundedSystem bounded(blocks, algebra);
   bounded.answer(
-      answers, joints.system().size(), [&](std::size_t b) { return has_ends(blocks, b); },
+      answers, joints.system().size(),
+      [&](std::size_t b) { return blocks.mechanism().on_accelerations() || has_ends(blocks, b); },
       BoundedSystem::Outputs::velocities);
   bounded.output_S({});
   return algebra.finish();
@@ -222,8 +228,10 @@ Program reach_of(const RowBlocks& blocks, const JointRows& joints, Constants& co
 
 Program past_of(const RowBlocks& blocks, Constants& constants) {
   Algebra algebra(constants);
-  for (std::size_t b = 0; b < blocks.mechanism().bounded.size(); ++b)
-    algebra.output(element("past", b), BoundWriter(blocks, algebra, b).past());
+  for (std::size_t b = 0; b < blocks.mechanism().bounded.size(); ++b) {
+    const BoundWriter row(blocks, algebra, b);
+    algebra.output(element("past", b), blocks.mechanism().on_accelerations() ? row.guard().off : row.past());
+  }
   return algebra.finish();
 }
 

@@ -6,7 +6,8 @@
 
 namespace cdot::compile {
 
-// q, v, time, J -> a and lambda: M a = f + J^T lambda with J a = gamma.
+// q, v, time, J -> a and lambda: M a = f + J^T lambda with J a = gamma. With rows that have bounds, these are without
+// their forces, and B holds the system that gives them.
 Program accelerations_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
 
 // The impulse of an effect in a kick, by row: given - share^2 (J v' + dC/dt), v' the velocities after the kick.
@@ -33,10 +34,11 @@ Program finish_of(const RowBlocks& blocks, const JointRows& joints, Constants& c
 // reach it in h/2.
 Program exert_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
 
-// q, time, J -> B.g and B.S for rows with ends, without effects: their part in a projection.
+// q, time, J -> B.g and B.S for rows with ends, on accelerations for all rows, without effects: their part in a
+// projection.
 Program reach_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
 
-// q, time -> past: errors of rows with bounds.
+// q, time -> past: errors of rows with bounds; on accelerations, how far each is from its end.
 Program past_of(const RowBlocks& blocks, Constants& constants);
 
 // q, v, time -> along: J v of rows with bounds.

@@ -9,6 +9,7 @@
 #include "runtime/rows/spline.hpp"
 #include "runtime/state/world_data.hpp"
 #include "runtime/tool/scene/profile.hpp"
+#include "runtime/world/islands.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -70,6 +71,10 @@ class EffectReader {
     const int ground = static_cast<int>(scene_.bodies.size());
     for (int& body : effect.bodies) body = body == world_.ground() ? ground : body;
     effect.parameters = world_.joint_parameters(joint);
+    prepare_topology(world_.data());
+    for (const int body : record(joint).bodies)
+      if (const int island = world_.data().island_of[static_cast<std::size_t>(body)]; island >= 0)
+        effect.size = double(world_.data().islands[static_cast<std::size_t>(island)].size);
     return effect;
   }
 
@@ -97,17 +102,13 @@ class EffectReader {
     const auto& law = *batch_of(place).law;
     if (law.cone_rows > 0) refuse_(source, fmt::format("{}: one force along several coordinates", effect.name));
     else if (law.by_load) refuse_(source, fmt::format("{}: bounds that grow with a load", effect.name));
-    else if (law.distance && mechanism_.on_accelerations()) refuse_(source, fmt::format("{}: events", effect.name));
     else if (law.distance && by_own_force(place)) refuse_(source, fmt::format("{}: events by a force", effect.name));
     else if (law.error && !effect.in_time.empty())
       refuse_(source, fmt::format("{}: ends that follow functions of time", effect.name));
-    else if (mechanism_.method == Method::rattle && effect.law == Effect::bound && !law.error &&
-             !effect.in_time.empty())
-      refuse_(source, fmt::format("{}: a rate of a spec that follows a function of time by rattle", effect.name));
-    else if (!mechanism_.on_accelerations()) mechanism_.bounded.push_back(effect);
-    else
-      refuse_(source, fmt::format("{} by {}, which has to find when it begins to slip, to hold or to touch",
-                                  effect.name, mechanism_.method_name));
+    else if (mechanism_.method != Method::euler && effect.law == Effect::bound && !law.error && !effect.in_time.empty())
+      refuse_(source, fmt::format("{}: a rate of a spec that follows a function of time by {}", effect.name,
+                                  mechanism_.method_name));
+    else mechanism_.bounded.push_back(effect);
   }
 
   // True if an event of the row depends on the force that it carries.

@@ -168,8 +168,7 @@ void add_effects(const Scene& scene, BasicWorld<S>& world, Mechanism& mechanism)
   Refusals refusals(scene);
   const auto refuse = [&](const SceneJoint& joint, const std::string& what) {
     refusals.add(joint.where, fmt::format("{}: cdot compile does not know {}", joint.name, what),
-                 mechanism.on_accelerations() ? "give --integrator euler or rattle, or leave it to cdot-run"
-                                              : "leave it to cdot-run");
+                 "leave it to cdot-run");
   };
   read_effects(scene, world, refuse, mechanism);
   refusals.throw_any();

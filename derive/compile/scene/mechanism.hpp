@@ -74,6 +74,7 @@ struct Effect {
   std::size_t row = 0;
   std::vector<double> numbers;
   std::map<std::size_t, InTime> in_time{};  // those of `numbers` that follow functions of time
+  double size = 1;                          // Island::size of its mechanism [m]
 };
 
 enum class Method { euler, rattle, rk4, dop853 };

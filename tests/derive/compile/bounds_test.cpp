@@ -6,7 +6,6 @@
 #include "machine_euler.hpp"
 #include "robot_arm_euler.hpp"
 #include "tests/derive/compile/beside_world.hpp"
-#include "tests/derive/compile/command.hpp"
 
 namespace {
 
@@ -45,14 +44,6 @@ TEST(CompiledBounds, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<bounds_euler>();
   cdot::lanes_are_as_alone<ends_euler>();
   cdot::lanes_are_as_alone<robot_arm_euler>();
-}
-
-TEST(CompiledBounds, OtherMethodsRefuseThem) {
-  const cdot::ShellResult arm = cdot::compile("specs/scenes/robot_arm.toml --integrator rk4");
-  EXPECT_EQ(arm.status, 2);
-  EXPECT_NE(arm.text.find("robot_arm.toml:46:1: error: wrist: cdot compile does not know wrist.angle.brake by rk4"),
-            std::string::npos)
-      << arm.text;
 }
 
 }  // namespace

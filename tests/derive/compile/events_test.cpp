@@ -4,7 +4,6 @@
 #include "events_euler.hpp"
 #include "events_rattle.hpp"
 #include "tests/derive/compile/beside_world.hpp"
-#include "tests/derive/compile/command.hpp"
 
 namespace {
 
@@ -51,13 +50,6 @@ TEST(CompiledEvents, ASnapshotKeepsThem) {
 TEST(CompiledEvents, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<events_euler>();
   cdot::lanes_are_as_alone<events_rattle>();
-}
-
-TEST(CompiledEvents, OtherMethodsRefuseThem) {
-  const cdot::ShellResult refused = cdot::compile(events + " --integrator dop853");
-  EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.text.find("error: hinge: cdot compile does not know hinge.angle.latch: events"), std::string::npos)
-      << refused.text;
 }
 
 }  // namespace

@@ -1,0 +1,287 @@
+#include "derive/compile/methods/modes.hpp"
+
+#include <fmt/format.h>
+
+namespace cdot::compile {
+namespace {
+
+constexpr const char* pulls = R"(
+  // Accelerations with the rows in their modes.
+  static void pull($dconst Pose (&q)[bodies], const T& time, const Velocity (&v)[bodies], {0}const T (&hold)[bounded],
+                   {1}T (&force)[bounded], Velocity (&a)[bodies]) {{
+    Bounded B;
+    accelerate($pq, time, v, {2}a, B);
+    Mask held[bounded];
+    for (int e = 0; e < bounded; ++e) {{
+      held[e] = magnitude(hold[e]) < T(0.5);
+      force[e] = is_rate[e] ? select(hold[e] > T(0), B.high[e], B.low[e]) : T(0);
+    }}
+    divide(B.S, held, B.c, force);
+    for (int e = 0; e < bounded; ++e) {{
+      for (int i = 0; i < bodies; ++i) a[i] = a[i] + force[e] * B.g[e][i];
+{3}    }}
+  }}
+
+  // The rates of change at a stage of a Runge-Kutta method, whose poses are turned.
+  static void slope($dEvaluated& at, const Velocity (&v)[bodies], {4}const T (&hold)[bounded], Slope& k) {{
+$w{5}    T force[bounded];
+    Velocity a[bodies];
+    pull($pat.q, at.time, v, {6}force, a);
+    for (int i = 0; i < bodies; ++i) k.set(i, rate_of(at.q[i], v[i]), a[i]);
+  }}
+)";
+
+constexpr const char* adds_forces =
+    "      for (int i = 0; i < rows; ++i) lambda[i] = lambda[i] + force[e] * B.l[e][i];\n";
+
+// As the World does it: runtime/step/events.cpp.
+constexpr const char* kinds_of_rows = R"(
+  static T smaller(const T& a, const T& b) { return select(b < a, b, a); }
+  static Mask is_endless(const T& bound) { return magnitude(bound) > T(1e29); }
+  // Of row i: its value and its force have one end each; it holds on both sides; its distance from its end.
+  static Mask has_one_end(const Guards& G, int i) {
+    const Mask low = magnitude(G.low[i]) > T(0), high = magnitude(G.high[i]) > T(0);
+    return is_rate[i] ? T(1) < T(0) : (low && !high) || (high && !low);
+  }
+  static Mask is_equation(const Guards& G, int i) { return is_endless(G.low[i]) && is_endless(G.high[i]); }
+  static T gap(const Guards& G, int i) { return select(magnitude(G.low[i]) > T(0), -G.off[i], G.off[i]); }
+
+  // Before the start of a run: ends that are passed hold, for the projection.
+  static void hold_passed_ends(State& s) {
+    Guards G;
+    guard($ss.q, s.time, s.v, G);
+    for (int i = 0; i < bounded; ++i) {
+      const Mask passed = is_equation(G, i) || (has_one_end(G, i) && gap(G, i) < T(0));
+      s.hold[i] = is_rate[i] ? T(1) : select(passed, T(0), T(1));
+    }
+  }
+)";
+
+constexpr const char* resolutions = R"(
+  // Raises the resolutions of the rows to those at these accelerations, for steps of about h.
+  static void raise_resolutions(State& s, const Velocity (&a)[bodies], const T& h) {
+    T of_value[bounded], of_rate[bounded], of_force[bounded];
+    resolve($ss.q, s.time, s.v, a, s.modes.force, h, of_value, of_rate, of_force);
+    for (int i = 0; i < bounded; ++i) {
+      s.modes.of_value[i] = T(slight) * of_value[i];
+      s.modes.of_rate[i] = larger(s.modes.of_rate[i], T(slight) * of_rate[i]);
+      s.modes.of_force[i] = larger(s.modes.of_force[i], T(slight) * of_force[i]);
+    }
+  }
+)";
+
+constexpr const char* stops = R"(
+  // Inelastic impacts: rows that close at their end stop by impulses. True for those that have one.
+  static void stop_what_hits(State& s, Mask (&stopped)[bounded]) {{
+    Guards G;
+    Bounded B;
+    guard($ss.q, s.time, s.v, G);
+    Mask hits = T(1) < T(0);
+    for (int i = 0; i < bounded; ++i) {{
+      stopped[i] = T(1) < T(0);
+      const T bound = select(G.missing[i] > T(0), G.high[i], G.low[i]);
+      const Mask one = has_one_end(G, i), meets = one && gap(G, i) <= s.modes.of_value[i];
+      const Mask drives = is_rate[i] ? !is_equation(G, i) : T(1) < T(0);
+      hits = hits || ((meets || drives) && is_endless(bound) && magnitude(G.missing[i]) > s.modes.of_rate[i]);
+    }}
+    if (!any(hits)) return;
+    reach($ss.q, s.time, {0}B);
+    T hold[bounded], mu[bounded];
+    for (int i = 0; i < bounded; ++i) {{
+      const Mask low = is_endless(G.low[i]), high = is_endless(G.high[i]), one = has_one_end(G, i);
+      const Mask both = low && high, some = is_rate[i] ? low || high : both;
+      const Mask may = (one && gap(G, i) <= s.modes.of_value[i]) || (!one && some);
+      B.low[i] = select(may && low, G.low[i], T(0)), B.high[i] = select(may && high, G.high[i], T(0));
+      B.c[i] = G.missing[i], B.K[i] = entry(B.S, i, i), hold[i] = T(0);
+    }}
+    settle(B, hold, mu);
+    for (int e = 0; e < bounded; ++e) {{
+      stopped[e] = hits && magnitude(mu[e]) > T(0);
+      for (int i = 0; i < bodies; ++i) s.v[i] = choose(stopped[e], s.v[i] + mu[e] * B.g[e][i], s.v[i]);
+    }}
+  }}
+)";
+
+constexpr const char* decides = R"(
+  // Forces and accelerations are complementary: a row stays held if its force lies within its bounds.
+  static void decide(State& s, const Mask (&stopped)[bounded]) {{
+    Guards G;
+    Bounded B;
+    guard($ss.q, s.time, s.v, G);
+    accelerate($ss.q, s.time, s.v, {0}s.a, B);
+    T hold[bounded], force[bounded];
+    for (int i = 0; i < bounded; ++i) {{
+      const Mask both = is_equation(G, i), one = has_one_end(G, i);
+      const Mask slow = stopped[i] || magnitude(G.missing[i]) <= T(4) * s.modes.of_rate[i];
+      const Mask off = one && !(slow && gap(G, i) <= s.modes.of_value[i]), slips = !both && !one && !slow;
+      const Mask up = slips && G.missing[i] > T(0), down = slips && !up;
+      B.low[i] = select(off, T(0), select(up, G.high[i], G.low[i]));
+      B.high[i] = select(off, T(0), select(down, G.low[i], G.high[i]));
+      const T end = select(magnitude(G.low[i]) > T(0), T(1), T(-1));
+      s.hold[i] = select(off, end, select(up, T(1), select(down, T(-1), T(0))));
+      hold[i] = T(0);
+    }}
+    settle(B, hold, force);
+    for (int i = 0; i < bounded; ++i) {{
+      const Mask up = force[i] >= B.high[i], down = force[i] <= B.low[i];
+      const Mask leaves = !is_equation(G, i) && magnitude(s.hold[i]) < T(0.5) && (up || down);
+      const T end = select(magnitude(G.low[i]) > T(0), T(1), T(-1));
+      s.hold[i] = select(leaves, select(has_one_end(G, i), end, select(up, T(1), T(-1))), s.hold[i]);
+    }}
+  }}
+)";
+
+constexpr const char* margins_begin = R"(
+  // How far each row is from its next event, in units of the resolution. Off: C - end. Held: its force from its bounds.
+  // At a bound: the missing rate.
+  static void find_margins(State& s) {
+    Modes& m = s.modes;
+    Guards G;
+    guard($ss.q, s.time, s.v, G);
+    for (int i = 0; i < bounded; ++i) {
+      const T from_bounds = smaller(m.force[i] - G.low[i], G.high[i] - m.force[i]);
+      const T held = from_bounds / (m.of_force[i] + T(slight) * magnitude(m.force[i]));
+      const T slips = select(s.hold[i] > T(0), G.missing[i], -G.missing[i]) / m.of_rate[i];
+      const T bound = select(G.low[i] < G.high[i], slips, T(1e30));
+      const T away = select(has_one_end(G, i), gap(G, i) / m.of_value[i], bound);
+      m.margin[i] = smaller(select(magnitude(s.hold[i]) < T(0.5), held, away), T(1e30));
+    }
+)";
+
+// Where a time is unlimited the distance is no number: no event.
+constexpr const char* margins_of_events = R"(    constexpr bool waits[bounded] = {{{0}}};
+    T after[bounded], until[bounded];
+    distances($ss.q, s.time, s.v, after, until);
+    for (int i = 0; i < bounded; ++i) {{
+      const T near = T(single ? 1e-5 : 1e-10);
+      m.margin[i] = select(s.events.began[i] < T(waits[i] ? 1 : 0), smaller(m.margin[i], after[i] / near), m.margin[i]);
+      m.margin[i] = select(s.events.ended[i] < T(1), smaller(m.margin[i], until[i] / near), m.margin[i]);
+    }}
+)";
+
+constexpr const char* chooses = R"(
+  // The modes from now on, for steps of about h.
+  static void choose_modes(State& s, const T& h) {{
+{1}    for (T& of_row : s.modes.of_rate) of_row = T(0);
+    for (T& of_row : s.modes.of_force) of_row = T(0);
+    Velocity a[bodies];
+    fall($ss.q, s.time, s.v, a);
+    raise_resolutions(s, a, h);
+    Mask stopped[bounded];
+    stop_what_hits(s, stopped);
+    decide(s, stopped);
+    project(s);
+    pull($ss.q, s.time, s.v, {0}s.modes.force, s.a);
+    raise_resolutions(s, s.a, h);
+    find_margins(s);
+    for (int i = 0; i < bounded; ++i) s.modes.chosen[i] = s.modes.margin[i];
+    s.modes.known = T(1);
+  }}
+)";
+
+}  // namespace
+
+const char* const modes_type =
+    R"(  // Of rows with bounds: forces; resolutions, below which a value, a rate or a force counts as 0; how far each row is
+  // from its next event in these units, when its mode was chosen and now.
+  struct Modes {
+    T force[bounded], of_value[bounded], of_rate[bounded], of_force[bounded], chosen[bounded], margin[bounded];
+    T known;  // 1 where the modes are those of the next step
+  };
+  // Of such rows: the distance from their end, what their rates miss, and the bounds of their forces.
+  struct Guards {
+    T off[bounded], missing[bounded], low[bounded], high[bounded];
+  };
+)";
+
+std::string modes_of(const Contents& has, const std::string& waits) {
+  const bool rows = has.rows;
+  std::string text =
+      fmt::format(pulls, rows ? "const Jacobian& J, " : "", rows ? "T (&lambda)[rows], " : "",
+                  rows ? "J, lambda, " : "", rows ? adds_forces : "", rows ? "Jacobian& J, T (&forces)[rows], " : "",
+                  rows ? "    evaluate($pat.q, at.time, J);\n" : "", rows ? "J, hold, forces, " : "hold, ");
+  text += kinds_of_rows;
+  text += resolutions;
+  text += fmt::format(stops, rows ? "s.J, " : "");
+  text += fmt::format(decides, rows ? "s.J, s.lambda, " : "");
+  text += margins_begin;
+  if (has.events) text += fmt::format(margins_of_events, waits);
+  text += "  }\n";
+  return text +
+         fmt::format(chooses, rows ? "s.J, s.hold, s.lambda, " : "s.hold, ", has.events ? "    latch(s);\n" : "");
+}
+
+// As the World does it: runtime/step/step_runge_kutta.cpp and between.cpp.
+const char* const step_by_events = R"(
+  // The margin of the row that is furthest beyond its event, beside that at the choice of the modes.
+  static T furthest(const Modes& m) {
+    T worst = T(0);
+    for (int i = 0; i < bounded; ++i) worst = smaller(worst, m.margin[i] - smaller(m.chosen[i], T(0)));
+    return worst;
+  }
+
+  // Where the first row has just passed its event, between 0 and 1, by linear interpolation.
+  static T first_event(const T (&chosen)[bounded], const T (&before)[bounded], const T (&after)[bounded]) {
+    T first = T(1);
+    for (int i = 0; i < bounded; ++i) {
+      const T aim = smaller(chosen[i], T(0)) - T(2), low = before[i] - aim, high = after[i] - aim;
+      first = select(high < T(0) && low > high, smaller(first, low / (low - high)), first);
+    }
+    return first;
+  }
+
+  // Ends the stride from s to `next` where the first row has just passed its event, in the lanes of `busy`. Every third
+  // round bisects, in case linear interpolation stalls.
+  static void go_to_event(const State& s, State& next, T& length, Mask busy, T& residual) {
+    T low = T(0), high = length, before[bounded], after[bounded];
+    for (int i = 0; i < bounded; ++i) before[i] = s.modes.margin[i], after[i] = next.modes.margin[i];
+    Mask stalls = T(1) < T(0);
+    for (int search = 0; search < 61 && any(busy || stalls); ++search) {
+      const T share = larger(T(0.001), smaller(T(0.999), first_event(s.modes.chosen, before, after)));
+      T at = low + (search % 3 == 2 ? T(0.5) : share) * (high - low);
+      stalls = stalls || (busy && !(at > low && at < high));
+      if (search == 60) stalls = stalls || busy;
+      at = select(stalls, high, at);
+      State there = s;
+      const T error = stride(there, at), furthest_there = furthest(there.modes);
+      const Mask passed = furthest_there < T(-1), ends = stalls || (busy && passed && furthest_there >= T(-3));
+      replace(next, there, ends);
+      length = select(ends, at, length), residual = select(ends, error, residual);
+      busy = busy && !ends, stalls = stalls && !ends;
+      high = select(passed, at, high), low = select(passed, low, at);
+      for (int i = 0; i < bounded; ++i) {
+        after[i] = select(passed, there.modes.margin[i], after[i]);
+        before[i] = select(passed, before[i], there.modes.margin[i]);
+      }
+    }
+  }
+
+  // In strides that end at events; after 32 of them the rest of the step goes on without looking for more. A lane that is
+  // done waits for the others unchanged.
+  static T step(State& s, T h = T(default_step)) {
+    const T start = s.time;
+    T done = T(0), residual = T(0), events = T(0);
+    for (Mask goes_on = T(0) < T(1); any(goes_on);) {
+      const Mask unknown = goes_on && s.modes.known < T(0.5);
+      if (any(unknown)) {
+        State chosen = s;
+        choose_modes(chosen, h);
+        replace(s, chosen, unknown);
+      }
+      State next = s;
+      T length = h - done, error = stride(next, length);
+      const Mask passed = goes_on && furthest(next.modes) < T(-1), meets = passed && events < T(33);
+      if (any(meets)) go_to_event(s, next, length, meets, error);
+      next.modes.known = select(passed, T(0), T(1));
+      done = select(meets, done + length, h);
+      next.time = start + done;
+      replace(s, next, goes_on);
+      residual = select(goes_on, error, residual);
+      events = events + T(1);
+      goes_on = meets && done < h;
+    }
+    return residual;
+  }
+)";
+
+}  // namespace cdot::compile
