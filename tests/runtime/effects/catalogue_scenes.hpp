@@ -24,6 +24,9 @@ struct Scene {
   bool grounded = false;  // b is the ground
   double gravity = 0;     // [m/s^2], down
   double ramp = 0;        // a load on the coordinate grows by it [N/s, N m/s]
+  // The ball lands and rubs. While an impact lasts, friction turns the slip, and so itself. Methods that locate the
+  // impact solve it at once, the others in one step or in two, as it falls: no step removes that difference.
+  bool rubs_as_it_lands = false;
 };
 
 // clang-format off
@@ -66,7 +69,7 @@ inline const std::vector<Scene>& planar_scenes() {
       {"freewheel", Kind::event, {{"most", {2}}}, {.w = -2}},
       {"press_fit", Kind::event, {{"t", {1, 0}}, {"c", {4}}}, {.vx = 1.5}, true},
       {"ratchet", Kind::event, {{"count", {3}}, {"most", {8}}, {"flank", {0.6}}}, {.w = -3}},
-      {"rough_line", Kind::event, {{"n", {0, 1}}, {"radius", {0.2}}, {"mu", {0.3}}}, {.y = 0.6, .vx = 1, .vy = -1}, true, 3},
+      {"rough_line", Kind::event, {{"n", {0, 1}}, {"radius", {0.2}}, {"mu", {0.3}}}, {.y = 0.6, .vx = 1, .vy = -1}, true, 3, 0, true},
       {"spindle", Kind::event, {{"speed", {2}}, {"ramp", {0.5}}, {"most", {1}}}},
       {"tearing_rope", Kind::event, {{"l", {1.3}}, {"strength", {1000}}}},
   };
@@ -101,7 +104,7 @@ inline const std::vector<Scene>& spatial_scenes() {
       {"conveyor", Kind::event, {{"speed", {0.8}}, {"most", {3}}, {"t", {1, 0, 0}}}, {}, true},
       {"end_stops", Kind::event, {{"t", {1, 0, 0}}, {"lower", {-1}}, {"upper", {0.2}}}, {.vx = 0.6}, true},
       {"press_fit", Kind::event, {{"t", {1, 0, 0}}, {"c", {4}}}, {.vx = 1.5}, true},
-      {"rough_plane", Kind::event, {{"f", {0, 1, 0, 1, 0, 0}}, {"radius", {0.2}}, {"mu", {0.3}}}, {.y = 0.6, .vx = 1, .vy = -1}, true, 3},
+      {"rough_plane", Kind::event, {{"f", {0, 1, 0, 1, 0, 0}}, {"radius", {0.2}}, {"mu", {0.3}}}, {.y = 0.6, .vx = 1, .vy = -1}, true, 3, 0, true},
       {"spindle", Kind::event, {{"speed", {3}}, {"ramp", {0.5}}, {"most", {2}}}},
       {"tearing_rope", Kind::event, {{"l", {1.3}}, {"strength", {1000}}}},
   };
