@@ -180,7 +180,7 @@ class EffectReader {
   bool note_functions(const SceneJoint& source, int joint, int place, Effect& effect) {
     for (const auto& [of_place, drive] : record(joint).drives) {
       if (of_place != place) continue;
-      const WrittenProfile* const written = written_profile(drive.profile);
+      const WrittenProfile* const written = written_profile(scene_, drive.profile);
       if (!written) {
         refuse_(source, fmt::format("{}: numbers that follow a function of a program", effect.name));
         return false;

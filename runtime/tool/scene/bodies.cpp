@@ -14,7 +14,7 @@ namespace {
 struct Reading {
   Dimension dimension;
   std::map<std::string, Span>& names;
-  double duration;
+  Scene& scene;
   SceneBody body{};
   std::optional<Inertia> inertia{};
   std::optional<Vec3> axis{};
@@ -132,7 +132,7 @@ void read_load(Entry& body, const char* key, const char* unit, const char* param
                std::optional<NamedValue>& in_time, Reading& to) {
   const auto size = one ? std::nullopt : std::optional<std::size_t>(to.in_space() ? 3 : 2);
   NumberNeed need{unit};
-  need.duration = to.duration;
+  need.scene = &to.scene;
   const auto read = read_numbers_in_time(body, key, size, {}, need);
   if (!read) return;
   if (NamedValue value = named_value(parameter, *read); !value.in_time.empty()) {
@@ -307,7 +307,7 @@ SceneBody defined(const Reading& read) {
 void read_bodies(Entry& top, Scene& scene) {
   std::map<std::string, Span> used{{"world", {}}};
   for (Entry& entry : top.list("body")) {
-    Reading read{scene.dimension, used, scene.duration};
+    Reading read{scene.dimension, used, scene};
     read_keys(entry, body_keys, scene.dimension, read);
     find_inertia(entry, read);
     find_orientation(entry, read);

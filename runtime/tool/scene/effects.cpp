@@ -77,7 +77,7 @@ std::string unit_on(std::string_view unit, std::string_view coordinate) {
 
 // An effect of a spec: { k = 50, most = 3 }, or the number of its only parameter.
 void read_spec(Entry& entry, const std::string& key, const JointType& type, const CoordinateInfo& coordinate,
-               double duration, CoordinateEffects& effects) {
+               Scene& scene, CoordinateEffects& effects) {
   if (!type.acts_on(coordinate.unit)) {
     entry.error(entry.where(key), fmt::format("`{}` acts on coordinates in {}; `{}` is in {}", key,
                                               type.coordinate_unit, coordinate.name, coordinate.unit));
@@ -95,7 +95,7 @@ void read_spec(Entry& entry, const std::string& key, const JointType& type, cons
     if (type.coordinate_uses[k] == CoordinateUse::required) needed.push_back(&type.parameters[k]);
   const auto read = [&](Entry& from, const std::string& name, const ParameterInfo& info) {
     const std::string unit = unit_on(info.unit, coordinate.unit);
-    const NumberNeed need{unit, open_end(info), info.below, duration};
+    const NumberNeed need{unit, open_end(info), info.below, &scene};
     if (const auto number = read_numbers_in_time(from, name, {}, quantity(info), need))
       effect.parameters.push_back(named_value(std::string(info.name), *number));
   };
@@ -126,40 +126,40 @@ bool follows_time(Entry& entry, const EffectKind& kind, bool turns) {
          });
 }
 
-void read_kind(Entry& entry, const EffectKind& kind, const CoordinateInfo& coordinate, double duration,
+void read_kind(Entry& entry, const EffectKind& kind, const CoordinateInfo& coordinate, Scene& scene,
                CoordinateEffects& effects) {
   const bool turns = coordinate.unit == "rad";
   const JointType* const spec = find_coordinate_effect(kind.key);
   if (spec && spec->acts_on(coordinate.unit) && follows_time(entry, kind, turns))
-    read_spec(entry, kind.key, *spec, coordinate, duration, effects);
+    read_spec(entry, kind.key, *spec, coordinate, scene, effects);
   else read_effect(entry, kind, turns, effects);
 }
 
-void read_specs(Entry& entry, const CoordinateInfo& coordinate, double duration, CoordinateEffects& effects) {
+void read_specs(Entry& entry, const CoordinateInfo& coordinate, Scene& scene, CoordinateEffects& effects) {
   for (const JointType& type : coordinate_effects()) {
     const std::string key(type.name);
-    if (!is_key_of_kind(key) && entry.has(key)) read_spec(entry, key, type, coordinate, duration, effects);
+    if (!is_key_of_kind(key) && entry.has(key)) read_spec(entry, key, type, coordinate, scene, effects);
   }
   for (const std::string& key : entry.unread()) {
     const std::string spec = spec_beside(entry, key, {".effect"});
     const JointType* const own = spec.empty() ? nullptr : own_effect_type(entry, key, spec);
-    if (own) read_spec(entry, key, *own, coordinate, duration, effects);
+    if (own) read_spec(entry, key, *own, coordinate, scene, effects);
     else if (!spec.empty()) entry.has(key);
   }
 }
 
 }  // namespace
 
-void read_bonds(Entry& joint, double duration, std::vector<SpecEffect>& to) {
+void read_bonds(Entry& joint, Scene& scene, std::vector<SpecEffect>& to) {
   CoordinateEffects bonds;
   for (const JointType& type : coordinate_effects()) {
     const std::string key(type.name);
-    if (type.acts_on_joint() && joint.has(key)) read_spec(joint, key, type, whole_joint, duration, bonds);
+    if (type.acts_on_joint() && joint.has(key)) read_spec(joint, key, type, whole_joint, scene, bonds);
   }
   for (const std::string& key : joint.unread()) {
     const std::string spec = spec_beside(joint, key, {".effect"});
     const JointType* const own = spec.empty() ? nullptr : own_effect_type(joint, key, spec);
-    if (own && own->acts_on_joint()) read_spec(joint, key, *own, whole_joint, duration, bonds);
+    if (own && own->acts_on_joint()) read_spec(joint, key, *own, whole_joint, scene, bonds);
     else if (own)
       joint.error(joint.where(key), fmt::format("{} acts on a coordinate of a joint", spec),
                   fmt::format("angle.{} = …", key));
@@ -168,7 +168,7 @@ void read_bonds(Entry& joint, double duration, std::vector<SpecEffect>& to) {
   to = std::move(bonds.specs);
 }
 
-void read_effects(Entry& joint, const JointType& type, double duration, std::vector<CoordinateEffects>& to) {
+void read_effects(Entry& joint, const JointType& type, Scene& scene, std::vector<CoordinateEffects>& to) {
   for (const CoordinateInfo& coordinate : type.coordinates) {
     const std::string key(coordinate.name);
     std::optional<Entry> entry = joint.table(key);
@@ -180,8 +180,8 @@ void read_effects(Entry& joint, const JointType& type, double duration, std::vec
       continue;
     }
     CoordinateEffects effects{key};
-    for (const EffectKind* kind : effect_kinds) read_kind(*entry, *kind, coordinate, duration, effects);
-    read_specs(*entry, coordinate, duration, effects);
+    for (const EffectKind* kind : effect_kinds) read_kind(*entry, *kind, coordinate, scene, effects);
+    read_specs(*entry, coordinate, scene, effects);
     entry->close();
     to.push_back(std::move(effects));
   }

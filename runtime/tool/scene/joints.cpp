@@ -26,6 +26,7 @@ std::string number_named(std::size_t count) { return fmt::format("{} {}", count,
 
 struct JointReading {
   const BodyNames& names;
+  Scene& scene;
   std::map<std::string, Span>& used;
   std::string unnamed;
   SceneJoint joint{};
@@ -95,12 +96,12 @@ bool means_coordinates(Entry& joint, const JointType& type, const std::string& k
 
 // The numbers of one parameter in the frame of its body. Nothing if it is wrong or takes its default.
 std::optional<NamedValue> read_parameter(Entry& joint, const ParameterInfo& parameter, int body, std::optional<Vec3> at,
-                                         const BodyNames& names) {
+                                         const BodyNames& names, Scene& scene) {
   const std::string key(parameter.name);
   const bool in_space = names.dimension() == Dimension::spatial, scalar = parameter.kind == ParameterKind::scalar;
   const bool vector = parameter.kind == ParameterKind::point || parameter.kind == ParameterKind::vector;
   if (scalar || (vector && joint.is_array(key))) {
-    const NumberNeed need{parameter.unit, open_end(parameter), parameter.below, names.duration()};
+    const NumberNeed need{parameter.unit, open_end(parameter), parameter.below, &scene};
     const auto size = scalar ? std::nullopt : std::optional<std::size_t>(in_space ? 3 : 2);
     const auto numbers = read_numbers_in_time(joint, key, size, {Sign::any, parameter.unit == "rad"}, need);
     return numbers ? std::optional(named_value(key, *numbers)) : std::nullopt;
@@ -141,7 +142,7 @@ void read_parameters(Entry& joint, const char* key, JointReading& to) {
     const bool own = !means_coordinates(joint, type, std::string(parameter.name));
     const bool given = (own && joint.has(std::string(parameter.name))) || (point && joint.has("at"));
     has_point = has_point || point;
-    const auto value = own ? read_parameter(joint, parameter, body, at, names) : std::nullopt;
+    const auto value = own ? read_parameter(joint, parameter, body, at, names, to.scene) : std::nullopt;
     if (value) {
       definition.parameters.push_back(*value);
     } else if (!given && !parameter.has_default) {
@@ -266,13 +267,13 @@ constexpr Key<SpringReading> spring_keys[] = {
 void read_joints(Entry& top, const BodyNames& names, Scene& scene) {
   std::map<std::string, Span> used;
   for (Entry& entry : top.list("joint")) {
-    JointReading read{names, used, fmt::format("joint{}", scene.joints.size() + 1)};
+    JointReading read{names, scene, used, fmt::format("joint{}", scene.joints.size() + 1)};
     read.joint.where = entry.header();
     read_keys(entry, named, scene.dimension, read);
     if (!read.type) continue;
     read_keys(entry, joint_keys, scene.dimension, read);
-    read_effects(entry, *read.type, scene.duration, read.joint.effects);
-    read_bonds(entry, scene.duration, read.joint.bonds);
+    read_effects(entry, *read.type, scene, read.joint.effects);
+    read_bonds(entry, scene, read.joint.bonds);
     refuse_other_coordinates(entry, *read.type, scene.dimension);
     entry.close();
     scene.joints.push_back(std::move(read.joint));

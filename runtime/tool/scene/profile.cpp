@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <map>
-#include <mutex>
 
 #include "runtime/tool/scene/csv.hpp"
 #include "runtime/tool/scene/read.hpp"
@@ -40,37 +38,9 @@ std::vector<double> times_of(const WrittenProfile& written) {
   return times;
 }
 
-// All that were read, by the hash of their values. Equal hashes are told apart by the values themselves. Scenes may be
-// read by several threads.
-class WrittenProfiles {
- public:
-  static WrittenProfiles& all() {
-    static WrittenProfiles all;
-    return all;
-  }
-  const WrittenProfile* find(const Profile& profile) {
-    const std::lock_guard lock(mutex_);
-    return find_locked(profile);
-  }
-  void note(const Profile& profile, WrittenProfile written) {
-    const std::lock_guard lock(mutex_);
-    if (!find_locked(profile)) by_hash_.emplace(profile.hash(), std::pair(profile, std::move(written)));
-  }
-
- private:
-  const WrittenProfile* find_locked(const Profile& profile) const {
-    const auto [begin, end] = by_hash_.equal_range(profile.hash());
-    for (auto one = begin; one != end; ++one)
-      if (are_equal(profile, one->second.first, times_of(one->second.second))) return &one->second.second;
-    return nullptr;
-  }
-
-  std::mutex mutex_;
-  std::multimap<std::uint64_t, std::pair<Profile, WrittenProfile>> by_hash_;
-};
-
-SceneNumber noted(const Profile& profile, WrittenProfile written) {
-  WrittenProfiles::all().note(profile, std::move(written));
+SceneNumber noted(Scene& scene, WrittenProfile written) {
+  const Profile profile = written.profile;
+  if (!written_profile(scene, profile)) scene.profiles.push_back(std::move(written));
   return {0, profile};
 }
 
@@ -79,7 +49,7 @@ bool keeps_range(const Entry& entry, Span where, const std::string& key, const P
                  const NumberNeed& need) {
   constexpr int samples = 1000;
   for (int k = 0; k <= samples; ++k) {
-    const double time = need.duration * k / samples, value = profile.at(time).value;
+    const double time = need.scene->duration * k / samples, value = profile.at(time).value;
     if (need.above < value && value < need.below) continue;
     if (std::isfinite(value))
       entry.error(where, fmt::format("`{}` is {:.6g} at {:.6g} s: it must be {}", key, value, time, range_of(need)));
@@ -101,7 +71,7 @@ std::optional<SceneNumber> read_expression(const Entry& entry, const std::string
   });
   if (!keeps_range(entry, written.where, key, profile, need)) return {};
   if (read.formula->constant()) return SceneNumber{profile.at(0).value};
-  return noted(profile, {written.text, std::string(need.unit), {}});
+  return noted(*need.scene, {profile, written.text, std::string(need.unit), {}});
 }
 
 template <class Rows>
@@ -135,7 +105,7 @@ std::optional<SceneNumber> read_table_of_numbers(Entry& table, const std::string
                             .beyond = row_named(ends, *beyond).beyond};
     const Profile profile = Profile::table(rows);
     if (!keeps_range(table, table.where("table"), key, profile, need)) return {};
-    return noted(profile, {{}, {}, rows});
+    return noted(*need.scene, {profile, {}, {}, rows});
   } catch (const Error& error) {
     table.error(table.where("table"), fmt::format("table \"{}\" of `{}`: {}", *file, key, error.what()));
     return {};
@@ -144,7 +114,13 @@ std::optional<SceneNumber> read_table_of_numbers(Entry& table, const std::string
 
 }  // namespace
 
-const WrittenProfile* written_profile(const Profile& profile) { return WrittenProfiles::all().find(profile); }
+// A World keeps copies of its profiles, so the values tell.
+const WrittenProfile* written_profile(const Scene& scene, const Profile& profile) {
+  const auto found = std::ranges::find_if(scene.profiles, [&](const WrittenProfile& one) {
+    return one.profile.hash() == profile.hash() && are_equal(profile, one.profile, times_of(one));
+  });
+  return found == scene.profiles.end() ? nullptr : &*found;
+}
 
 Span place_in(Span whole, const std::string& text, const FormulaMistake& mistake) {
   if (whole.end - whole.begin != static_cast<int>(text.size()) + 2) return whole;

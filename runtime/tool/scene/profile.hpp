@@ -9,6 +9,7 @@
 #include <cdot/profile.hpp>
 
 #include "runtime/tool/scene/entry.hpp"
+#include "runtime/tool/scene/scene.hpp"
 
 namespace cdot {
 
@@ -16,7 +17,7 @@ namespace cdot {
 struct NumberNeed {
   std::string_view unit;  // "N*m"
   double above = -std::numeric_limits<double>::infinity(), below = std::numeric_limits<double>::infinity();
-  double duration = 0;  // [s] of the run, over which a function must keep within these
+  Scene* scene = nullptr;  // takes a function, which must keep within these over its duration
 };
 
 struct SceneNumber {
@@ -28,14 +29,6 @@ struct SceneNumber {
 std::optional<std::vector<SceneNumber>> read_numbers_in_time(Entry& entry, const std::string& key,
                                                              std::optional<std::size_t> size, Quantity quantity,
                                                              const NumberNeed& need);
-
-// A function of time as a scene has written it: an expression in a unit, or the rows of a table.
-struct WrittenProfile {
-  std::string text, unit;
-  ProfileTable table;
-};
-// That of a profile which this program has read in a scene; null: in none.
-const WrittenProfile* written_profile(const Profile& profile);
 
 // As a parameter of a joint or an effect.
 NamedValue named_value(std::string name, const std::vector<SceneNumber>& numbers);

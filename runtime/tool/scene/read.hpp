@@ -23,7 +23,6 @@ class BodyNames {
   Vec3 turned_to_body(int body, const Vec3& world_direction) const;
   Vec3 to_world(int body, const Vec3& body_position) const;
   Dimension dimension() const { return scene_->dimension; }
-  double duration() const { return scene_->duration; }  // [s] of the run
 
  private:
   const Scene* scene_;
@@ -47,8 +46,8 @@ std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& 
 Span place_in(Span whole, const std::string& text, const FormulaMistake& mistake);  // tool/scene/profile.cpp
 
 // The effects on the coordinates of a joint, those on the joint itself, and `soft`, which makes it a spring.
-void read_bonds(Entry& joint, double duration, std::vector<SpecEffect>& to);
-void read_effects(Entry& joint, const JointType& type, double duration,
+void read_bonds(Entry& joint, Scene& scene, std::vector<SpecEffect>& to);
+void read_effects(Entry& joint, const JointType& type, Scene& scene,
                   std::vector<CoordinateEffects>& to);  // tool/scene/effects.cpp
 std::optional<Softness> read_softness(Entry& joint, const char* key);
 

@@ -109,6 +109,13 @@ struct Sensor {
   std::vector<Measured> measured;  // by input of the formula; unused for time and the numbers of bodies
 };
 
+// A function of time as a scene has written it: an expression in a unit, or the rows of a table.
+struct WrittenProfile {
+  Profile profile;
+  std::string text, unit;
+  ProfileTable table;
+};
+
 inline constexpr double default_step = 0.001;      // [s] of a scene that names a method without a step
 inline constexpr double default_accuracy = 1e-4;   // of a mechanism's size, and [rad]: of a scene that names no method
 inline constexpr int intervals_of_own_steps = 64;  // of a run whose method chooses its steps: Scene::step is one
@@ -134,8 +141,12 @@ struct Scene {
   std::vector<SceneJoint> joints;
   std::vector<SpringDefinition> springs;
   std::vector<Sensor> sensors;
+  std::vector<WrittenProfile> profiles;    // the functions of time that its numbers follow
   std::shared_ptr<const Mistakes> source;  // to report errors of the World in its lines
 };
+
+// That of a profile which the scene has written; null: of none.
+const WrittenProfile* written_profile(const Scene& scene, const Profile& profile);  // tool/scene/profile.cpp
 
 // Of the bodies and joints that it has so far.
 Measurable measurable_of(const Scene& scene);
