@@ -344,8 +344,10 @@ std::string bounded_of(const std::string& is_rate, const Contents& has) {
   std::string text;
   if (has.closes() || has.bounded) text += largest_row;
   if (!has.bounded) return text;
-  const std::string impulses = when(has.rows, "    T l[bounded][rows];\n") +
-                               when(has.rattle, "    Velocity p[bounded][bodies], u[bounded][bodies];\n");
+  const std::string impulses =
+      when(has.rows, "    T l[bounded][rows];\n") +
+      when(has.loads, "    T by_low[bounded], by_high[bounded];  // what each unit of a load adds to them\n") +
+      when(has.rattle, "    Velocity p[bounded][bodies], u[bounded][bodies];\n");
   return text + fmt::format(bounded_type, impulses, is_rate) + solves_bounded;
 }
 

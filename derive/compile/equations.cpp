@@ -133,6 +133,7 @@ class EquationWriter {
     if (mechanism_.on_accelerations() && !mechanism_.bounded.empty()) {
       out_.has_ends = true;  // held rows, whose ends and rates a projection keeps
       out_.guard = guard_of(blocks_, out_.constants), out_.resolve = resolve_of(blocks_, out_.constants);
+      if (mechanism_.has_loads()) out_.carry = carry_of(blocks_, joints_, out_.constants);
     }
     if (!out_.has_ends) return;
     out_.reach = reach_of(blocks_, joints_, out_.constants);
@@ -162,9 +163,9 @@ class EquationWriter {
 }  // namespace
 
 std::vector<const Program*> programs_of_equations(const Equations& e) {
-  return {&e.evaluate, &e.errors, &e.rates,     &e.accelerate, &e.solve,     &e.apply, &e.aim,    &e.solve_aimed,
-          &e.fall,     &e.kick,   &e.potential, &e.reach,      &e.past,      &e.along, &e.angles, &e.dampen,
-          &e.notice,   &e.look,   &e.finish,    &e.exert,      &e.distances, &e.guard, &e.resolve};
+  return {&e.evaluate, &e.errors, &e.rates,     &e.accelerate, &e.solve,     &e.apply, &e.aim,     &e.solve_aimed,
+          &e.fall,     &e.kick,   &e.potential, &e.reach,      &e.past,      &e.along, &e.angles,  &e.dampen,
+          &e.notice,   &e.look,   &e.finish,    &e.exert,      &e.distances, &e.guard, &e.resolve, &e.carry};
 }
 
 std::set<std::string> functions_of(const Program& program) {

@@ -48,6 +48,7 @@ struct Equations {
   Program along;      // q, v, time -> along: J v
   Program distances;  // q, v, time -> after, until: distances from events
   Program guard;      // by Runge-Kutta methods (methods/modes.hpp): q, v, time -> B
+  Program carry;      // q, time, J, lambda, force -> load: the forces with which bounds grow
   Program resolve;    // q, v, time, a, force, h -> of_value, of_rate, of_force: resolutions
 };
 std::vector<const Program*> programs_of_equations(const Equations& equations);

@@ -76,6 +76,7 @@ class HeaderWriter {
             .exerts = equations_.exerts,
             .carries = carries(),
             .modes = !mechanism_.bounded.empty() && on_accelerations(),
+            .loads = mechanism_.has_loads(),
             .foresees = !equations_.apply.outputs.empty()};
   }
   bool carries() const {
@@ -111,7 +112,8 @@ class HeaderWriter {
     for (const Body& body : mechanism_.bodies) of_bodies += numbers_of(mechanism_, body, has().pulls());
     const long of_rows = long{has().foresees ? 1 + foreseen_by(by_rattle()) : 1} * long(equations_.rows.size()) +
                          long(equations_.stored.size()) + (has().closes() ? 1 : 0) + (has().foresees ? 1 : 0) +
-                         (has().exerts ? 1 : 0) + (has().modes ? 1 + 6 * long(mechanism_.bounded.size()) : 0) +
+                         (has().exerts ? 1 : 0) +
+                         (has().modes ? 1 + (has().loads ? 7 : 6) * long(mechanism_.bounded.size()) : 0) +
                          (has().events ? 3 * long(mechanism_.bounded.size()) : 0);
     return long{sizeof(double)} * (1 + of_bodies + of_rows + long(mechanism_.bounded.size()) +
                                    long(equations_.constants.inputs.size()) + 2 * mechanism_.angles);
@@ -229,15 +231,6 @@ class HeaderWriter {
          {"q", "v", "a", "time", "J", "B", "b", "h", "lambda", "force", "C", "rate", "K", "guess", "given", "end"})
       if (reads(arguments, argument)) line(fmt::format("    (void){};", argument));
     line("  }");
-  }
-
-  // True if a function has the argument, as a constant if it is an array: "const T (&C)[rows]", "const T& h".
-  static bool reads(const std::string& arguments, const std::string& argument) {
-    const std::size_t array = arguments.find("(&" + argument + ")");
-    if (array == std::string::npos)
-      return arguments.find("& " + argument + ",") != std::string::npos || arguments.ends_with("& " + argument + ")");
-    const std::string before = arguments.substr(0, array);
-    return before.find("const", before.rfind(',') + 1) != std::string::npos;
   }
 
   void write_using(const Program& program) {
@@ -360,6 +353,11 @@ class HeaderWriter {
             ", const Velocity (&a)[bodies], const T (&force)[bounded], const T& h, T (&of_value)[bounded], T "
             "(&of_rate)[bounded], T (&of_force)[bounded])",
         equations_.resolve);
+    if (has().loads)
+      write_function("The forces with which bounds grow",
+                     "carry(" + at + (has_rows() ? ", const Jacobian& J, const T (&lambda)[rows]" : "") +
+                         ", const T (&force)[bounded], T (&load)[bounded])",
+                     equations_.carry);
     text_ += modes_of(has(), equations_.waits);
   }
 

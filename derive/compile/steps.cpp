@@ -121,7 +121,7 @@ $W$C    evaluate($ss.q, s.time, s.J);
 constexpr const char* ends_in_modes = R"(    Velocity moves[bodies];
     close(s, at, T(0.5), moves);
 $W$C{0}    project(s);
-    pull($ss.q, s.time, s.v, {1}s.modes.force, s.a);
+    pull($ss.q, s.time, s.v, {1});
     find_margins(s);
     return s.residual;
 )";
@@ -147,26 +147,25 @@ std::string runge_kutta(const Method& method, const char* title, const Contents&
   const bool rows = has.rows;
   std::string text = fmt::format(stages_begin, title, method.stages, rows ? "; then C = 0 and J v = -dC/dt" : "",
                                  rows ? "    T forces[rows];\n" : "");
+  const char* const held = !has.modes ? "" : has.loads ? "s.hold, s.modes.load, " : "s.hold, ";
   for (int stage = 1; stage < method.stages; ++stage) {
     text += fmt::format("    for (int i = 0; i < Slope::size; ++i) now.of[i] = {};\n", combined(method, stage));
     text += "    for (int i = 0; i < bodies; ++i) move(at.q[i], s.q[i], h * now.rate(i));\n";
     text += "    for (int i = 0; i < bodies; ++i) v[i] = s.v[i] + h * now.acceleration(i);\n";
     text += fmt::format("    at.time = s.time + T({}) * h;\n", double(method.c[stage]));
     text += has.spatial ? "    turn(at.q);\n" : "    turn(at.q, s.q);\n";
-    text += fmt::format("    slope($sat, v, {}{}k[{}]);\n", rows ? "s.J, forces, " : "", has.modes ? "s.hold, " : "",
-                        stage);
+    text += fmt::format("    slope($sat, v, {}{}k[{}]);\n", rows ? "s.J, forces, " : "", held, stage);
   }
-  const std::string end =
-      has.modes ? fmt::format(ends_in_modes, rows ? evaluates : "", rows ? "s.J, s.hold, s.lambda, " : "s.hold, ")
-      : rows    ? ends_on_joints
-                : ends_freely;
+  const std::string end = has.modes ? fmt::format(ends_in_modes, rows ? evaluates : "", arguments_of_pull(has))
+                          : rows    ? ends_on_joints
+                                    : ends_freely;
   if (has.modes) text.replace(text.find(step_head), step_head.size(), "stride(State& s, const T& h)");
   return text +
          fmt::format(stages_end, combined(method, method.stages), end,
                      has.gyroscopes
                          ? "    for (int i = 0; i < bodies; ++i) s.q[i].I = at.q[i].I;  // as J, of the last stage\n"
                          : "") +
-         (has.modes ? step_by_events : "");
+         (has.modes ? step_by_events(has) : "");
 }
 
 std::string euler(double tolerance, const Contents& has) {

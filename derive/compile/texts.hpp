@@ -23,6 +23,9 @@ struct Arguments {
 };
 std::string with_arguments(std::string text, const Arguments& given);
 
+// True if a function has the argument, as a constant if it is an array: "const T (&C)[rows]", "const T& h".
+bool reads(const std::string& arguments, const std::string& argument);
+
 inline constexpr const char* guards = R"(
   static constexpr bool single = sizeof(typename NumberOf<T>::type) == 4;
   static constexpr bool is_pack = sizeof(T) != sizeof(typename NumberOf<T>::type);

@@ -16,6 +16,7 @@ struct Contents {
   bool rattle = false, dampens = false, looks = false, finishes = false, exerts = false;
   bool carries = false;   // by RATTLE, forces at the end read the spin of a body whose inertia turns
   bool modes = false;     // of rows with bounds by Runge-Kutta methods
+  bool loads = false;     // bounds of these that grow with loads
   bool foresees = false;  // the multipliers of the next projection, by those of the last steps
   bool projects() const { return rows || modes; }  // velocities
   bool closes() const { return rows || ends; }

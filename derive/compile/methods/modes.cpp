@@ -1,6 +1,9 @@
 #include "derive/compile/methods/modes.hpp"
 
 #include <fmt/format.h>
+#include <string_view>
+
+#include "derive/compile/methods/loads.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -8,25 +11,26 @@ namespace {
 constexpr const char* pulls = R"(
   // Accelerations with the rows in their modes.
   static void pull($dconst Pose (&q)[bodies], const T& time, const Velocity (&v)[bodies], {0}const T (&hold)[bounded],
-                   {1}T (&force)[bounded], Velocity (&a)[bodies]) {{
+                   {1}T (&force)[bounded], {7}Velocity (&a)[bodies]) {{
     Bounded B;
     accelerate($pq, time, v, {2}a, B);
     Mask held[bounded];
-    for (int e = 0; e < bounded; ++e) {{
-      held[e] = magnitude(hold[e]) < T(0.5);
-      force[e] = is_rate[e] ? select(hold[e] > T(0), B.high[e], B.low[e]) : T(0);
-    }}
-    divide(B.S, held, B.c, force);
+    for (int e = 0; e < bounded; ++e) held[e] = magnitude(hold[e]) < T(0.5);
+    const auto solve = [&](T (&now)[bounded]) {{
+      for (int e = 0; e < bounded; ++e) now[e] = is_rate[e] ? select(hold[e] > T(0), B.high[e], B.low[e]) : T(0);
+      divide(B.S, held, B.c, now);
+    }};
+    {8}
     for (int e = 0; e < bounded; ++e) {{
       for (int i = 0; i < bodies; ++i) a[i] = a[i] + force[e] * B.g[e][i];
 {3}    }}
   }}
 
   // The rates of change at a stage of a Runge-Kutta method, whose poses are turned.
-  static void slope($dEvaluated& at, const Velocity (&v)[bodies], {4}const T (&hold)[bounded], Slope& k) {{
+  static void slope($dEvaluated& at, const Velocity (&v)[bodies], {4}const T (&hold)[bounded], {7}Slope& k) {{
 $w{5}    T force[bounded];
     Velocity a[bodies];
-    pull($pat.q, at.time, v, {6}force, a);
+    pull($pat.q, at.time, v, {6}force, {9}a);
     for (int i = 0; i < bodies; ++i) k.set(i, rate_of(at.q[i], v[i]), a[i]);
   }}
 )";
@@ -92,12 +96,15 @@ constexpr const char* stops = R"(
       const Mask both = low && high, some = is_rate[i] ? low || high : both;
       const Mask may = (one && gap(G, i) <= s.modes.of_value[i]) || (!one && some);
       B.low[i] = select(may && low, G.low[i], T(0)), B.high[i] = select(may && high, G.high[i], T(0));
-      B.c[i] = G.missing[i], B.K[i] = entry(B.S, i, i), hold[i] = T(0);
-    }}
-    settle(B, hold, mu);
-    for (int e = 0; e < bounded; ++e) {{
-      stopped[e] = hits && magnitude(mu[e]) > T(0);
-      for (int i = 0; i < bodies; ++i) s.v[i] = choose(stopped[e], s.v[i] + mu[e] * B.g[e][i], s.v[i]);
+      B.c[i] = G.missing[i], B.K[i] = entry(B.S, i, i);
+{1}    }}
+    const auto solve = [&](T (&now)[bounded]) {{
+      for (T& of_row : hold) of_row = T(0);
+      settle(B, hold, now);
+    }};
+{2}    for (int e = 0; e < bounded; ++e) {{
+      stopped[e] = hits && magnitude(mu[e]) > T(0){3};
+      for (int i = 0; i < bodies; ++i) s.v[i] = choose(hits, s.v[i] + mu[e] * B.g[e][i], s.v[i]);
     }}
   }}
 )";
@@ -119,15 +126,18 @@ constexpr const char* decides = R"(
       B.high[i] = select(off, T(0), select(down, G.low[i], G.high[i]));
       const T end = select(magnitude(G.low[i]) > T(0), T(1), T(-1));
       s.hold[i] = select(off, end, select(up, T(1), select(down, T(-1), T(0))));
-      hold[i] = T(0);
-    }}
-    settle(B, hold, force);
+{1}    }}
+    const auto solve = [&](T (&now)[bounded]) {{
+      for (T& of_row : hold) of_row = T(0);
+      settle(B, hold, now);
+    }};
+    {2}
     for (int i = 0; i < bounded; ++i) {{
       const Mask up = force[i] >= B.high[i], down = force[i] <= B.low[i];
-      const Mask leaves = !is_equation(G, i) && magnitude(s.hold[i]) < T(0.5) && (up || down);
+      const Mask leaves = !is_equation(G, i) && magnitude(s.hold[i]) < T(0.5) && (up || down){4};
       const T end = select(magnitude(G.low[i]) > T(0), T(1), T(-1));
       s.hold[i] = select(leaves, select(has_one_end(G, i), end, select(up, T(1), T(-1))), s.hold[i]);
-    }}
+{3}    }}
   }}
 )";
 
@@ -138,6 +148,7 @@ constexpr const char* margins_begin = R"(
     Modes& m = s.modes;
     Guards G;
     guard($ss.q, s.time, s.v, G);
+    grow(G, m);
     for (int i = 0; i < bounded; ++i) {
       const T from_bounds = smaller(m.force[i] - G.low[i], G.high[i] - m.force[i]);
       const T held = from_bounds / (m.of_force[i] + T(slight) * magnitude(m.force[i]));
@@ -171,7 +182,7 @@ constexpr const char* chooses = R"(
     stop_what_hits(s, stopped);
     decide(s, stopped);
     project(s);
-    pull($ss.q, s.time, s.v, {0}s.modes.force, s.a);
+    pull($ss.q, s.time, s.v, {0});
     raise_resolutions(s, s.a, h);
     find_margins(s);
     for (int i = 0; i < bounded; ++i) s.modes.chosen[i] = s.modes.margin[i];
@@ -179,40 +190,115 @@ constexpr const char* chooses = R"(
   }}
 )";
 
-}  // namespace
-
-const char* const modes_type =
+constexpr const char* types =
     R"(  // Of rows with bounds: forces; resolutions, below which a value, a rate or a force counts as 0; how far each row is
   // from its next event in these units, when its mode was chosen and now.
-  struct Modes {
+  struct Modes {{
     T force[bounded], of_value[bounded], of_rate[bounded], of_force[bounded], chosen[bounded], margin[bounded];
     T known;  // 1 where the modes are those of the next step
-  };
+{0}  }};
   // Of such rows: the distance from their end, what their rates miss, and the bounds of their forces.
-  struct Guards {
+  struct Guards {{
     T off[bounded], missing[bounded], low[bounded], high[bounded];
-  };
+{1}  }};
 )";
 
-std::string modes_of(const Contents& has, const std::string& waits) {
-  const bool rows = has.rows;
-  std::string text =
-      fmt::format(pulls, rows ? "const Jacobian& J, " : "", rows ? "T (&lambda)[rows], " : "",
-                  rows ? "J, lambda, " : "", rows ? adds_forces : "", rows ? "Jacobian& J, T (&forces)[rows], " : "",
-                  rows ? "    evaluate($pat.q, at.time, J);\n" : "", rows ? "J, hold, forces, " : "hold, ");
-  text += kinds_of_rows;
-  text += resolutions;
-  text += fmt::format(stops, rows ? "s.J, " : "");
-  text += fmt::format(decides, rows ? "s.J, s.lambda, " : "");
-  text += margins_begin;
-  if (has.events) text += fmt::format(margins_of_events, waits);
-  text += "  }\n";
-  return text +
-         fmt::format(chooses, rows ? "s.J, s.hold, s.lambda, " : "s.hold, ", has.events ? "    latch(s);\n" : "");
+// As project() does it for rows that are held.
+constexpr const char* stops_jammed =
+    "      s.hold[i] = select(jams && is_loaded(B, i), T(0), s.hold[i]);  // by an impulse\n";
+
+constexpr const char* grows = R"(
+  // The bounds with the loads.
+  static void grow(Guards& G, const Modes& m) {
+    for (int i = 0; i < bounded; ++i) {
+      G.low[i] = G.low[i] + G.by_low[i] * m.load[i], G.high[i] = G.high[i] + G.by_high[i] * m.load[i];
+    }
+  }
+  // A row that jams has no load.
+  static void forget_jammed(Modes& m) {
+    for (const T& load : m.load) m.known = select(load < T(0), T(0), m.known);
+  }
+)";
+
+// Rows that a load moves get bounds of impulses by it; a row that slips in the impact is not stopped.
+constexpr const char* impacts_by_load = "      B.by_low[i] = G.by_low[i], B.by_high[i] = G.by_high[i];\n";
+constexpr const char* settles_impact = R"(    T load[bounded];
+    for (T& of_row : load) of_row = T(0);
+    {}settle_loads($ss.q, s.time, {}B, mu, load, solve);
+)";
+constexpr const char* unless_it_slips = " && (!is_loaded(B, e) || (B.low[e] < mu[e] && mu[e] < B.high[e]))";
+constexpr const char* bounds_by_load = R"(      B.by_low[i] = select(off, T(0), select(up, G.by_high[i], G.by_low[i]));
+      B.by_high[i] = select(off, T(0), select(down, G.by_low[i], G.by_high[i]));
+)";
+
+// A stage goes on as if the row were held, and the next stride chooses anew.
+constexpr const char* holds_jammed = R"(
+    if (any(jams)) {
+      T now[bounded];
+      for (int e = 0; e < bounded; ++e) {
+        const Mask jammed = jams && is_loaded(B, e);
+        held[e] = held[e] || jammed, load[e] = select(jammed, T(-1), load[e]);
+      }
+      solve(now);
+      for (int e = 0; e < bounded; ++e) force[e] = select(jams, now[e], force[e]);
+    })";
+std::string pull_of(const Contents& has) {
+  const bool rows = has.rows, loads = has.loads;
+  return fmt::format(pulls, rows ? "const Jacobian& J, " : "", rows ? "T (&lambda)[rows], " : "",
+                     rows ? "J, lambda, " : "", rows ? adds_forces : "", rows ? "Jacobian& J, T (&forces)[rows], " : "",
+                     rows ? "    evaluate($pat.q, at.time, J);\n" : "", rows ? "J, hold, forces, " : "hold, ",
+                     loads ? "T (&load)[bounded], " : "",
+                     loads ? fmt::format("const Mask jams = settle_loads($pq, time, {}B, force, load, solve);{}",
+                                         rows ? "J, lambda, " : "", holds_jammed)
+                           : "solve(force);",
+                     loads ? "load, " : "");
 }
 
+std::string stops_of(const Contents& has) {
+  const std::string J = has.rows ? "s.J, " : "";
+  if (!has.loads) return fmt::format(stops, J, "", "    solve(mu);\n", "");
+  const std::string none = has.rows ? "T none[rows];\n    for (T& of_row : none) of_row = T(0);\n    " : "";
+  return fmt::format(stops, J, impacts_by_load, fmt::format(settles_impact, none, has.rows ? "s.J, none, " : ""),
+                     unless_it_slips);
+}
+
+std::string decides_of(const Contents& has) {
+  const std::string J = has.rows ? "s.J, s.lambda, " : "";
+  return fmt::format(decides, J, has.loads ? bounds_by_load : "",
+                     has.loads
+                         ? "const Mask jams = settle_loads($ss.q, s.time, " + J + "B, force, s.modes.load, solve);"
+                         : "solve(force);",
+                     has.loads ? stops_jammed : "", has.loads ? " && !jams" : "");
+}
+
+}  // namespace
+
+std::string modes_types(const Contents& has) {
+  return fmt::format(types, has.loads ? "    T load[bounded];  // forces with which bounds grow\n" : "",
+                     has.loads ? "    T by_low[bounded], by_high[bounded];  // what each unit of a load adds\n" : "");
+}
+
+std::string arguments_of_pull(const Contents& has) {
+  return std::string(has.rows ? "s.J, s.hold, s.lambda, " : "s.hold, ") + "s.modes.force, " +
+         (has.loads ? "s.modes.load, " : "") + "s.a";
+}
+
+std::string modes_of(const Contents& has, const std::string& waits) {
+  std::string text = pull_of(has) + kinds_of_rows + resolutions;
+  if (has.loads) text += grows + settle_loads_of(has);
+  text += stops_of(has) + decides_of(has);
+  std::string margins = margins_begin;
+  const std::string_view growing = "    grow(G, m);\n";
+  if (!has.loads) margins.erase(margins.find(growing), growing.size());
+  text += margins;
+  if (has.events) text += fmt::format(margins_of_events, waits);
+  return text + "  }\n" + fmt::format(chooses, arguments_of_pull(has), has.events ? "    latch(s);\n" : "");
+}
+
+namespace {
+
 // As the World does it: runtime/step/step_runge_kutta.cpp and between.cpp.
-const char* const step_by_events = R"(
+constexpr const char* steps = R"(
   // The margin of the row that is furthest beyond its event, beside that at the choice of the modes.
   static T furthest(const Modes& m) {
     T worst = T(0);
@@ -273,6 +359,7 @@ const char* const step_by_events = R"(
       const Mask passed = goes_on && furthest(next.modes) < T(-1), meets = passed && events < T(33);
       if (any(meets)) go_to_event(s, next, length, meets, error);
       next.modes.known = select(passed, T(0), T(1));
+      forget_jammed(next.modes);
       done = select(meets, done + length, h);
       next.time = start + done;
       replace(s, next, goes_on);
@@ -283,5 +370,15 @@ const char* const step_by_events = R"(
     return residual;
   }
 )";
+
+constexpr std::string_view forgets_jams = "      forget_jammed(next.modes);\n";
+
+}  // namespace
+
+std::string step_by_events(const Contents& has) {
+  std::string text = steps;
+  if (!has.loads) text.erase(text.find(forgets_jams), forgets_jams.size());
+  return text;
+}
 
 }  // namespace cdot::compile

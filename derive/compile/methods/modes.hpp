@@ -8,11 +8,13 @@
 
 namespace cdot::compile {
 
-// The members of a State, and their types.
-extern const char* const modes_type;
+// Types of a State's member `modes`, and of what is known of each row.
+std::string modes_types(const Contents& has);
 // The mode of each row, and accelerations in these modes; waits: of each row whether it waits for an event.
 std::string modes_of(const Contents& has, const std::string& waits);
+// Those of pull(), after the pose, the time and the velocities of a State.
+std::string arguments_of_pull(const Contents& has);
 // step(), which ends strides at events.
-extern const char* const step_by_events;
+std::string step_by_events(const Contents& has);
 
 }  // namespace cdot::compile

@@ -52,7 +52,7 @@ std::string of_rows(const Mechanism& mechanism, const Contents& has) {
 
 std::string state_of(const Mechanism& mechanism, const Contents& has, bool inputs) {
   std::string text =
-      std::string(has.modes ? modes_type : "") + state_begins + of_bodies(mechanism, has) + of_rows(mechanism, has);
+      (has.modes ? modes_types(has) : "") + state_begins + of_bodies(mechanism, has) + of_rows(mechanism, has);
   if (has.modes) text += "    Modes modes;\n";
   if (inputs) text += "    Inputs p;\n";
   if (has.angles) text += "    Angles angles;\n";

@@ -65,6 +65,65 @@ double Algebra::at_start(int op) {
   return at_start_[op] = value;
 }
 
+int Algebra::by_time(int op) {
+  if (const auto known = by_time_.find(op); known != by_time_.end()) return known->second;
+  const Operation o = builder_.at(op);
+  int rate = value(0);
+  if (o.kind == OpKind::input) {
+    const std::string& text = o.input;
+    const std::size_t dot = text.find(").");
+    if (text == "time") rate = value(1);
+    else if (text.starts_with("table_") && text.ends_with(".value")) rate = input(text.substr(0, dot) + ").rate");
+    else if (text.starts_with("table_") && text.ends_with(".rate"))
+      rate = input(text.substr(0, dot) + ").acceleration");
+  } else if (o.kind == OpKind::sum) {
+    Summands terms;
+    for (std::size_t i = 0; i < o.args.size(); ++i) terms.add(o.coefs[i], by_time(o.args[i]));
+    rate = sum(terms);
+  } else if (o.kind == OpKind::product) {
+    Summands terms;
+    for (std::size_t i = 0; i < o.args.size(); ++i) {
+      std::vector<int> factors = o.args, exponents = o.exponents;
+      exponents[i] -= 1;
+      if (exponents[i] == 0) factors[i] = value(1), exponents[i] = 1;
+      factors.push_back(by_time(o.args[i])), exponents.push_back(1);
+      terms.add(Rational(o.exponents[i]), product(factors, exponents));
+    }
+    rate = sum(terms);
+  } else if (o.kind == OpKind::function) {
+    rate = function_by_time(o, op);
+  }
+  return by_time_[op] = rate;
+}
+
+// f = f(x); most of them by x' alone.
+int Algebra::function_by_time(const Operation& f, int op) {
+  const int x = f.args[0], rate = by_time(x);
+  const auto of = [&](Fn fn, int arg) { return function(fn, {arg}); };
+  const auto minus = [&](int arg) { return sum({{arg}, {-1}}); };
+  switch (f.fn) {
+    case Fn::select: return function(Fn::select, {x, by_time(f.args[1]), by_time(f.args[2])});
+    case Fn::atan2: {
+      const int y = x, other = f.args[1];
+      const int turned = sum({{times(other, rate), times(y, by_time(other))}, {1, -1}});
+      return times(turned, of(Fn::inverse, sum({{product({y}, {2}), product({other}, {2})}, {1, 1}})));
+    }
+    case Fn::sqrt: return product({rate, of(Fn::inverse, op), value(0.5)}, {1, 1, 1});
+    case Fn::sin: return times(rate, of(Fn::cos, x));
+    case Fn::cos: return minus(times(rate, of(Fn::sin, x)));
+    case Fn::tan: return times(rate, sum({{value(1), product({op}, {2})}, {1, 1}}));
+    case Fn::sinh: return times(rate, of(Fn::cosh, x));
+    case Fn::cosh: return times(rate, of(Fn::sinh, x));
+    case Fn::exp: return times(rate, op);
+    case Fn::log: return times(rate, of(Fn::inverse, x));
+    case Fn::abs: return times(rate, of(Fn::sign, x));
+    case Fn::inverse:
+    case Fn::pivot: return minus(product({rate, op}, {1, 2}));
+    case Fn::sign: break;
+  }
+  return value(0);
+}
+
 bool Algebra::is_zero(int op) const { return is_number(op) && builder_.at(op).value.is_zero(); }
 
 int Algebra::sum(const Summands& terms, const std::string& name) {

@@ -46,6 +46,8 @@ class Algebra {
   std::map<std::string, int> inlined(const Program& program, const std::function<int(const std::string&)>& input,
                                      const std::string& prefix);
 
+  // Its derivative by the time, with all other inputs fixed.
+  int by_time(int op);
   std::optional<double> constant(int op) const;
   // Its value in the state in which the scene starts.
   double at_start(int op);
@@ -54,11 +56,13 @@ class Algebra {
   Program finish() { return builder_.finish(); }
 
  private:
+  int function_by_time(const Operation& f, int op);
   bool is_number(int op) const { return builder_.at(op).kind == OpKind::number; }
 
   derive::ProgramBuilder builder_;
   std::map<int, double> real_;  // constants that are no numbers of the program
   std::map<int, double> at_start_;
+  std::map<int, int> by_time_;
   Constants& constants_;
 };
 

@@ -111,6 +111,7 @@ void BoundedSystem::output_accelerations(const Values& a) {
     const BoundWriter::Guard guard = rows_[b].guard();
     const int asked = algebra_.sum({{rows_[b].gamma(), guard.acceleration}, {1, 1}});
     output_row(b, algebra_.sum({{asked, rows_[b].along(a)}, {1, -1}}), {zero, zero, guard.low, guard.high});
+    if (blocks_.mechanism().has_loads()) rows_[b].output_by_load();
   }
   output_S({});
 }

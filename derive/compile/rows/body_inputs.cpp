@@ -17,6 +17,15 @@ constexpr const char* axes[] = {"x", "y", "z"};
 // "xy", of the tensor's entry i, j.
 std::string entry_of(std::size_t i, std::size_t j) { return std::string(axes[std::min(i, j)]) + axes[std::max(i, j)]; }
 
+double value_at_start(const Table& table) {
+  double value = table.pieces.front()[0];
+  for (std::size_t k = 0; k < table.times.size(); ++k) {
+    const auto& [a, b, c, d] = table.pieces[k];
+    if (const double t = -table.times[k]; t >= 0) value = a + t * (b + t * (c + t * d));
+  }
+  return value;
+}
+
 double number_of(const Tensor& tensor, std::size_t i, std::size_t j) {
   return tensor[i == j ? i : i + j + 2];  // xx, yy, zz, xy, xz, yz
 }
@@ -55,7 +64,8 @@ void RowBlocks::note_start(Constants& constants) const {
       constants.at_start[derive::element(array, static_cast<std::size_t>(k))] = 0;
   for (std::size_t k = 0; k < mechanism_.tables.size(); ++k)
     for (const std::string_view derivative : {"value", "rate", "acceleration"})
-      constants.at_start[fmt::format("table_{}(time).{}", k, derivative)] = 0;  // in no effective mass
+      constants.at_start[fmt::format("table_{}(time).{}", k, derivative)] =
+          derivative == "value" ? value_at_start(mechanism_.tables[k]) : 0;  // rates are in no effective mass
   for (std::size_t b = 0; b < mechanism_.bounded.size(); ++b) constants.at_start[derive::element("events.acts", b)] = 1;
   constants.at_start["time"] = 0, constants.at_start["h"] = mechanism_.step;
 }

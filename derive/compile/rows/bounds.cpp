@@ -53,6 +53,7 @@ Program guard_of(const RowBlocks& blocks, Constants& constants) {
     algebra.output("B." + element("missing", b), missing);
     algebra.output("B." + element("low", b), guard.low);
     algebra.output("B." + element("high", b), guard.high);
+    if (blocks.mechanism().has_loads()) row.output_by_load();
   }
   return algebra.finish();
 }
@@ -64,6 +65,46 @@ Program resolve_of(const RowBlocks& blocks, Constants& constants) {
     algebra.output(element("of_value", b), resolution.value);
     algebra.output(element("of_rate", b), resolution.rate);
     algebra.output(element("of_force", b), resolution.force);
+  }
+  return algebra.finish();
+}
+
+namespace {
+
+// The resultant force of a joint's rows, by the linear columns of its last body that moves.
+int force_of(const RowBlocks& blocks, const JointRows& joints, Algebra& algebra, int joint) {
+  const Mechanism& all = blocks.mechanism();
+  const RowSystem& system = joints.system();
+  std::size_t k = 0;
+  while (system.blocks()[k].name != blocks.joint(static_cast<std::size_t>(joint)).name) ++k;
+  const RowBlock& block = system.blocks()[k];
+  std::size_t last = block.bodies->size() - 1;
+  while (last > 0 && !all.bodies[static_cast<std::size_t>((*block.bodies)[last])].moves) --last;
+  const Values J = blocks.call(algebra, block, "dense", joints.inputs(algebra, k));
+  Summands squares;
+  for (std::size_t c = 0; c < all.linear(); ++c) {
+    Summands force;
+    for (std::size_t r = 0; r < block.rows->count(); ++r)
+      force.add(1, algebra.times(J.at(element(element("D", r), all.columns() * last + c)),
+                                 algebra.input(element("lambda", system.first_row(k) + r))));
+    squares.add(1, algebra.product({algebra.sum(force)}, {2}));
+  }
+  return algebra.function(Fn::sqrt, {algebra.sum(squares)});
+}
+
+}  // namespace
+
+Program carry_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants) {
+  Algebra algebra(constants);
+  for (std::size_t b = 0; b < blocks.mechanism().bounded.size(); ++b) {
+    const Effect& effect = blocks.mechanism().bounded[b];
+    int load = algebra.value(0);
+    if (effect.loaded_by_row >= 0) {
+      const std::string force = element("force", static_cast<std::size_t>(effect.loaded_by_row));
+      load = algebra.function(Fn::abs, {algebra.input(force)});
+    }
+    if (effect.loaded_by_joint >= 0) load = force_of(blocks, joints, algebra, effect.loaded_by_joint);
+    algebra.output(element("load", b), load);
   }
   return algebra.finish();
 }
@@ -151,6 +192,22 @@ BoundWriter::Guard BoundWriter::guard() const {
   return guard;
 }
 
+BoundWriter::ByLoad BoundWriter::by_load() const {
+  const int zero = algebra_.value(0);
+  if (!effect_.is_loaded()) return {zero, zero};
+  const Values B = law_.call(*law_.spec().bounded[effect_.row].by_load);
+  ByLoad by{bound(B, "B.lower", 0), bound(B, "B.upper", 0)};
+  if (has_events(blocks_, number_))
+    for (int* number : {&by.low, &by.high}) *number = algebra_.function(Fn::select, {acts(), *number, zero});
+  return by;
+}
+
+void BoundWriter::output_by_load() const {
+  const ByLoad by = by_load();
+  algebra_.output("B." + element("by_low", number_), by.low);
+  algebra_.output("B." + element("by_high", number_), by.high);
+}
+
 BoundWriter::Guard BoundWriter::guard_while_it_acts() const {
   const Values B = bounds();
   const int zero = algebra_.value(0), least = algebra_.value(-boundless), most = algebra_.value(boundless);
@@ -173,16 +230,31 @@ BoundWriter::Guard BoundWriter::guard_while_it_acts() const {
 //   force  (dJv/dt + rate^2 / c) / K
 // dJv/dt: the larger of the sum of all |J dv/dt|, angular accelerations being at least linear / size, and K |force|.
 BoundWriter::Resolution BoundWriter::resolution() const {
+  const auto inverse = [&](int x) { return algebra_.function(Fn::inverse, {x}); };
+  const Sizes sizes = sizes_of_terms();
+  const int size = algebra_.value(effect_.size), c = algebra_.function(Fn::select, {sizes.value, sizes.value, size});
+  const int K_own = blocks_.call(algebra_, block_, "effective_mass", in_).at(derive::triangle_element("K", 0, 0));
+  const int K = algebra_.function(Fn::select, {K_own, K_own, algebra_.sum(sizes.masses)});
+  const int force = algebra_.function(Fn::abs, {algebra_.input(element("force", number_))});
+  const int acceleration = law_.most(algebra_.sum(sizes.accelerations), algebra_.times(K, force));
+  const int least =
+      algebra_.product({algebra_.input("T(epsilon / slight)"), c, inverse(algebra_.input("h"))}, {1, 1, 1});
+  const int by_way = algebra_.function(Fn::sqrt, {algebra_.times(acceleration, c)});
+  const int rate = law_.most(law_.most(algebra_.sum(sizes.rates), by_way), least);
+  const int way = algebra_.product({rate, inverse(c)}, {2, 1});
+  return {c, rate, algebra_.times(algebra_.sum({{acceleration, way}, {1, 1}}), inverse(K))};
+}
+
+BoundWriter::Sizes BoundWriter::sizes_of_terms() const {
   const Mechanism& all = blocks_.mechanism();
   const Values J = blocks_.call(algebra_, block_, "dense", in_);
   const int size = algebra_.value(effect_.size), zero = algebra_.value(0);
-  int c = zero;
-  Summands rates, accelerations, masses;
+  Sizes sizes{zero, {}, {}, {}};
   for (std::size_t k = 0; k < block_.bodies->size(); ++k) {
     const int index = (*block_.bodies)[k];
     const Body& body = all.bodies[static_cast<std::size_t>(index)];
     if (!body.moves) continue;
-    masses.add(1, algebra_.value(body.inv_m));
+    sizes.masses.add(1, algebra_.value(body.inv_m));
     int linear = zero;
     for (std::size_t i = 0; i < all.columns(); ++i) {
       const auto speed = [&](const char* array) {
@@ -193,22 +265,13 @@ BoundWriter::Resolution BoundWriter::resolution() const {
       const int j = algebra_.function(Fn::abs, {J.at(element(element("D", 0), all.columns() * k + i))}),
                 dv = speed("a");
       if (straight) linear = law_.most(linear, dv);
-      c = law_.most(c, straight ? algebra_.times(j, size) : j);
-      rates.add(1, algebra_.times(j, speed("v")));
+      sizes.value = law_.most(sizes.value, straight ? algebra_.times(j, size) : j);
+      sizes.rates.add(1, algebra_.times(j, speed("v")));
       const int per_size = algebra_.times(linear, algebra_.value(1 / effect_.size));
-      accelerations.add(1, algebra_.times(j, straight ? dv : law_.most(dv, per_size)));
+      sizes.accelerations.add(1, algebra_.times(j, straight ? dv : law_.most(dv, per_size)));
     }
   }
-  c = algebra_.function(Fn::select, {c, c, size});
-  const int K_own = blocks_.call(algebra_, block_, "effective_mass", in_).at(derive::triangle_element("K", 0, 0));
-  const int K = algebra_.function(Fn::select, {K_own, K_own, algebra_.sum(masses)});
-  const int force = algebra_.function(Fn::abs, {algebra_.input(element("force", number_))});
-  const int acceleration = law_.most(algebra_.sum(accelerations), algebra_.times(K, force));
-  const int least = algebra_.product({algebra_.input("T(epsilon / slight)"), c, algebra_.input("h")}, {1, 1, -1});
-  const int rate =
-      law_.most(law_.most(algebra_.sum(rates), algebra_.function(Fn::sqrt, {algebra_.times(acceleration, c)})), least);
-  const int way = algebra_.product({rate, c}, {2, -1});
-  return {c, rate, algebra_.times(algebra_.sum({{acceleration, way}, {1, 1}}), algebra_.function(Fn::inverse, {K}))};
+  return sizes;
 }
 
 // J v' = rate by a force within its bounds.

@@ -1,6 +1,7 @@
 // A row with bounds as operations: what it asks for in a step of h, and its error.
 #pragma once
 
+#include "derive/compile/rows/joint_rows.hpp"
 #include "derive/compile/rows/laws.hpp"
 #include "derive/kernel/factor.hpp"
 
@@ -28,6 +29,12 @@ class BoundWriter {
   struct Guard {
     int off, rate, low, high, acceleration;
   };
+  // What each unit of a load adds to the bounds of the force.
+  struct ByLoad {
+    int low, high;
+  };
+  ByLoad by_load() const;
+  void output_by_load() const;  // to B.by_low and B.by_high
   Guard guard() const;
   // Resolutions below which its value, its rate and its force count as 0, in units of the relative one.
   struct Resolution {
@@ -42,6 +49,12 @@ class BoundWriter {
  private:
   Kick kick_while_it_acts(int h) const;
   Guard guard_while_it_acts() const;
+  // The largest change of C by the mechanism's size and 1 rad; the terms |J v|, |J dv/dt| and 1/m.
+  struct Sizes {
+    int value;
+    Summands rates, accelerations, masses;
+  };
+  Sizes sizes_of_terms() const;
   int past_while_it_acts() const;
   int acts() const { return algebra_.input(derive::element("events.acts", number_)); }
   bool is_rate() const;
@@ -75,6 +88,8 @@ Program guard_of(const RowBlocks& blocks, Constants& constants);
 // q, v, time, a, force, h -> of_value, of_rate, of_force: resolutions of C, its rate and the force of each row, in
 // units of the relative one.
 Program resolve_of(const RowBlocks& blocks, Constants& constants);
+// q, time, J, lambda, force -> load: the force with which the bounds of each row grow.
+Program carry_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
 // True for a row with ends, or one that holds a value.
 bool has_ends(const RowBlocks& blocks, std::size_t bounded);
 

@@ -38,7 +38,8 @@ Program JointRows::evaluate(Constants& constants, std::vector<std::string>& stor
       in["J." + field] = J.at("J." + field);
       J_[k][field] = store(joint.name + "_" + field, in["J." + field]);
     }
-    const Values C_t = joint.rows->has_rates ? blocks_.call(algebra, joint, "time_derivative", in) : Values{};
+    const Values C_t =
+        joint.rows->has_rates || joint.in_time ? blocks_.call(algebra, joint, "time_derivative", in) : Values{};
     for (std::size_t r = 0, row = system_.first_row(k); r < joint.rows->count(); ++r, ++row) {
       Summands drift;
       if (!C_t.empty()) drift.add(1, C_t.at(derive::element("C_t", r)));

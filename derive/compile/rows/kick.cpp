@@ -221,7 +221,7 @@ Program reach_of(const RowBlocks& blocks, const JointRows& joints, Constants& co
   bounded.answer(
       answers, joints.system().size(),
       [&](std::size_t b) { return blocks.mechanism().on_accelerations() || has_ends(blocks, b); },
-      BoundedSystem::Outputs::velocities);
+      blocks.mechanism().has_loads() ? BoundedSystem::Outputs::impulses : BoundedSystem::Outputs::velocities);
   bounded.output_S({});
   return algebra.finish();
 }

@@ -50,8 +50,11 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
     const Joint& joint = mechanism.joints[j];
     const SpecPrograms& spec = types_.at(joint.type);
     joints_.push_back({names.joints[j], names.joints[j], &spec, &spec.rows, &joint.bodies, &joint.parameters});
+    if (!joint.in_time.empty()) joints_.back().in_time = &joint.in_time;
+    check_time(joints_.back(), joint.name);
     if (joint.coordinate.empty()) continue;
     joints_.back().owner = owner_of(names.joints[j], joint.name);
+    joints_.back().in_time = functions_of(joint.name);
     joints_.back().rows = &spec.coordinates.at(joint.coordinate);
     joints_.back().motor = &joint;
   }
@@ -74,6 +77,21 @@ std::string RowBlocks::law_of(const Effect& effect) const {
   return (mechanism_.spatial() && !effect.coordinate.empty() ? "planar/" : "") + effect.law_type;
 }
 
+const std::map<std::size_t, InTime>* RowBlocks::functions_of(const std::string& effect) const {
+  const auto owns = [&](const Joint& joint) { return effect.starts_with(joint.name + ".") && !joint.in_time.empty(); };
+  const auto joint = std::ranges::find_if(mechanism_.joints, owns);
+  return joint == mechanism_.joints.end() ? nullptr : &joint->in_time;
+}
+
+// A derivative by the time at fixed parameters would count twice.
+void RowBlocks::check_time(const RowBlock& block, const std::string& name) {
+  if (block.in_time && derive::inputs_read(block.rows->function("position"), {}).contains("time"))
+    throw std::runtime_error(
+        fmt::format("{}: cdot compile knows no joint that reads the time and has numbers that "
+                    "follow functions of it. Fix: leave it to cdot-run",
+                    name));
+}
+
 std::string RowBlocks::owner_of(const std::string& name, const std::string& effect) const {
   const auto owns = [&](const Joint& joint) { return effect.starts_with(joint.name + "."); };
   const auto joint = std::ranges::find_if(mechanism_.joints, owns);
@@ -86,10 +104,11 @@ RowBlock RowBlocks::block_of(const std::string& name, const Effect& effect) cons
   const SpecPrograms& spec = types_.at(effect.type);
   const bool own = effect.coordinate.empty() && effect.law == Effect::bound;
   const std::string& coordinate = own ? spec.bounded[effect.row].coordinate : effect.coordinate;
-  const RowBlock block{name,           effect.coordinate.empty() ? name : owner_of(name, effect.name),
-                       &spec,          coordinate.empty() ? &spec.rows : &spec.coordinates.at(coordinate),
-                       &effect.bodies, &effect.parameters};
+  RowBlock block{name,           effect.coordinate.empty() ? name : owner_of(name, effect.name),
+                 &spec,          coordinate.empty() ? &spec.rows : &spec.coordinates.at(coordinate),
+                 &effect.bodies, &effect.parameters};
   if (effect.coordinate.empty()) check_functions(effect, block);
+  else block.in_time = functions_of(effect.name);
   return block;
 }
 
@@ -137,7 +156,10 @@ Values RowBlocks::inputs(Algebra& algebra, const RowBlock& block) const {
   for (std::size_t k = 0; k < spec.bodies.size(); ++k) add_body(algebra, in, spec.bodies[k], (*block.bodies)[k]);
   for (std::size_t p = 0; p < spec.parameters.size(); ++p) {
     const std::string& field = spec.parameters[p];
-    in[field] = algebra.value((*block.parameters)[p], constant_name(block, field));
+    const std::string name = constant_name(block, field);
+    const bool follows = block.in_time && block.in_time->contains(p);
+    in[field] =
+        follows ? in_time(algebra, block.in_time->at(p), "value", name) : algebra.value((*block.parameters)[p], name);
   }
   in["pi"] = algebra.value(3.14159265358979323846);
   in["time"] = algebra.input("time");
@@ -152,8 +174,31 @@ Values RowBlocks::inputs_with_jacobian(Algebra& algebra, const RowBlock& block) 
 }
 
 Values RowBlocks::call(Algebra& algebra, const RowBlock& block, const std::string& function, const Values& in) const {
+  if (block.in_time && (function == "time_derivative" || function == "gamma"))
+    return call_in_time(algebra, block, function, in);
   return algebra.inlined(
       block.rows->function(function), [&](const std::string& text) { return in.at(text); }, block.name);
+}
+
+// dC/dt = C_t, gamma = gamma at fixed parameters - 2 d(J v)/dt - C_tt, with derivatives at fixed poses and velocities.
+Values RowBlocks::call_in_time(Algebra& algebra, const RowBlock& block, const std::string& function, Values in) const {
+  const Values C = call(algebra, block, "position", in);
+  const bool first = function == "time_derivative";
+  Values out, Jv;
+  if (!first) {
+    out = algebra.inlined(
+        block.rows->function(function), [&](const std::string& text) { return in.at(text); }, block.name);
+    for (const auto& [name, op] : call(algebra, block, "jacobian", in)) in[name] = op;
+    Jv = call(algebra, block, "velocity", in);
+  }
+  for (std::size_t r = 0; r < block.rows->count(); ++r) {
+    const int C_t = algebra.by_time(C.at(element("C", r)));
+    if (first) out[element("C_t", r)] = C_t;
+    else
+      out[element("g", r)] = algebra.sum(
+          {{out.at(element("g", r)), algebra.by_time(Jv.at(element("Jv", r))), algebra.by_time(C_t)}, {1, -2, -1}});
+  }
+  return out;
 }
 
 // With masses of 1 and bodies at rest, the velocities after the impulses are the forces.

@@ -28,7 +28,8 @@ struct RowBlock {
   const RowPrograms* rows = nullptr;
   const std::vector<int>* bodies = nullptr;
   const std::vector<double>* parameters = nullptr;
-  const Joint* motor = nullptr;  // whose speed is the rate of its row
+  const Joint* motor = nullptr;                            // whose speed is the rate of its row
+  const std::map<std::size_t, InTime>* in_time = nullptr;  // parameters that follow functions of time; null: none
 };
 
 // Forces by body and column.
@@ -83,8 +84,13 @@ class RowBlocks {
  private:
   std::string law_of(const Effect& effect) const;
   void note_coordinate_laws(const derive::SpecsFolder& specs);
+  // Of rows whose parameters follow functions of time: dC/dt and gamma, from C and J v at this time.
+  Values call_in_time(Algebra& algebra, const RowBlock& block, const std::string& function, Values in) const;
   // The joint on whose coordinate an effect of that name acts: they share its parameters. Else `name`.
   std::string owner_of(const std::string& name, const std::string& effect) const;
+  // The functions of time that the parameters of that joint follow.
+  const std::map<std::size_t, InTime>* functions_of(const std::string& effect) const;
+  static void check_time(const RowBlock& block, const std::string& name);
   RowBlock block_of(const std::string& name, const Effect& effect) const;
   void check_functions(const Effect& effect, const RowBlock& block) const;
   void add_body(Algebra& algebra, Values& in, const std::string& L, int index) const;

@@ -1,5 +1,6 @@
 #include "derive/compile/scene/effects.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -94,14 +95,23 @@ class EffectReader {
       mechanism_.effects.push_back(effect);
     }
     effect.law = Effect::bound;
-    for (std::size_t k = 1; k < places.size() && is_bounded(places[k]); ++k, ++effect.row)
+    const std::size_t first = mechanism_.bounded.size();
+    for (std::size_t k = 1; k < places.size() && is_bounded(places[k]); ++k, ++effect.row) {
+      effect.loaded_by_row = -1;
+      for (std::size_t other = 1; other < places.size(); ++other)
+        if (batch_of(places[other]).law == batch_of(places[k]).law->load_of)
+          effect.loaded_by_row = static_cast<int>(first + other - 1);
       add_bounded(source, effect, places[k]);
+    }
   }
 
   void add_bounded(const SceneJoint& source, const Effect& effect, const Place& place) {
     const auto& law = *batch_of(place).law;
     if (law.cone_rows > 0) refuse_(source, fmt::format("{}: one force along several coordinates", effect.name));
-    else if (law.by_load) refuse_(source, fmt::format("{}: bounds that grow with a load", effect.name));
+    else if (law.by_load && !mechanism_.on_accelerations())
+      refuse_(source, fmt::format("{}: bounds that grow with a load by {}", effect.name, mechanism_.method_name));
+    else if (law.by_load && !effect.is_loaded())
+      refuse_(source, fmt::format("{}: bounds that grow with the load of a joint that is soft", effect.name));
     else if (law.distance && by_own_force(place)) refuse_(source, fmt::format("{}: events by a force", effect.name));
     else if (law.error && !effect.in_time.empty())
       refuse_(source, fmt::format("{}: ends that follow functions of time", effect.name));
@@ -153,6 +163,7 @@ class EffectReader {
     Effect effect = along(source.name + "." + coordinate, joint);
     effect.coordinate = coordinate;
     effect.numbers = constants_of(place);
+    if (batch_of(place).law->by_load) effect.loaded_by_joint = joint_named(source.name);
     if (!note_functions(source, joint, static_cast<int>(number), effect)) return;
     const std::string what = name_law(kind, effect);
     if (effect.law == Effect::motor && mechanism_.on_accelerations() && std::isinf(effect.numbers[1]))
@@ -168,6 +179,12 @@ class EffectReader {
     }
   }
 
+  // Among those of the mechanism; -1: it is none of these.
+  int joint_named(const std::string& name) const {
+    const auto found = std::ranges::find(mechanism_.joints, name, &Joint::name);
+    return found == mechanism_.joints.end() ? -1 : static_cast<int>(found - mechanism_.joints.begin());
+  }
+
   // It never slips, so it needs no events.
   void add_strong_motor(const Effect& effect) {
     mechanism_.joints.push_back(
@@ -178,20 +195,9 @@ class EffectReader {
 
   // Notes which numbers follow functions of time. `place`: of its rows; -1: its own. False if it is refused.
   bool note_functions(const SceneJoint& source, int joint, int place, Effect& effect) {
-    for (const auto& [of_place, drive] : record(joint).drives) {
-      if (of_place != place) continue;
-      const WrittenProfile* const written = written_profile(scene_, drive.profile);
-      if (!written) {
-        refuse_(source, fmt::format("{}: numbers that follow a function of a program", effect.name));
-        return false;
-      }
-      InTime& function = effect.in_time[static_cast<std::size_t>(drive.number)];
-      function = {written->text, written->unit};
-      if (!written->text.empty()) continue;
-      function.table = static_cast<int>(mechanism_.tables.size());
-      mechanism_.tables.push_back(table_of(written->table, mechanism_.on_accelerations() ? 2 : 0));
-    }
-    return true;
+    const bool known = find_functions(scene_, record(joint), place, mechanism_, effect.in_time);
+    if (!known) refuse_(source, fmt::format("{}: numbers that follow a function of a program", effect.name));
+    return known;
   }
 
   // Of the effects that have a short form, the ones whose numbers follow functions of time are read as specs.
@@ -241,6 +247,21 @@ class EffectReader {
 };
 
 }  // namespace
+
+bool find_functions(const Scene& scene, const JointRecord& record, int place, Mechanism& mechanism,
+                    std::map<std::size_t, InTime>& in_time) {
+  for (const auto& [of_place, drive] : record.drives) {
+    if (of_place != place) continue;
+    const WrittenProfile* const written = written_profile(scene, drive.profile);
+    if (!written) return false;
+    InTime& function = in_time[static_cast<std::size_t>(drive.number)];
+    function = {written->text, written->unit};
+    if (!written->text.empty()) continue;
+    function.table = static_cast<int>(mechanism.tables.size());
+    mechanism.tables.push_back(table_of(written->table, mechanism.on_accelerations() ? 2 : 0));
+  }
+  return true;
+}
 
 bool is_rope(const JointType& type) { return type.row_kinds.size() == 1 && type.row_kinds[0] == RowKind::inequality; }
 

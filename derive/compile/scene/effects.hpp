@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 
 #include <cdot/world.hpp>
 
 #include "derive/compile/scene/mechanism.hpp"
+#include "runtime/state/world_data.hpp"
 #include "runtime/tool/scene/scene.hpp"
 
 namespace cdot::compile {
@@ -16,6 +18,11 @@ using RefuseEffect = std::function<void(const SceneJoint&, const std::string&)>;
 
 // True for a joint whose one row is an inequality: it is a row with bounds.
 bool is_rope(const JointType& type);
+
+// The functions of time that numbers of a place follow (of its rows; -1: its own), by number; adds their tables to the
+// mechanism. False if a program has given one.
+bool find_functions(const Scene& scene, const JointRecord& record, int place, Mechanism& mechanism,
+                    std::map<std::size_t, InTime>& in_time);
 
 template <class S>
 void read_effects(const Scene& scene, BasicWorld<S>& world, const RefuseEffect& refuse, Mechanism& mechanism);

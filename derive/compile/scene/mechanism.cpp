@@ -41,8 +41,8 @@ void refuse_joint(const SceneJoint& joint, const Scene& scene, Refusals& refusal
   };
   if (!joint.bonds.empty()) refuse("joints that break");
   const JointType* type = find_joint_type(scene.dimension, joint.definition.type);
-  if (type && !type->is_effect && in_time(joint.definition.parameters))
-    refuse("joints whose numbers follow functions of time");
+  if (type && (joint.definition.soft || is_rope(*type)) && in_time(joint.definition.parameters))
+    refuse("ropes and soft joints whose numbers follow functions of time");
   const auto has = [&](RowKind kind) {
     return type && std::ranges::find(type->row_kinds, kind) != type->row_kinds.end();
   };
@@ -155,6 +155,20 @@ Joint joint_of(const Scene& scene, const BasicWorld<S>& world, int index) {
   return joint;
 }
 
+template <class S>
+void add_joint(const Scene& scene, BasicWorld<S>& world, int index, Mechanism& mechanism) {
+  Joint joint = joint_of(scene, world, index);
+  const JointRecord& record = world.data().joints[static_cast<std::size_t>(index)];
+  if (!find_functions(scene, record, -1, mechanism, joint.in_time)) {
+    Refusals refusals(scene);
+    refusals.add(scene.joints[static_cast<std::size_t>(index)].where,
+                 fmt::format("{}: cdot compile knows no numbers that follow a function of a program", joint.name),
+                 "leave it to cdot-run");
+    refusals.throw_any();
+  }
+  mechanism.joints.push_back(std::move(joint));
+}
+
 // World stops Newton at this error, in units of a size of the island that it takes from the rows (Island::scale).
 double tolerance_of(const Scene& scene) {
   double scale = 1;
@@ -212,7 +226,7 @@ void add_parts(const Scene& scene, Mechanism& mechanism) {
   for (int i = 0; i < static_cast<int>(scene.joints.size()); ++i)
     if (!world.joint_type(i).is_effect && !is_rope(world.joint_type(i)) &&
         !scene.joints[static_cast<std::size_t>(i)].definition.soft)
-      mechanism.joints.push_back(joint_of(scene, world, i));
+      add_joint(scene, world, i, mechanism);
   add_effects(scene, world, mechanism);
   note_own_specs(mechanism);
 }

@@ -1,6 +1,7 @@
 // A scene as numbers: what the compiler of scenes knows of the runtime. World and scene stay behind mechanism.cpp.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -49,6 +50,7 @@ struct Joint {
   std::string coordinate{};
   double speed = 0;
   std::optional<InTime> speed_in_time{};
+  std::map<std::size_t, InTime> in_time{};  // those of `parameters` that follow functions of time
 };
 
 // A force along each row of a spec, or along one of its coordinates; a row with bounds on a coordinate.
@@ -75,6 +77,9 @@ struct Effect {
   std::vector<double> numbers;
   std::map<std::size_t, InTime> in_time{};  // those of `numbers` that follow functions of time
   double size = 1;                          // Island::size of its mechanism [m]
+  // Of a row whose bounds grow with a load: what carries it, among Mechanism::bounded or Mechanism::joints.
+  int loaded_by_row = -1, loaded_by_joint = -1;
+  bool is_loaded() const { return loaded_by_row >= 0 || loaded_by_joint >= 0; }
 };
 
 enum class Method { euler, rattle, rk4, dop853 };
@@ -99,6 +104,7 @@ struct Mechanism {
   bool spatial() const { return dimension == 3; }
   // True for a Runge-Kutta method; the others step velocities by impulses.
   bool on_accelerations() const { return method == Method::rk4 || method == Method::dop853; }
+  bool has_loads() const { return std::ranges::any_of(bounded, &Effect::is_loaded); }
   std::size_t linear() const { return static_cast<std::size_t>(dimension); }  // columns before the angular ones
   std::size_t columns() const { return spatial() ? 6 : 3; }
   std::string column(std::size_t c) const {

@@ -17,6 +17,10 @@
 #include "timed_bounds_rattle.hpp"
 #include "timed_dop853.hpp"
 #include "timed_euler.hpp"
+#include "timed_joints_dop853.hpp"
+#include "timed_joints_euler.hpp"
+#include "timed_joints_rattle.hpp"
+#include "timed_joints_rk4.hpp"
 #include "timed_rattle.hpp"
 #include "timed_rk4.hpp"
 
@@ -105,6 +109,28 @@ TEST(CompiledInTime, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<timed_rk4>();
   cdot::lanes_are_as_alone<timed_euler>();
   cdot::lanes_are_as_alone<tabled_rk4>();
+}
+
+TEST(CompiledInTime, NumbersOfJointsFollowExpressions) {
+  const std::string joints = scenes + "timed_joints.toml";
+  cdot::runs_as_the_world<timed_joints_euler<double>>(joints, Integrator::euler);
+  cdot::runs_as_the_world<timed_joints_rattle<double>>(joints, Integrator::rattle);
+  cdot::runs_as_the_world<timed_joints_rk4<double>>(joints, Integrator::rk4);
+  cdot::runs_as_the_world<timed_joints_dop853<double>>(joints, Integrator::dop853);
+}
+
+// Functions of time belong to the scene that has written them.
+TEST(CompiledInTime, AreThoseOfTheirScene) {
+  const auto read = [](const char* scene) { return cdot::read_scene(std::string(CDOT_SOURCE_DIR) + "/" + scene); };
+  const cdot::Scene timed = read("tests/derive/compile/scenes/timed_bounds.toml"),
+                    pushed = read("specs/scenes/chain_10.toml");
+  ASSERT_EQ(timed.profiles.size(), 4u);
+  EXPECT_TRUE(pushed.profiles.empty());
+  for (const cdot::WrittenProfile& one : timed.profiles) {
+    EXPECT_EQ(cdot::written_profile(timed, one.profile), &one);
+    EXPECT_FALSE(one.text.empty());
+    EXPECT_EQ(cdot::written_profile(pushed, one.profile), nullptr);
+  }
 }
 
 }  // namespace
