@@ -103,9 +103,14 @@ struct IslandWorkspace {
   const System<S>& at_work() const { return stiffened && rescue.built() ? rescue : system; }
 };
 
+class Paces;  // pace.hpp
+
 struct Workspace {
   // Of accelerations, counted as StepCounts::evaluations: beyond them fall_back() finishes every step.
   double most_evaluations = std::numeric_limits<double>::infinity();
+  // Of steps that the local error chooses: those of an earlier run, to follow; and where to note those of this one.
+  const Paces* paced_by = nullptr;
+  Paces* paces = nullptr;
   std::vector<int> awake;  // islands, in order
 };
 

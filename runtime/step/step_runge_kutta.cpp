@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <cdot/spaces.hpp>
 
@@ -10,6 +11,7 @@
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
+#include "runtime/state/pace.hpp"
 #include "runtime/step/between.hpp"
 #include "runtime/step/collocation.hpp"
 #include "runtime/step/events.hpp"
@@ -145,13 +147,36 @@ typename S::Scalar take_fixed_step(WorldData<S>& world, Island<S>& island, const
   }
 }
 
+// The control of a step by the pace of an earlier run; nothing if there is none.
+template <class S>
+std::optional<PacedStep> paced_step(const WorldData<S>& world, const Island<S>& island, const RungeKuttaOf<S>& method,
+                                    double safety, double time) {
+  const Pace* const pace = world.paced_by ? world.paced_by->find(island.bodies.front()) : nullptr;
+  if (!pace) return {};
+  if (const auto next = double(island.flow.next_step); next > 0) return PacedStep(*pace, safety, time, next);
+  const double share = world.settings.local_error / world.paced_by->local_error();
+  return PacedStep::first(*pace, safety, time, std::pow(share, 1.0 / method.error_order));
+}
+
+// The next length after the attempt with this number, which was taken and proposes `next`. A shortened step does not
+// reduce the proposed length. After a rejected step the length does not grow. An error allowed for its round-off
+// (`noisy`) tells nothing about the next step.
+template <class T>
+T after_step(T next, T h, T proposed, int attempt, bool noisy) {
+  if (attempt == 0 && h < proposed) next = std::max(next, proposed);
+  if (attempt > 0) next = std::min(next, h);
+  return noisy && proposed > T(0) ? std::min(next, proposed) : next;
+}
+
 // Takes a step as long as the error allows, at most `reach`. Returns like take_fixed_step().
 template <class S>
 typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                       typename S::Scalar time, typename S::Scalar left, typename S::Scalar reach) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
-  const T proposed = flow.next_step;
+  const double safety = world.paces ? world.paces->safety() : usual_safety;
+  std::optional<PacedStep> paced = paced_step(world, island, method, safety, double(time));
+  const T proposed = paced ? T(paced->proposed()) : T(flow.next_step);
   T h = length_of_step(proposed, left, reach);
   int astray = 0;
   double noise = 0;
@@ -159,22 +184,24 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
     const double error = try_step(world, island, method, time, h, [&] {
       return error_of_step(island, method, h, std::max(world.settings.local_error, noise));
     });
-    // 0.9 of the longest allowed step; a NaN counts as the largest error.
-    const double factor = std::clamp(0.9 * std::pow(error, -1.0 / method.error_order), 0.2, 5.0);
+    // A NaN counts as the largest error.
+    const double factor = std::clamp(safety * std::pow(error, -1.0 / method.error_order), 0.2, 5.0);
     flow.next_step = h * T(error <= 1e300 ? factor : 0.2);
     if (tries_with_care(world, island, method, reach, h, noise)) {
       if (!(h > T(0))) break;
       --attempt;  // its length says nothing about the error
       continue;
     }
+    const bool noisy = noise > world.settings.local_error, tells = !noisy && error <= 1e300;
+    const double best = double(h) * factor / safety;
+    if (paced && tells) paced->learn(double(h), best);
     if (error <= 1) {
-      // A shortened step does not reduce the proposed length. After a rejected step the length does not grow.
-      if (attempt == 0 && h < proposed) flow.next_step = std::max<T>(flow.next_step, proposed);
-      if (attempt > 0) flow.next_step = std::min<T>(flow.next_step, h);
-      // An error allowed for its round-off tells nothing about the next step.
-      if (noise > world.settings.local_error && proposed > T(0)) flow.next_step = std::min<T>(flow.next_step, proposed);
+      if (world.paces && tells) world.paces->note(island.bodies.front(), double(time), double(h), best);
+      flow.next_step =
+          paced ? T(paced->next(double(time + h), best)) : after_step<T>(flow.next_step, h, proposed, attempt, noisy);
       return h;
     }
+    if (paced) flow.next_step = std::min<T>(flow.next_step, T(paced->next(double(time), best)));
     ++world.counts->rejected;
     astray = std::isinf(error) ? astray + 1 : 0;
     h = length_of_step<T>(flow.next_step, left, reach);

@@ -32,6 +32,13 @@ std::string steps_text(const Choice& choice) {
                                 : fmt::format("steps of {:.6g} s", choice.step);
 }
 
+// A method that is named finds its steps alone.
+std::string pace_text(const Choice& choice) {
+  return choice.paced ? "\n                  steps by the pace of the run before; named, the method takes others, at "
+                        "another price"
+                      : "";
+}
+
 std::string rescue_text(const Choice& choice) {
   if (choice.rescued == 0) return {};
   return fmt::format("; {} step{} left to an implicit method, first by t = {:.6g} s", choice.rescued,
@@ -65,11 +72,12 @@ std::string choice_text(const Choice& choice, bool with_cpu) {
                                  choice.of_size ? " by default" : " asked for", name_of(integrators, choice.integrator),
                                  steps_text(choice));
   text += choice.reached ? fmt::format("{:.1e} delivered", choice.achieved) : std::string("NOT reached");
-  return text + fmt::format("\n  search          {} run{} before, at {:.2g} times the run's price{}\n",
-                            choice.runs_before, choice.runs_before == 1 ? "" : "s",
-                            static_cast<double>(choice.evaluations_before) /
-                                static_cast<double>(std::max(1LL, choice.evaluations)),
-                            with_cpu ? fmt::format(", {:.4g} s CPU", choice.cpu_before) : std::string());
+  return text +
+         fmt::format(
+             "\n  search          {} run{} before, at {:.2g} times the run's price{}{}\n", choice.runs_before,
+             choice.runs_before == 1 ? "" : "s",
+             static_cast<double>(choice.evaluations_before) / static_cast<double>(std::max(1LL, choice.evaluations)),
+             with_cpu ? fmt::format(", {:.4g} s CPU", choice.cpu_before) : std::string(), pace_text(choice));
 }
 
 text::Json choice_json(const Choice& choice) {
@@ -84,6 +92,7 @@ text::Json choice_json(const Choice& choice) {
           {"holds_until", choice.holds_until},
           {"rescued", choice.rescued},
           {"evaluations", choice.evaluations},
+          {"paced", choice.paced},
           {"search",
            {{"runs", choice.runs_before}, {"evaluations", choice.evaluations_before}, {"cpu", choice.cpu_before}}}};
 }

@@ -22,6 +22,7 @@ struct Choice {
   long long rescued = 0;             // steps, whose error nobody knows
   double first_rescue = 0;           // [s]
   long long evaluations = 0;         // of accelerations, in the run; for fixed steps their equivalent
+  bool paced = false;                // its steps follow those of a run before (runtime/state/pace.hpp)
   bool ended_by_budget = false;      // the search did, in vain
   int runs_before = 0;               // the one delivered
   long long evaluations_before = 0;  // in these

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "runtime/state/world_data.hpp"
+
 namespace cdot {
 namespace {
 
@@ -10,11 +12,14 @@ constexpr double close_time = 1e-6;  // of a step
 }  // namespace
 
 template <class S>
-RequestedFrames<S>::RequestedFrames(const Scene& scene)
+RequestedFrames<S>::RequestedFrames(const Scene& scene, const Paces* paced_by, const Paces* paces)
     : scene_(scene),
+      paced_by_(paced_by),
       slack_(close_time * scene.step),
       adaptive_(scene.settings.local_error > 0),
-      takes_parts_(!sweeps(scene.settings.solver) && scene.settings.drift != Drift::baumgarte) {}
+      takes_parts_(!sweeps(scene.settings.solver) && scene.settings.drift != Drift::baumgarte) {
+  if (paces) paces_.emplace(paces->local_error(), paces->safety());
+}
 
 template <class S>
 void RequestedFrames<S>::request(const std::vector<double>& times, Take take) {
@@ -52,7 +57,10 @@ Frame RequestedFrames<S>::inside(const Frame& before, const Frame& after, double
 
 template <class S>
 Frame RequestedFrames<S>::part_of_step(const Frame& before, const Frame& after, double time) {
-  if (!part_) part_ = build_world_in<S>(scene_);
+  if (!part_) {
+    part_ = build_world_in<S>(scene_);
+    part_->data().paced_by = paced_by_, part_->data().paces = paces_ ? &*paces_ : nullptr;
+  }
   const bool goes_on = adaptive_ && last_;
   const Frame& start = goes_on ? *last_ : before;
   if (!goes_on) part_->restore(start_);

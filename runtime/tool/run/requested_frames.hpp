@@ -8,6 +8,7 @@
 
 #include <cdot/world.hpp>
 
+#include "runtime/state/pace.hpp"
 #include "runtime/tool/run/frame.hpp"
 #include "runtime/tool/scene/scene.hpp"
 
@@ -21,7 +22,8 @@ template <class S>
 class RequestedFrames {
  public:
   using Take = std::function<void(const Frame&)>;
-  explicit RequestedFrames(const Scene& scene);
+  // The run's steps follow those of an earlier one and are noted, if these are not null.
+  RequestedFrames(const Scene& scene, const Paces* paced_by, const Paces* paces);
 
   // `take` receives the frames at these ascending times.
   void request(const std::vector<double>& times, Take take);
@@ -39,8 +41,10 @@ class RequestedFrames {
     std::size_t take;
   };
   const Scene& scene_;
-  double slack_;   // [s]: closer times count as equal
-  bool adaptive_;  // the method interpolates: a part may go on from the last one
+  const Paces* paced_by_;
+  std::optional<Paces> paces_;  // of part_, for the same safety
+  double slack_;                // [s]: closer times count as equal
+  bool adaptive_;               // the method interpolates: a part may go on from the last one
   bool takes_parts_;
   std::vector<Take> takes_;
   std::vector<Request> requests_;  // in the order of time

@@ -136,9 +136,10 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   RunResult result;
   BasicWorld<S> world = world_of_run<S>(scene, options, warnings);
   world.data().most_evaluations = options.most_evaluations;
+  world.data().paced_by = options.paced_by, world.data().paces = options.paces;
   const Steps steps(scene, options);
   result.start = steps.time(0);
-  RequestedFrames<S> requested(scene);
+  RequestedFrames<S> requested(scene, options.paced_by, options.paces);
   if (options.row) requested.request(from_time(options.row_times, result.start, scene.step), options.row);
   requested.request(from_time(options.film_times, result.start, scene.step),
                     [&](const Frame& frame) { result.film.push_back(frame); });

@@ -9,6 +9,7 @@
 
 #include <cdot/snapshot.hpp>
 
+#include "runtime/state/pace.hpp"
 #include "runtime/tool/run/choice.hpp"
 #include "runtime/tool/run/error_estimate.hpp"
 #include "runtime/tool/run/frame.hpp"
@@ -34,6 +35,9 @@ struct RunOptions {
   std::function<bool(const Frame&, const RunResult&)> look;
   // Beyond so many the run is stopped; within a step, an implicit method finishes it then.
   double most_evaluations = std::numeric_limits<double>::infinity();
+  // Of a method that chooses its steps: those of an earlier run, to follow, and where to note those of this one.
+  const Paces* paced_by = nullptr;
+  Paces* paces = nullptr;
   double search_work =
       1e8;        // after which the search for a method ends with the best run so far; in units of search/work.hpp
   Snapshot from;  // to continue from; empty: the scene's start

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "runtime/tool/run/simulate.hpp"
@@ -16,7 +17,9 @@ struct Attempt {
   RunResult result;
   std::vector<Frame> frames;  // at the ends of the intervals
   std::vector<Frame> rows;
-  double energy_share = 0;  // the largest error of the energy so far, see EnergyWatch
+  std::shared_ptr<Paces> paces;           // of its steps
+  std::shared_ptr<const Paces> paced_by;  // of the run that it follows; empty: of none
+  double energy_share = 0;                // the largest error of the energy so far, see EnergyWatch
   double price = 0;
   bool full = false;                                          // it has the outputs asked for
   bool whole = false;                                         // it has ended in time and well

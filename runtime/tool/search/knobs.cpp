@@ -9,7 +9,7 @@ namespace {
 
 // The first run is loose: its price is small, and its distance from the second tells how strict the third has to be, if
 // one is needed. Local errors of the first two in units of the accuracy, measured over all scenes:
-constexpr double first_local_error = 10, looser_of_eighth_order = 10, second_of_eighth_order = 0.01;
+constexpr double first_local_error = 20, looser_of_eighth_order = 10, second_of_eighth_order = 0.02;
 constexpr double strict_accuracy = 1e-6;                 // below it, there is no room for a looser one
 constexpr double loosest = 0.1, loosest_strict = 1e-11;  // of the first; two more have to be possible
 constexpr double stricter = 1e-3;  // the next local error, as a share; at most a tenth. Of order 8

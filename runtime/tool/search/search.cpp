@@ -26,6 +26,9 @@ constexpr double local_errors = 10, unseen = 0.1;
 constexpr double aim = 0.5;  // share of the accuracy that a further run aims at
 constexpr int shorter_for_rescued = 4, shorter_for_others = 2;
 constexpr double long_step = 0.4;  // of the duration
+// Of Paces. Steps that are shorter than the usual 0.9 err by (0.9 / 0.8)^8 = 2.6 times less, so local errors may be
+// twice as large (knobs.cpp), and fewer steps are rejected.
+constexpr double safety = 0.8;
 
 // --- After a run that ends early, since its distance from the run before will be too large, the next one aims at a
 // local error that is smaller by this factor at least, and by that of a second run at most. Where that is not enough,
@@ -80,7 +83,7 @@ class Search {
   }
   int shorter_after(const Attempt& now) const;
   std::optional<Try> after_early_end(const Attempt& last, const Attempt& now) const;
-  Attempt attempt(const Try& knob, double most, const Attempt* judged_by);
+  Attempt attempt(const Try& knob, double most, const Attempt& last, bool judged);
   void judge(const Attempt& coarse, Attempt& fine) const;
   void keep(Attempt&& attempt);
   bool balanced(const Attempt& attempt) const {
@@ -116,10 +119,13 @@ class Search {
   double price_ = 0, cpu_ = 0;  // of all runs
 };
 
-// Ends early, by Attempt::foreseen, where it will not agree with `judged_by`.
-Attempt Search::attempt(const Try& knob, double most, const Attempt* judged_by) {
+// Follows the pace of the `last` run. If it is judged by that run, it ends early, by Attempt::foreseen, where the two
+// will not agree.
+Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool judged) {
   Attempt attempt;
   attempt.knob = knob;
+  if (knob.adaptive()) attempt.paces = std::make_shared<Paces>(knob.local_error, safety);
+  if (last.whole) attempt.paced_by = last.paces;
   Scene solved = solved_by(choice_of(attempt), scene_);
   solved.step = scene_.duration / knob.steps();
   attempt.full = runs_ > 0 && knob.intervals == intervals_of_own_steps;
@@ -130,6 +136,7 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt* judged_by) 
     if (options_.row) options.row = [&](const Frame& frame) { attempt.rows.push_back(frame); };
   }
   if (may_be_dear_) options.diagnose_times = {2 * solved.duration};  // only if the run is stopped
+  options.paced_by = attempt.paced_by.get(), options.paces = attempt.paces.get();
   options.progress = options_.progress;
   options.doing = name_of(knob) + ": ";
   options.most_evaluations = std::min(left_for_all(), knob.adaptive() ? most : infinity);
@@ -139,8 +146,7 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt* judged_by) 
       attempt.frames.push_back(frame);
     attempt.energy_share = so_far.balance.energy.share();
     if (!knob.adaptive()) return true;
-    if (judged_by && (attempt.foreseen = foreseen_distance(yardstick_, solved.duration, *judged_by, attempt)) > 0)
-      return false;
+    if (judged && (attempt.foreseen = foreseen_distance(yardstick_, solved.duration, last, attempt)) > 0) return false;
     attempt.price = static_cast<double>(so_far.counts.evaluations);
     const double foreseen = frame.time > 0 ? attempt.price * solved.duration / frame.time : 0;
     const double mechanisms = yardstick_.mechanisms();
@@ -233,7 +239,7 @@ std::optional<Try> Search::after_early_end(const Attempt& last, const Attempt& n
 // agree with a first run of another method, they are delivered.
 void Search::try_even_steps(const Attempt& even) {
   const bool is_slow = stiff_at_start_ <= slow * yardstick_.mechanisms();
-  Attempt now = attempt({is_slow ? Integrator::rattle : Integrator::implicit}, infinity, nullptr);
+  Attempt now = attempt({is_slow ? Integrator::rattle : Integrator::implicit}, infinity, {}, false);
   if (now.whole && now.result.counts.rescued == 0) {
     const auto [apart, agree_until] = distance(yardstick_, even, now);
     now.achieved = std::max(least_sure, unlike * apart), now.holds_until = agree_until;
@@ -258,7 +264,7 @@ void Search::try_candidate(Integrator integrator, double most) {
     given_up_ = !knob->adaptive() && price_of(*knob) > left_for_all();
     if (given_up_) break;
     const bool judged = may_end_early && last.whole && last.result.counts.rescued == 0;
-    Attempt now = attempt(*knob, most - spent, judged ? &last : nullptr);
+    Attempt now = attempt(*knob, most - spent, last, judged);
     spent += now.price;
     if (now.foreseen > 0) {
       may_end_early = false;
@@ -319,7 +325,9 @@ RunResult Search::run() {
   const Choice choice = choice_of(best_);
   if (!best_.full || !options_.from.empty()) {
     std::string ignored;
-    if (!stopped_ && !given_up_) result = run_once(solved_by(choice, scene_), options_, ignored);
+    RunOptions options = options_;
+    options.paced_by = best_.paced_by.get(), options.paces = best_.paces.get();
+    if (!stopped_ && !given_up_) result = run_once(solved_by(choice, scene_), options, ignored);
   } else if (options_.row) {
     for (const Frame& row : best_.rows) options_.row(row);
   }
@@ -342,6 +350,7 @@ Choice Search::choice_of(const Attempt& attempt) const {
   choice.rescued = attempt.result.counts.rescued;
   choice.first_rescue = attempt.result.first_rescue;
   choice.ended_by_budget = !attempt.reached && out_of_budget();
+  choice.paced = attempt.paced_by != nullptr;
   choice.evaluations = std::llround(attempt.price);
   choice.runs_before = runs_ - 1;
   choice.evaluations_before = std::llround(price_ - attempt.price);

@@ -35,9 +35,8 @@ void study_claims(const std::vector<Scene>& scenes) {
   for (const Scene& named : scenes) {
     const Scene scene = without_method(named);
     for (const std::vector<double>& times : output_times(scene.duration)) {
-      const double interval = scene.duration / intervals_of_own_steps;
-      const Run truth = run_of(scene, Integrator::dop853, strict, interval, times, most_cpu),
-                check = run_of(scene, Integrator::dop853, nearly_strict, interval, times, most_cpu);
+      const Run truth = reference_of(scene, strict, times, most_cpu),
+                check = reference_of(scene, nearly_strict, times, most_cpu);
       if (!truth.whole || !check.whole) {
         fmt::print("{}: no reference\n", short_name(scene));
         continue;
