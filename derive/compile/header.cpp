@@ -104,6 +104,7 @@ class HeaderWriter {
            of(calls.solve, equations_.solve) + of(1, equations_.apply) + of(calls.fall, equations_.fall) +
            of(calls.kick, equations_.kick) + of(calls.past, equations_.past) + of(1, equations_.angles) +
            of(has().events ? 1 : 0, equations_.distances) + of(calls.dampen, equations_.dampen) +
+           of(has().modes ? 2 : 0, equations_.guard) + of(has().modes ? 1 : 0, equations_.reach) +
            of(calls.notice, equations_.notice) + of(calls.look, equations_.look) + of(calls.finish, equations_.finish);
   }
 
