@@ -122,4 +122,61 @@ std::string BodyTexts::energy(bool has_effects) const {
   return text + "    return sum;\n  }\n";
 }
 
+// As the World does it: runtime/step/midpoint.cpp.
+std::string BodyTexts::judged() const {
+  std::string ways, energies, speeds;
+  each([&](const Body& b, const std::string& name) {
+    for (const bool turns : {false, true}) {
+      const std::size_t begin = turns ? mechanism.linear() : 0, end = turns ? mechanism.columns() : mechanism.linear();
+      std::string change, size, square;
+      for (std::size_t c = begin; c < end; ++c) {
+        const std::string column = fmt::format("[{}].{}", name, mechanism.column(c)), plus = c == begin ? "" : " + ";
+        ways += fmt::format("    most = larger(magnitude(d{}){}, most);\n", column,
+                            turns ? "" : fmt::format(" * T({})", 1 / mechanism.size));
+        change += fmt::format("{0}magnitude(v{1} - from{1})", plus, column);
+        size += fmt::format("{}magnitude(v{})", plus, column), square += fmt::format("{0}v{1} * v{1}", plus, column);
+      }
+      speeds += fmt::format("    most = larger({}, most);\n", square);
+      const double mass = turns ? b.inv_I : b.inv_m;
+      const std::string moves = fmt::format("{} > T(single ? 1e-4 : 1e-9) * ({})", change, size);
+      if (turns && b.inertia_turns)
+        energies +=
+            fmt::format("    before = sum;\n{}    sum = select({}, sum, before);\n", spin_energy_of(b, name), moves);
+      else if (mass > 0)
+        energies += fmt::format("    sum = sum + select({}, T({}) * ({}), T(0));\n", moves, 1 / mass, square);
+    }
+  });
+  return fmt::format(R"(
+  // The largest change of a pose in h, in units of the mechanism's size and in [rad].
+  static T farthest(const Velocity (&d)[bodies], const T& h) {{
+    T most = T(0);
+{}    return h * most;
+  }}
+  // Too slow for a judgement of its energy.
+  static Mask hardly_moves(const Velocity (&v)[bodies], const T& h) {{
+    T most = T(0);
+{}    return most * h * h < T(single ? {} : {});
+  }}
+  // Twice the kinetic energy of the motions that changed from others: a wheel that merely spins has no say.
+  static T moved_energy(const Pose (&q)[bodies], const Velocity (&v)[bodies], const Velocity (&from)[bodies]) {{
+    T sum = T(0), before = sum;
+    (void)q, (void)before;
+{}    return sum;
+  }}
+)",
+                     ways, speeds, 1e-8 * mechanism.size * mechanism.size, 1e-12 * mechanism.size * mechanism.size,
+                     energies);
+}
+
+// v exp(-h d): exact for drag alone.
+std::string BodyTexts::dragged() const {
+  std::string text = "\n  static void drag(Velocity (&v)[bodies], const T& h) {\n    using std::exp;\n";
+  each([&](const Body& b, const std::string& name) {
+    for (std::size_t c = 0; c < mechanism.columns(); ++c)
+      if (const double d = c < mechanism.linear() ? b.linear_drag : b.angular_drag; d != 0)
+        text += fmt::format("    v[{0}].{1} = exp(-h * T({2})) * v[{0}].{1};\n", name, mechanism.column(c), d);
+  });
+  return text + "  }\n";
+}
+
 }  // namespace cdot::compile

@@ -22,6 +22,9 @@ struct BodyTexts {
   // weighed(): twice the kinetic energy.
   std::string weighed() const;
   std::string energy(bool has_effects) const;
+  // By the implicit midpoint rule: what judges a part of a step; drag(), if some body has drag.
+  std::string judged() const;
+  std::string dragged() const;
 
   // turn() of poses beside turned ones, in the plane.
   std::string turn_beside(const std::set<std::string>& turning) const;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "derive/compile/foresight/aim.hpp"
+#include "derive/compile/midpoint/middle.hpp"
 #include "derive/compile/rows/bounds.hpp"
 #include "derive/compile/rows/dampers.hpp"
 #include "derive/compile/rows/joint_rows.hpp"
@@ -44,12 +45,13 @@ class EquationWriter {
       out_.kick = kick_of(blocks_, joints_, out_.constants);
     if (!mechanism_.effects.empty() || !mechanism_.bounded.empty())
       out_.potential = potential_of(blocks_, out_.constants);
-    if (mechanism_.method == Method::rattle) write_finish();
+    if (mechanism_.method == Method::rattle || mechanism_.method == Method::implicit) write_finish();
+    if (mechanism_.method == Method::implicit) write_middle();
     if (mechanism_.angles > 0) out_.angles = angles_of(blocks_, out_.constants);
     write_bounded();
     // Ends that a guess passes are other ones than those that the step passes. By RATTLE forces that change with rates
     // pull beside the joints.
-    if (system().size() > 0 && !mechanism_.on_accelerations() && !out_.has_ends && !out_.finishes) write_foreseen();
+    if (system().size() > 0 && foresees()) write_foreseen();
     drop_unread();
     check_inputs();
     return std::move(out_);
@@ -98,6 +100,18 @@ class EquationWriter {
     if (out_.finishes) out_.finish = dampers.finish(joints_);
     for (std::size_t b = 0; b < mechanism_.bounded.size(); ++b) out_.exerts |= prescribes_rate(blocks_, b);
     if (out_.exerts) out_.exert = exert_of(blocks_, joints_, out_.constants);
+  }
+
+  bool foresees() const {
+    const Method method = mechanism_.method;
+    return (method == Method::euler || method == Method::rattle) && !out_.has_ends && !out_.finishes;
+  }
+
+  void write_middle() {
+    const Middle middle(blocks_, joints_, out_.constants);
+    if (!mechanism_.effects.empty()) out_.weigh = middle.weigh();
+    if (system().size() > 0) out_.stiffen = middle.stiffen();
+    out_.improve = middle.improve();
   }
 
   void write_foreseen() {
@@ -163,9 +177,10 @@ class EquationWriter {
 }  // namespace
 
 std::vector<const Program*> programs_of_equations(const Equations& e) {
-  return {&e.evaluate, &e.errors, &e.rates,     &e.accelerate, &e.solve,     &e.apply, &e.aim,     &e.solve_aimed,
-          &e.fall,     &e.kick,   &e.potential, &e.reach,      &e.past,      &e.along, &e.angles,  &e.dampen,
-          &e.notice,   &e.look,   &e.finish,    &e.exert,      &e.distances, &e.guard, &e.resolve, &e.carry};
+  return {&e.evaluate,    &e.errors,  &e.rates,  &e.accelerate, &e.solve,   &e.apply,  &e.aim,
+          &e.solve_aimed, &e.fall,    &e.kick,   &e.potential,  &e.reach,   &e.past,   &e.along,
+          &e.angles,      &e.dampen,  &e.notice, &e.look,       &e.finish,  &e.exert,  &e.distances,
+          &e.guard,       &e.resolve, &e.carry,  &e.weigh,      &e.stiffen, &e.improve};
 }
 
 std::set<std::string> functions_of(const Program& program) {

@@ -30,7 +30,7 @@ struct Equations {
   Program kick;       // q, v, time, J, h -> next: v after an Euler step with effects; lambda of the joints
   Program potential;  // q, time -> E of the effects
   Program angles;     // q, time -> angle, turns: angles that count whole turns
-  // Of effects and rows with bounds by RATTLE:
+  // Of effects and rows with bounds by RATTLE, the first ones also by the midpoint rule:
   bool finishes = false;       // the end of a step solves for more than the joints
   bool exerts = false;         // so does the start of a run
   std::vector<int> effect_of;  // by row of Damping: its effect
@@ -39,6 +39,8 @@ struct Equations {
   Program notice, look;        // rates of effects at the end, were each alone (rows/dampers.hpp)
   Program finish;              // q, v, time, J, h -> next, lambda, pull, B
   Program exert;               // q, v, time, J, h -> lambda, pull, B: forces at the start of a run
+  // By the midpoint rule (rows/middle.hpp):
+  Program weigh, stiffen, improve;
   // Of rows with bounds:
   std::string is_rate;  // "true, false", by row
   bool has_ends = false, has_events = false;

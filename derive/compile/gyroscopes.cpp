@@ -84,6 +84,11 @@ constexpr const char* momentum_functions = R"(
 
 bool has_gyroscopes(const Mechanism& mechanism) { return std::ranges::any_of(mechanism.bodies, &Body::inertia_turns); }
 
+bool carries_spin(const Mechanism& mechanism, bool looks) {
+  const auto drags = [](const Body& body) { return body.inertia_turns && body.angular_drag != 0; };
+  return has_gyroscopes(mechanism) && (looks || std::ranges::any_of(mechanism.bodies, drags));
+}
+
 std::string pose_argument(const Mechanism& mechanism) {
   return has_gyroscopes(mechanism) ? "const Pose (&q)[bodies], " : "";
 }

@@ -15,6 +15,7 @@
 #include "derive/compile/methods/rattle.hpp"
 #include "derive/compile/methods/state.hpp"
 #include "derive/compile/methods/tables.hpp"
+#include "derive/compile/midpoint/tension.hpp"
 #include "derive/compile/space.hpp"
 #include "derive/compile/steps.hpp"
 #include "derive/compile/texts.hpp"
@@ -46,6 +47,7 @@ class HeaderWriter {
     text_ += bodies.turn(equations_.turning) + gyroscopes_of(mechanism_, names_.bodies);
     if (mechanism_.method == Method::euler && !has_effects()) text_ += bodies.push();
     text_ += bodies.weighed() + bodies.energy(has_effects());
+    if (by_midpoint() && has().drags) text_ += bodies.dragged();
     write_equations();
     write_corrections();
     if (has().exerts) text_ += start_of(has());
@@ -54,12 +56,14 @@ class HeaderWriter {
     text_ += "};\n\n}  // namespace cdot::scenes\n";
     return {unrolled(with_arguments(std::move(text_)),
                      {moving, equations_.rows.size(), moving * (mechanism_.spatial() ? 13 : 6)}),
-            name_, operations(), state_bytes()};
+            name_, operations_of(equations_, calls_of(mechanism_.method, has())),
+            state_bytes_of(mechanism_, equations_, has())};
   }
 
  private:
   bool on_accelerations() const { return mechanism_.on_accelerations(); }
   bool by_rattle() const { return mechanism_.method == Method::rattle; }
+  bool by_midpoint() const { return mechanism_.method == Method::implicit; }
   Contents has() const {
     return {.rows = !equations_.rows.empty(),
             .effects = !mechanism_.effects.empty(),
@@ -70,19 +74,16 @@ class HeaderWriter {
             .gyroscopes = has_gyroscopes(mechanism_),
             .angles = mechanism_.angles > 0,
             .rattle = by_rattle(),
+            .midpoint = by_midpoint(),
             .dampens = !equations_.dampen.outputs.empty(),
             .looks = !equations_.effect_of.empty(),
             .finishes = equations_.finishes,
             .exerts = equations_.exerts,
-            .carries = carries(),
+            .carries = by_rattle() && carries_spin(mechanism_, !equations_.effect_of.empty()),
             .modes = !mechanism_.bounded.empty() && on_accelerations(),
             .loads = mechanism_.has_loads(),
+            .drags = std::ranges::any_of(mechanism_.bodies, &Body::drags),
             .foresees = !equations_.apply.outputs.empty()};
-  }
-  bool carries() const {
-    const auto drags = [](const Body& body) { return body.inertia_turns && body.angular_drag != 0; };
-    return by_rattle() && has_gyroscopes(mechanism_) &&
-           (!equations_.effect_of.empty() || std::ranges::any_of(mechanism_.bodies, drags));
   }
   bool has_rows() const { return has().rows; }
   bool has_effects() const { return has().effects || has().bounded; }
@@ -95,30 +96,6 @@ class HeaderWriter {
   }
 
   void line(const std::string& line = {}) { text_ += line + "\n"; }
-
-  long operations() const {
-    const Calls calls = calls_of(mechanism_.method, has());
-    const auto of = [](int times, const Program& program) { return long{times} * derive::count(program).total(); };
-    return of(calls.evaluate, equations_.evaluate) + of(calls.errors, equations_.errors) +
-           of(calls.rates, equations_.rates) + of(calls.accelerate, equations_.accelerate) +
-           of(calls.solve, equations_.solve) + of(1, equations_.apply) + of(calls.fall, equations_.fall) +
-           of(calls.kick, equations_.kick) + of(calls.past, equations_.past) + of(1, equations_.angles) +
-           of(has().events ? 1 : 0, equations_.distances) + of(calls.dampen, equations_.dampen) +
-           of(has().modes ? 2 : 0, equations_.guard) + of(has().modes ? 1 : 0, equations_.reach) +
-           of(calls.notice, equations_.notice) + of(calls.look, equations_.look) + of(calls.finish, equations_.finish);
-  }
-
-  long state_bytes() const {
-    long of_bodies = 0;
-    for (const Body& body : mechanism_.bodies) of_bodies += numbers_of(mechanism_, body, has().pulls());
-    const long of_rows = long{has().foresees ? 1 + foreseen_by(by_rattle()) : 1} * long(equations_.rows.size()) +
-                         long(equations_.stored.size()) + (has().closes() ? 1 : 0) + (has().foresees ? 1 : 0) +
-                         (has().exerts ? 1 : 0) +
-                         (has().modes ? 1 + (has().loads ? 7 : 6) * long(mechanism_.bounded.size()) : 0) +
-                         (has().events ? 3 * long(mechanism_.bounded.size()) : 0);
-    return long{sizeof(double)} * (1 + of_bodies + of_rows + long(mechanism_.bounded.size()) +
-                                   long(equations_.constants.inputs.size()) + 2 * mechanism_.angles);
-  }
 
   // f(body, its name) for those that move.
   template <class F>
@@ -140,9 +117,10 @@ class HeaderWriter {
     for (const std::string& note : mechanism_.notes) line("// " + note);
     line("#pragma once");
     line();
-    if (calls_functions(equations_) || mechanism_.spatial()) line("#include <cmath>"), line();
+    const bool drags = by_midpoint() && has().drags;
+    if (calls_functions(equations_) || mechanism_.spatial() || drags) line("#include <cmath>"), line();
     text_ += arithmetic;
-    if (mechanism_.spatial()) text_ += space;
+    if (mechanism_.spatial()) text_ += std::string(space) + (by_midpoint() ? tension : "");
     line("namespace cdot::scenes {");
     line();
     line("template <class T>");
@@ -185,6 +163,8 @@ class HeaderWriter {
       line(fmt::format("    T angle[{0}], turns[{0}];", mechanism_.angles));
       line("  };");
     }
+    if (by_midpoint())
+      line(fmt::format("  using Inertia = {};  // its inverse", mechanism_.spatial() ? "Tensor<T>" : "T"));
     if (has().foresees) line("  struct Multipliers {\n    T of[rows];\n  };");
     if (has().events) {
       line("  // Of rows with bounds: 1 if they have begun, if they have ended, if they act.");
@@ -228,8 +208,8 @@ class HeaderWriter {
     if (has_inputs() && head.find("$d") != std::string::npos) line("    (void)p;");
     if (has().angles && head.find("$d") != std::string::npos) line("    (void)angles;");
     if (has().events && head.find("$d") != std::string::npos) line("    (void)events;");
-    for (const std::string argument :
-         {"q", "v", "a", "time", "J", "B", "b", "h", "lambda", "force", "C", "rate", "K", "guess", "given", "end"})
+    for (const std::string argument : {"q", "v", "a", "time", "J", "B", "b", "h", "lambda", "force", "C", "rate", "K",
+                                       "guess", "given", "end", "before", "W", "g"})
       if (reads(arguments, argument)) line(fmt::format("    (void){};", argument));
     line("  }");
   }
@@ -257,6 +237,7 @@ class HeaderWriter {
     if (has_effects())
       write_function("Potential energy of the effects", "potential(" + at + ", T& E)", equations_.potential);
     if (by_rattle()) write_rattle(at, moving);
+    else if (by_midpoint()) write_midpoint(at, moving);
     else if (on_accelerations()) write_accelerations(at, moving);
     else if (has_effects())
       write_function("Velocities after h with the effects, implicit as far as their slopes say",
@@ -277,11 +258,9 @@ class HeaderWriter {
                      equations_.angles);
   }
 
-  void write_rattle(const std::string& at, const std::string& moving) {
+  // At both ends of a step.
+  void write_dampers(const std::string& at, const std::string& moving, const std::string& end) {
     const std::string J = has_rows() ? ", const Jacobian& J" : "", lambda = has_rows() ? ", T (&lambda)[rows]" : "";
-    const std::string B = has().bounded ? ", Bounded& B" : "";
-    write_function("Accelerations without joints", "fall(" + at + ", " + moving + ", Velocity (&a)[bodies])",
-                   equations_.fall);
     if (has().dampens)
       write_function("Velocities after the effects at the start of a step of h that change with their rates",
                      "dampen(" + at + ", " + moving + ", const T& h, Velocity (&next)[bodies])", equations_.dampen);
@@ -301,13 +280,44 @@ class HeaderWriter {
       write_function("The end of a step of h: J v = -dC/dt, with the effects",
                      "finish(" + at + ", " + moving + J + ", const T& h" +
                          (has().looks ? ", const T (&given)[damped], const T (&end)[damped]" : "") +
-                         ", Velocity (&next)[bodies]" + lambda + ", Velocity (&pull)[bodies]" + B + ")",
+                         ", Velocity (&next)[bodies]" + lambda + end,
                      equations_.finish);
+  }
+
+  void write_rattle(const std::string& at, const std::string& moving) {
+    const std::string J = has_rows() ? ", const Jacobian& J" : "", lambda = has_rows() ? ", T (&lambda)[rows]" : "";
+    const std::string end = ", Velocity (&pull)[bodies]" + std::string(has().bounded ? ", Bounded& B)" : ")");
+    write_function("Accelerations without joints", "fall(" + at + ", " + moving + ", Velocity (&a)[bodies])",
+                   equations_.fall);
+    write_dampers(at, moving, end);
     if (has().exerts)
-      write_function(
-          "Forces at the start of a run, with motors that reach their rates in h/2",
-          "exert(" + at + ", " + moving + J + ", const T& h" + lambda + ", Velocity (&pull)[bodies]" + B + ")",
-          equations_.exert);
+      write_function("Forces at the start of a run, with motors that reach their rates in h/2",
+                     "exert(" + at + ", " + moving + J + ", const T& h" + lambda + end, equations_.exert);
+  }
+
+  void write_midpoint(const std::string& at, const std::string& moving) {
+    const bool rows = has_rows();
+    write_dampers(at, moving, ")");
+    if (has().effects) {
+      line(fmt::format("\n  static constexpr int effect_rows = {};", equations_.weigh.outputs.size()));
+      write_function("K of the rows of effects", "weigh_effects(" + at + ", T (&K)[effect_rows])", equations_.weigh);
+    }
+    if (rows && mechanism_.spatial())
+      write_function("Stiffness of tension", "tension(" + at + ", const T (&lambda)[rows], Inertia (&W)[bodies])",
+                     equations_.stiffen);
+    else if (rows)
+      write_function("Inverse inertias with the stiffness of tension in a step of h",
+                     "stiffen(" + at + ", const T& h, const T (&lambda)[rows], Inertia (&W)[bodies])",
+                     equations_.stiffen);
+    if (rows && mechanism_.spatial()) text_ += stiffen_of(mechanism_, names_.bodies);
+    write_function("A round of Newton in the middle of a step of h: changes d of v, and y of lambda / 2",
+                   "improve(" + at + ", " + moving + ", const Velocity (&before)[bodies], " +
+                       (rows ? "const Inertia (&W)[bodies], " : "") + (has().gyroscopes ? "const Gyroscope* g, " : "") +
+                       "const T& h, " + (rows ? "const T (&lambda)[rows], const T (&C)[rows], " : "") +
+                       (has().effects ? "const T (&K)[effect_rows], " : "") + "Velocity (&d)[bodies], " +
+                       (rows ? "T (&y)[rows], " : "") + "T& power)",
+                   equations_.improve);
+    text_ += BodyTexts{mechanism_, names_.bodies}.judged();
   }
 
   void write_foreseen(const std::string& at) {
@@ -364,7 +374,7 @@ class HeaderWriter {
 
   void write_step() {
     std::string step = step_of(mechanism_, has());
-    if (breaks(mechanism_) || has().modes) text_ += replaces;
+    if (breaks(mechanism_) || has().modes || by_midpoint()) text_ += replaces;
     if (breaks(mechanism_)) {
       step.replace(step.find(step_head), step_head.size(), "advance(State& s, const T& h)");
       step += step_in_parts(mechanism_.method, has());

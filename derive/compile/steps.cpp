@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include "derive/compile/foresight/foresight.hpp"
 #include "derive/compile/methods/modes.hpp"
 #include "derive/compile/methods/rattle.hpp"
+#include "derive/compile/midpoint/implicit.hpp"
+#include "derive/compile/types.hpp"
 #include "runtime/step/runge_kutta_tables.hpp"
 
 namespace cdot::compile {
@@ -205,6 +208,7 @@ constexpr int stages_of(Method method) { return method == Method::rk4 ? rk4<doub
 Calls calls_of(Method method, const Contents& has) {
   Calls calls{.evaluate = 1, .errors = 2, .rates = 1, .solve = 2};  // the corrections
   if (has.ends) calls.past = 2;
+  if (has.events) calls.distances = 1;
   if (method == Method::rattle) {
     calls.fall = 2, calls.dampen = has.dampens, calls.notice = has.looks, calls.look = has.looks ? 2 : 0;
     if (has.finishes) calls.finish = 1, --calls.rates, --calls.solve;
@@ -215,10 +219,43 @@ Calls calls_of(Method method, const Contents& has) {
     else ++calls.rates, ++calls.solve;
     return calls;
   }
+  if (method == Method::implicit) {
+    calls = {.evaluate = 1, .errors = 1, .rates = 1, .solve = 1, .dampen = has.dampens, .notice = has.looks};
+    calls.improve = 1, calls.look = has.looks ? 2 : 0;
+    if (has.finishes) calls.finish = 1, --calls.solve;
+    return calls;
+  }
   const int stages = stages_of(method);
   calls.evaluate += stages - 1;
   calls.fall = calls.accelerate = stages;
   return calls;
+}
+
+long operations_of(const Equations& e, const Calls& calls) {
+  const std::pair<int, const Program*> programs[] = {{calls.evaluate, &e.evaluate},   {calls.errors, &e.errors},
+                                                     {calls.rates, &e.rates},         {calls.accelerate, &e.accelerate},
+                                                     {calls.solve, &e.solve},         {1, &e.apply},
+                                                     {calls.fall, &e.fall},           {calls.kick, &e.kick},
+                                                     {calls.past, &e.past},           {1, &e.angles},
+                                                     {calls.distances, &e.distances}, {calls.dampen, &e.dampen},
+                                                     {calls.notice, &e.notice},       {calls.look, &e.look},
+                                                     {calls.finish, &e.finish},       {1, &e.weigh},
+                                                     {calls.improve, &e.stiffen},     {calls.improve, &e.improve}};
+  long sum = 0;
+  for (const auto& [times, program] : programs) sum += long{times} * derive::count(*program).total();
+  return sum;
+}
+
+long state_bytes_of(const Mechanism& mechanism, const Equations& equations, const Contents& has) {
+  long of_bodies = 0;
+  for (const Body& body : mechanism.bodies) of_bodies += numbers_of(mechanism, body, has.pulls());
+  const long of_rows = long{has.foresees ? 1 + foreseen_by(has.rattle) : 1} * long(equations.rows.size()) +
+                       long(equations.stored.size()) + (has.closes() ? 1 : 0) + (has.foresees ? 1 : 0) +
+                       (has.exerts ? 1 : 0) +
+                       (has.modes ? 1 + (has.loads ? 7 : 6) * long(mechanism.bounded.size()) : 0) +
+                       (has.events ? 3 * long(mechanism.bounded.size()) : 0);
+  return long{sizeof(double)} * (1 + of_bodies + of_rows + long(mechanism.bounded.size()) +
+                                 long(equations.constants.inputs.size()) + 2 * mechanism.angles);
 }
 
 std::string begin_of(Method method, const Contents& has) {
@@ -245,7 +282,7 @@ std::string begin_of(Method method, const Contents& has) {
         has.rows ? "s.J, s.lambda, " : "");
   else if (accelerates && has.rows)
     text += "    project(s);\n    accelerate($ss.q, s.time, s.v, s.J, s.lambda, s.a);\n";
-  else if (method == Method::rattle && has.rows) text += "    project(s);\n";
+  else if ((method == Method::rattle || method == Method::implicit) && has.rows) text += "    project(s);\n";
   else if (accelerates) text += "    fall($ss.q, s.time, s.v, s.a);\n";
   if (has.pulls()) text += "    for (Velocity& of_body : s.pull) of_body = still();\n";
   if (has.exerts) text += "    s.begins = T(1);\n";
@@ -255,6 +292,7 @@ std::string begin_of(Method method, const Contents& has) {
 std::string step_of(const Mechanism& mechanism, const Contents& has) {
   if (mechanism.method == Method::euler) return euler(mechanism.tolerance, has);
   if (mechanism.method == Method::rattle) return rattle(mechanism.tolerance, has);
+  if (mechanism.method == Method::implicit) return implicit(mechanism, has);
   if (mechanism.method == Method::rk4) return runge_kutta(rk4<double>, "The Runge-Kutta method of order 4", has);
   return runge_kutta(dop853<double>, "Dormand and Prince's method of order 8", has);
 }

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "derive/compile/corrections.hpp"
+#include "derive/compile/equations.hpp"
 #include "derive/compile/scene/mechanism.hpp"
 
 namespace cdot::compile {
@@ -12,9 +13,15 @@ namespace cdot::compile {
 // How often step() calls each function, with one round of Newton and no end passed.
 struct Calls {
   int evaluate = 0, errors = 0, rates = 0, accelerate = 0, solve = 0, fall = 0, kick = 0, past = 0;
-  int dampen = 0, notice = 0, look = 0, finish = 0;  // by RATTLE, with one round of Newton
+  int distances = 0;
+  int dampen = 0, notice = 0, look = 0, finish = 0;  // by RATTLE and the midpoint rule
+  int improve = 0;                                   // by the midpoint rule
 };
 Calls calls_of(Method method, const Contents& has);
+// Operations of a step.
+long operations_of(const Equations& equations, const Calls& calls);
+// Of a State of double.
+long state_bytes_of(const Mechanism& mechanism, const Equations& equations, const Contents& has);
 
 // Of the function that steps a State.
 inline constexpr std::string_view step_head = "step(State& s, T h = T(default_step))";

@@ -67,8 +67,10 @@ std::string with_arguments(std::string text, const Arguments& given) {
 
 bool reads(const std::string& arguments, const std::string& argument) {
   const std::size_t array = arguments.find("(&" + argument + ")");
-  if (array == std::string::npos)
-    return arguments.find("& " + argument + ",") != std::string::npos || arguments.ends_with("& " + argument + ")");
+  if (array == std::string::npos) {
+    const auto has = [&](const std::string& text) { return arguments.find(text) != std::string::npos; };
+    return has("& " + argument + ",") || has("* " + argument + ",") || arguments.ends_with("& " + argument + ")");
+  }
   const std::string before = arguments.substr(0, array);
   return before.find("const", before.rfind(',') + 1) != std::string::npos;
 }

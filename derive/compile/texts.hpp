@@ -22,7 +22,6 @@ struct Arguments {
   std::string poses;  // a declaration
 };
 std::string with_arguments(std::string text, const Arguments& given);
-
 // True if a function has the argument, as a constant if it is an array: "const T (&C)[rows]", "const T& h".
 bool reads(const std::string& arguments, const std::string& argument);
 

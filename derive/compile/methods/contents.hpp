@@ -13,10 +13,11 @@ struct Contents {
   bool spatial = false, gyroscopes = false, angles = false;  // angles: that count whole turns
   // By RATTLE: effects act by their rates at the start; rates at the end are looked for; the end solves for more than
   // the joints, and so does the start of a run.
-  bool rattle = false, dampens = false, looks = false, finishes = false, exerts = false;
+  bool rattle = false, midpoint = false, dampens = false, looks = false, finishes = false, exerts = false;
   bool carries = false;   // by RATTLE, forces at the end read the spin of a body whose inertia turns
   bool modes = false;     // of rows with bounds by Runge-Kutta methods
   bool loads = false;     // bounds of these that grow with loads
+  bool drags = false;     // some body has drag
   bool foresees = false;  // the multipliers of the next projection, by those of the last steps
   bool projects() const { return rows || modes; }  // velocities
   bool closes() const { return rows || ends; }
@@ -42,10 +43,10 @@ inline constexpr const char* closes_unforeseen = R"(    T total[rows];
     close(s, at, T(0.2), T(1) < T(0), moves, total);
 )";
 
-// From the poses of `from`, "s" or "at".
-inline std::string drifts(const Contents& has, const std::string& from) {
-  if (has.gyroscopes) return "    drift(s, " + from + ".q, h);\n";
-  return "    for (int i = 0; i < bodies; ++i) move(s.q[i], " + from + ".q[i], h * s.v[i]);\n    turn(s.q);\n";
+// During h, from the poses of `from`, "s" or "at".
+inline std::string drifts(const Contents& has, const std::string& from, const std::string& h = "h") {
+  if (has.gyroscopes) return "    drift(s, " + from + ".q, " + h + ");\n";
+  return "    for (int i = 0; i < bodies; ++i) move(s.q[i], " + from + ".q[i], " + h + " * s.v[i]);\n    turn(s.q);\n";
 }
 
 }  // namespace cdot::compile

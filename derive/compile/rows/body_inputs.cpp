@@ -1,4 +1,5 @@
 // The numbers of bodies as inputs of kernels: places, velocities, masses; of immovable ones as constants.
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -113,6 +114,7 @@ int RowBlocks::inverse_mass(Algebra& algebra, int index) const {
 
 int RowBlocks::inverse_inertia(Algebra& algebra, int index, std::size_t i, std::size_t j) const {
   const Body& b = body(index);
+  if (is_stiffened_ && b.turns()) return algebra.input(stiffened_name(index, i, j));
   if (b.moves && b.inertia_turns) return algebra.input(fmt::format("q[{}].I.{}", body_name(index), entry_of(i, j)));
   if (!b.moves || i != j) return algebra.value(0);
   return algebra.fixed(b.inv_I, body_name(index) + "_inv_I");
@@ -122,12 +124,43 @@ int RowBlocks::weighted(Algebra& algebra, int index, std::size_t column,
                         const std::function<int(std::size_t)>& f) const {
   const std::size_t first = mechanism_.linear();
   if (column < first) return algebra.times(inverse_mass(algebra, index), f(column));
-  if (!body(index).inertia_turns)
+  if (!has_whole_tensor(index))
     return algebra.times(inverse_inertia(algebra, index, column - first, column - first), f(column));
   Summands terms;
   for (std::size_t j = 0; j < 3; ++j)
     terms.add(1, algebra.times(inverse_inertia(algebra, index, column - first, j), f(first + j)));
   return algebra.sum(terms);
+}
+
+int RowBlocks::momentum(Algebra& algebra, int index, std::size_t column,
+                        const std::function<int(std::size_t)>& a) const {
+  const Body& b = body(index);
+  const std::size_t first = mechanism_.linear();
+  const auto inverse = [&](double mass) { return mass > 0 ? algebra.value(1 / mass) : algebra.value(0); };
+  if (column < first) return algebra.times(inverse(b.inv_m), a(column));
+  if (!b.inertia_turns) return algebra.times(inverse(b.inv_I), a(column));
+  const auto turning = std::count_if(mechanism_.bodies.begin(), mechanism_.bodies.begin() + index,
+                                     [](const Body& before) { return before.inertia_turns; });
+  Summands terms;
+  for (std::size_t j = 0; j < 3; ++j)
+    terms.add(
+        1, algebra.times(algebra.input(fmt::format("g[{}].I.{}", turning, entry_of(column - first, j))), a(first + j)));
+  return algebra.sum(terms);
+}
+
+std::string RowBlocks::stiffened_name(int index, std::size_t i, std::size_t j) const {
+  return "W[" + body_name(index) + "]" + (mechanism_.spatial() ? "." + entry_of(i, j) : "");
+}
+
+RowBlocks RowBlocks::stiffened(Constants& constants) const {
+  Algebra algebra(constants);
+  for (int b = 0; b < static_cast<int>(mechanism_.bodies.size()); ++b)
+    for (std::size_t i = 0; i < (mechanism_.spatial() ? 3 : 1) && body(b).turns(); ++i)
+      for (std::size_t j = 0; j <= i; ++j)
+        constants.at_start[stiffened_name(b, i, j)] = algebra.at_start(inverse_inertia(algebra, b, i, j));
+  RowBlocks other = *this;
+  other.is_stiffened_ = true;
+  return other;
 }
 
 // In the body's axes: W = A^T w, and A I^-1 (I W x W).

@@ -70,6 +70,12 @@ int start_of(Algebra& algebra, const LawWriter& law, int d, int K) {
   return law.least(half, algebra.function(Fn::inverse, {K}));
 }
 
+// The impulse per rate that ends oscillations too fast for the step: h^2 k max(0, 1 - 1/u), u = h^2 k K.
+int calming(Algebra& algebra, const LawWriter& law, int k, int K) {
+  const int stiff = algebra.product({algebra.input("h"), k}, {2, 1}), mass = algebra.function(Fn::inverse, {K});
+  return law.most(algebra.sum({{stiff, mass}, {1, -1}}), algebra.value(0));
+}
+
 }  // namespace
 
 // The law refers to the inputs.
@@ -89,14 +95,20 @@ struct Dampers::Here {
   const Masses masses;
 };
 
-Dampers::Dampers(const RowBlocks& blocks, Constants& constants) : blocks_(blocks), constants_(constants) {
+// True if the effect acts at the end because it is stiff.
+bool Dampers::calms(const Algebra& algebra, const LawWriter& law) const {
+  return calms_ && !std::ranges::all_of(law.slopes().k, [&](int k) { return algebra.is_zero(k); });
+}
+
+Dampers::Dampers(const RowBlocks& blocks, Constants& constants)
+    : blocks_(blocks), constants_(constants), calms_(blocks.mechanism().method == Method::implicit) {
   Algebra algebra(constants);
   int count = 0;
   for (std::size_t e = 0; e < blocks.mechanism().effects.size(); ++e) {
     const bool is_spring = blocks.mechanism().effects[e].law == Effect::spring;
     const Damped damped{e, is_spring, effect_of_.size(), triangle_};
     const Here there(blocks, algebra, e);
-    if (!there.law.reads_rates()) continue;
+    if (!there.law.reads_rates() && !calms(algebra, there.law)) continue;
     damped_.push_back(damped);
     if (is_spring) continue;
     const std::size_t rows = there.law.C().size();
@@ -171,20 +183,21 @@ void Dampers::look_at(Algebra& algebra, const Damped& damped, std::size_t number
   const Here there(blocks_, algebra, damped.effect);  // at any pose: C and K are inputs
   const LawWriter law = there.law.at(C, p);
   const AtRates at = at_rates(algebra, law, masses);
-  std::vector<int> impulse, g;
+  const std::vector<int> k = calms_ ? law.slopes_within_limits().k : std::vector<int>{};
+  std::vector<int> impulse, ends, g;
   for (std::size_t i = 0; i < rows; ++i) {
     const int rest = algebra.sum({{algebra.input("h"), at.t[i]}, {1, -1}});
     impulse.push_back(algebra.times(rest, at.R[i]));
     const int end = algebra.times(rest, at.d[i]);
-    algebra.output(element("end", damped.first + i), end);
     algebra.output(element("given", damped.first + i), algebra.sum({{impulse[i], algebra.times(end, p[i])}, {1, 1}}));
+    ends.push_back(calms_ ? algebra.sum({{end, calming(algebra, law, k[i], masses.own(i))}, {1, 1}}) : end);
+    algebra.output(element("end", damped.first + i), ends[i]);
   }
   for (std::size_t i = 0; i < rows; ++i) {
     Summands terms{{p[i], r[i]}, {1, -1}};
     for (std::size_t k = 0; k < rows; ++k) terms.add(-1, algebra.times(masses.K(i, k), impulse[k]));
     g.push_back(algebra.sum(terms));
-    const int end = algebra.times(algebra.sum({{algebra.input("h"), at.t[i]}, {1, -1}}), at.d[i]);
-    const int slope = algebra.sum({{algebra.value(1), algebra.times(end, masses.own(i))}, {1, 1}});
+    const int slope = algebra.sum({{algebra.value(1), algebra.times(ends[i], masses.own(i))}, {1, 1}});
     algebra.output(element("step", damped.first + i),
                    algebra.sum({{algebra.times(g[i], algebra.function(Fn::inverse, {slope}))}, {-1}}));
   }
@@ -201,8 +214,9 @@ EffectRows Dampers::rows_of(Algebra& algebra, const Damped& damped, const LawWri
   for (std::size_t r = 0; r < count; ++r) {
     int end = -1;
     if (damped.is_spring) {
-      const int start = start_of(algebra, law, slopes.d[r], K.at(triangle_element("K", r, r)));
+      const int own = K.at(triangle_element("K", r, r)), start = start_of(algebra, law, slopes.d[r], own);
       end = algebra.sum({{algebra.times(algebra.input("h"), slopes.d[r]), start}, {1, -1}});
+      if (calms_) end = algebra.sum({{end, calming(algebra, law, slopes.k[r], own)}, {1, 1}});
     } else {
       end = algebra.input(element("end", damped.first + r));
     }

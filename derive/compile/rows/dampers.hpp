@@ -1,6 +1,6 @@
-// Effects in a step of RATTLE, as functions of the header. Their forces at rest act in the kicks, as a potential's do;
-// the rest of a force, R(r) = F(r) - F(0) of its rate r, acts at both ends of the step, implicitly at the second. As
-// the World does it: runtime/step/dampers.hpp.
+// Effects in a step of RATTLE or of the midpoint rule, as functions of the header. Their forces at rest act in the
+// kicks, as a potential's do; the rest of a force, R(r) = F(r) - F(0) of its rate r, acts at both ends of the step,
+// implicitly at the second. As the World does it: runtime/step/dampers.hpp.
 #pragma once
 
 #include "derive/compile/rows/kick.hpp"
@@ -35,10 +35,12 @@ class Dampers {
   };
   struct Here;  // an effect in an Algebra
   EffectRows rows_of(Algebra& algebra, const Damped& damped, const LawWriter& law, const Values& in) const;
+  bool calms(const Algebra& algebra, const LawWriter& law) const;
   void look_at(Algebra& algebra, const Damped& damped, std::size_t number) const;
 
   const RowBlocks& blocks_;
   Constants& constants_;
+  const bool calms_;  // springs too stiff for the step are damped at its end, as the midpoint rule does
   std::vector<Damped> damped_;
   std::vector<int> effect_of_;
   std::size_t triangle_ = 0;

@@ -32,6 +32,7 @@ class KickWriter {
 
   Program write() {
     const bool by_rattle = blocks_.mechanism().method == Method::rattle;
+    const bool by_euler = blocks_.mechanism().method == Method::euler;
     Answers answers(blocks_, algebra_, system_, [&](const std::string& name) { return factor_.at(name); });
     const std::size_t joints = joints_.system().blocks().size();
     for (std::size_t k = 0; k < joints; ++k) {
@@ -42,7 +43,7 @@ class KickWriter {
     for (std::size_t k = 0; k < plan_.effects.size(); ++k) add_effect(answers, joints + k, plan_.effects[k]);
     factor();
     const std::size_t rows = joints_.system().size();
-    const Answers::Answer end = answers.to(by_rattle ? given() : pushed(), [&](std::size_t row) {
+    const Answers::Answer end = answers.to(by_euler ? pushed() : given(), [&](std::size_t row) {
       return row < rows ? joints_.drift(algebra_, row) : drifts_[row - rows];
     });
     for (std::size_t row = 0; row < rows; ++row) algebra_.output(element("lambda", row), end.lambda[row]);

@@ -48,6 +48,12 @@ LawWriter LawWriter::at(std::vector<int> C, std::vector<int> rate) const {
   return there;
 }
 
+LawWriter LawWriter::with_masses(std::vector<int> K) const {
+  LawWriter other = *this;
+  other.K_ = std::move(K);
+  return other;
+}
+
 LawWriter LawWriter::at_rest() const { return at(C_, std::vector<int>(C_.size(), algebra_.value(0))); }
 
 // Leaves of a law are C, rates, its parameters and the time.
@@ -97,14 +103,14 @@ LawWriter::Slopes LawWriter::spring_slopes() const {
   const std::vector<double>& n = effect_.numbers;
   Slopes slopes;
   const double w = 2 * std::numbers::pi * n[1];
-  const Values K = n[0] == 0 ? Values{} : rows_.call(algebra_, block_, "effective_mass", in_);
+  const Values K = n[0] == 0 || !K_.empty() ? Values{} : rows_.call(algebra_, block_, "effective_mass", in_);
   for (std::size_t r = 0; r < C_.size(); ++r) {
     if (n[0] == 0) {
       slopes.k.push_back(algebra_.value(n[1], block_.name + "_stiffness"));
       slopes.d.push_back(algebra_.value(n[2], block_.name + "_damping"));
       continue;
     }
-    const int mass = algebra_.function(Fn::inverse, {K.at(derive::triangle_element("K", r, r))});
+    const int mass = algebra_.function(Fn::inverse, {K_.empty() ? K.at(derive::triangle_element("K", r, r)) : K_[r]});
     slopes.k.push_back(algebra_.times(algebra_.value(w * w, block_.name + "_w2"), mass));
     slopes.d.push_back(algebra_.times(algebra_.value(2 * n[2] * w, block_.name + "_2zw"), mass));
   }

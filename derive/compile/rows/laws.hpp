@@ -21,6 +21,8 @@ class LawWriter {
   // The same law at other values and rates.
   LawWriter at(std::vector<int> C, std::vector<int> rate) const;
   LawWriter at_rest() const;
+  // The same law with these numbers of K = J M^-1 J^T of each row, by which springs by frequency are stiff.
+  LawWriter with_masses(std::vector<int> K) const;
 
   const std::vector<int>& C() const { return C_; }
 
@@ -61,6 +63,7 @@ class LawWriter {
   const RowBlock& block_;
   const Values& in_;
   std::vector<int> C_, drift_, rate_;
+  std::vector<int> K_;  // empty: those at the pose
 };
 
 }  // namespace cdot::compile

@@ -44,7 +44,7 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
                                own != mechanism.own_specs.end() ? own->second
                                : in_folder                      ? folder + type
                                                                 : type,
-                               of_type);
+                               of_type, mechanism.method == Method::implicit);
   }
   for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
     const Joint& joint = mechanism.joints[j];

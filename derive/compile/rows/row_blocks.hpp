@@ -70,6 +70,14 @@ class RowBlocks {
   Values call(Algebra& algebra, const RowBlock& block, const std::string& function, const Values& in) const;
   // M^-1 f of a body in a column, from f by columns.
   int weighted(Algebra& algebra, int body, std::size_t column, const std::function<int(std::size_t column)>& f) const;
+  // M a of a body in a column, from a by columns.
+  int momentum(Algebra& algebra, int body, std::size_t column, const std::function<int(std::size_t column)>& a) const;
+  // An entry of I^-1 in the world's axes; in the plane, of the axis 0.
+  int inverse_inertia(Algebra& algebra, int body, std::size_t i, std::size_t j) const;
+  // The same rows on bodies with other inverse inertias, the inputs W.
+  RowBlocks stiffened(Constants& constants) const;
+  // "W[rod]" or "W[rod].xy"
+  std::string stiffened_name(int body, std::size_t i, std::size_t j) const;
   // The rates of the spin of a body whose inertia turns, by its gyroscopic torque: -I^-1 (w x I w), in the world's
   // axes.
   std::array<int, 3> gyroscopic_rates(Algebra& algebra, int body) const;
@@ -107,14 +115,16 @@ class RowBlocks {
   }
   const Body& body(int index) const { return mechanism_.bodies[static_cast<std::size_t>(index)]; }
   int inverse_mass(Algebra& algebra, int body) const;
-  // An entry of I^-1 in the world's axes; in the plane, of the axis 0.
-  int inverse_inertia(Algebra& algebra, int body, std::size_t i, std::size_t j) const;
+  bool has_whole_tensor(int index) const {
+    return body(index).inertia_turns || (is_stiffened_ && mechanism_.spatial());
+  }
 
   const Mechanism& mechanism_;
   const Names& names_;
   std::set<std::string> coordinate_laws_;  // specs on a coordinate of any joint
   std::map<std::string, SpecPrograms> types_;
   std::vector<RowBlock> joints_, effects_, bounded_;
+  bool is_stiffened_ = false;
 };
 
 }  // namespace cdot::compile

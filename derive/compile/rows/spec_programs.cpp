@@ -12,7 +12,9 @@ namespace {
 constexpr std::string_view needed[] = {"position", "jacobian",        "effective_mass", "velocity", "apply",  "dense",
                                        "gamma",    "time_derivative", "energy",         "force",    "limits", "slopes"};
 
-bool is_needed(const derive::KernelFunction& f) { return std::ranges::find(needed, f.name) != std::end(needed); }
+bool is_needed(const derive::KernelFunction& f, bool stiffness) {
+  return std::ranges::find(needed, f.name) != std::end(needed) || (stiffness && f.name == "stiffness");
+}
 
 bool is_zero(const derive::Program& program) {
   return std::ranges::all_of(program.outputs, [&](const derive::Output& o) {
@@ -21,8 +23,9 @@ bool is_zero(const derive::Program& program) {
   });
 }
 
-void keep_needed(derive::KernelBlock& block) {
-  std::erase_if(block.functions, [](const derive::KernelFunction& f) { return f.isotropic || !is_needed(f); });
+void keep_needed(derive::KernelBlock& block, bool stiffness) {
+  std::erase_if(block.functions,
+                [=](const derive::KernelFunction& f) { return f.isotropic || !is_needed(f, stiffness); });
   block.variants.clear();
 }
 
@@ -54,18 +57,18 @@ std::map<std::string, std::string> leaves_of_law(const derive::Joint& joint) {
 }  // namespace
 
 SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& spec,
-                         const std::set<std::string>& coordinates) {
+                         const std::set<std::string>& coordinates, bool stiffness) {
   const derive::ReadResult read = specs.read(specs.find(spec));
   if (!read.joint) throw std::runtime_error(render(*read.file, read.diagnostics));
   const derive::Derivation derivation = derive::derive(*read.joint);
   derive::Kernel kernel = derive::plan(derivation);
-  keep_needed(kernel.rows);
+  keep_needed(kernel.rows, stiffness);
   const auto has_bounds = [&](const std::string& coordinate) {
     return std::ranges::any_of(kernel.bounded, [&](const auto& bound) { return bound.row->coordinate == coordinate; });
   };
   std::erase_if(kernel.coordinates,
                 [&](const derive::KernelBlock& c) { return !coordinates.contains(c.name) && !has_bounds(c.name); });
-  for (derive::KernelBlock& coordinate : kernel.coordinates) keep_needed(coordinate);
+  for (derive::KernelBlock& coordinate : kernel.coordinates) keep_needed(coordinate, false);
   kernel.defaults.clear();
   kernel = derive::simplified(std::move(kernel));
   SpecPrograms programs;

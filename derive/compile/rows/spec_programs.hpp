@@ -44,8 +44,9 @@ struct SpecPrograms {
   std::vector<BoundPrograms> bounded;
 };
 
-// With these of its coordinates, and those of its rows with bounds; spec: "planar/revolute".
+// With these of its coordinates, and those of its rows with bounds; spec: "planar/revolute". stiffness: that of the
+// rows too.
 SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& spec,
-                         const std::set<std::string>& coordinates);
+                         const std::set<std::string>& coordinates, bool stiffness);
 
 }  // namespace cdot::compile

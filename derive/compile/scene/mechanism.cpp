@@ -2,7 +2,9 @@
 #include "derive/compile/scene/mechanism.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 #include <cdot/world.hpp>
 
@@ -46,8 +48,9 @@ void refuse_joint(const SceneJoint& joint, const Scene& scene, Refusals& refusal
   const auto has = [&](RowKind kind) {
     return type && std::ranges::find(type->row_kinds, kind) != type->row_kinds.end();
   };
-  if (has(RowKind::velocity) && !type->is_effect && scene.settings.integrator == Integrator::rattle)
-    refuse(fmt::format("rows of velocities by rattle, as {} has", type->name));
+  const Integrator method = scene.settings.integrator;
+  if (has(RowKind::velocity) && !type->is_effect && (method == Integrator::rattle || method == Integrator::implicit))
+    refuse(fmt::format("rows of velocities by {}, as {} has", row_of(method).name, type->name));
   if (has(RowKind::inequality) && !is_rope(*type))
     refuse(fmt::format("inequality beside other rows, as {} has", type->name));
 }
@@ -70,6 +73,7 @@ constexpr struct {
   Integrator integrator;
   Method method;
 } methods[] = {{Integrator::euler, Method::euler},
+               {Integrator::implicit, Method::implicit},
                {Integrator::rattle, Method::rattle},
                {Integrator::rk4, Method::rk4},
                {Integrator::dop853, Method::dop853}};
@@ -79,7 +83,7 @@ Method method_of(const Scene& scene) {
     if (scene.settings.integrator == integrator) return method;
   Refusals refusals(scene);
   refusals.add({}, fmt::format("cdot compile knows no integrator {}", row_of(scene.settings.integrator).name),
-               "give --integrator euler, rattle, rk4 or dop853");
+               "give --integrator euler, implicit, rattle, rk4 or dop853");
   refusals.throw_any();
   return {};
 }
@@ -170,11 +174,13 @@ void add_joint(const Scene& scene, BasicWorld<S>& world, int index, Mechanism& m
 }
 
 // World stops Newton at this error, in units of a size of the island that it takes from the rows (Island::scale).
-double tolerance_of(const Scene& scene) {
-  double scale = 1;
+double tolerance_of(double size) { return converged<double> * std::min(1.0, 10 * size); }
+
+double size_of(const Scene& scene) {
+  double size = std::numeric_limits<double>::infinity();
   for (const double extent : extents_of(scene).of_body)
-    if (extent > 0) scale = std::min(scale, 10 * extent);
-  return converged<double> * scale;
+    if (extent > 0) size = std::min(size, extent);
+  return std::isinf(size) ? 1 : size;
 }
 
 template <class S>
@@ -182,7 +188,8 @@ void add_effects(const Scene& scene, BasicWorld<S>& world, Mechanism& mechanism)
   Refusals refusals(scene);
   const auto refuse = [&](const SceneJoint& joint, const std::string& what) {
     refusals.add(joint.where, fmt::format("{}: cdot compile does not know {}", joint.name, what),
-                 "leave it to cdot-run");
+                 mechanism.method == Method::implicit ? "give another --integrator, or leave it to cdot-run"
+                                                      : "leave it to cdot-run");
   };
   read_effects(scene, world, refuse, mechanism);
   refusals.throw_any();
@@ -243,7 +250,8 @@ Mechanism read_mechanism(const std::string& file, const Wishes& wishes) {
   mechanism.method_name = row_of(scene.settings.integrator).name;
   mechanism.method = method_of(scene);
   mechanism.step = scene.step;
-  mechanism.tolerance = tolerance_of(scene);
+  mechanism.size = size_of(scene);
+  mechanism.tolerance = tolerance_of(mechanism.size);
   if (scene.settings.sleep_after > 0)
     mechanism.notes.emplace_back("Compiled bodies do not sleep: sleep_after is left out.");
   mechanism.inputs = wishes.inputs;

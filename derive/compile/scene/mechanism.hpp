@@ -25,6 +25,8 @@ struct Body {
   std::vector<double> acceleration;          // of constant forces and torques, by columns [m/s^2], [rad/s^2]
   std::array<double, 3> torque{};            // the constant one, if `inertia_turns` [N m]
   double linear_drag = 0, angular_drag = 0;  // [1/s]
+  bool drags() const { return moves && (linear_drag != 0 || angular_drag != 0); }
+  bool turns() const { return moves && (inertia_turns || inv_I > 0); }
 };
 
 // Rows of a table of time as cubics between them, in the time since the first row of each: a + b t + c t^2 + d t^3. The
@@ -82,7 +84,7 @@ struct Effect {
   bool is_loaded() const { return loaded_by_row >= 0 || loaded_by_joint >= 0; }
 };
 
-enum class Method { euler, rattle, rk4, dop853 };
+enum class Method { euler, implicit, rattle, rk4, dop853 };
 
 struct Mechanism {
   std::string file, title, method_name;
@@ -90,6 +92,7 @@ struct Mechanism {
   Method method = Method::rk4;
   double step = 0;                  // [s]
   double tolerance = 0;             // of C [m], [rad]
+  double size = 1;                  // of the smallest mechanism [m]
   std::array<double, 3> gravity{};  // [m/s^2]
   std::vector<std::string> inputs;  // numbers that a run may change, as a header names them
   std::vector<Body> bodies;         // the last one is the world

@@ -77,12 +77,21 @@ TEST(CompileCommand, HeaderBuildsFreestanding) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(CompileCommand, RefusesWhatTheMidpointRuleDoesNotKnow) {
+  const ShellResult limit = compile(CDOT_SOURCE_DIR "/specs/scenes/robot_arm.toml --integrator implicit");
+  EXPECT_EQ(limit.status, 2);
+  EXPECT_NE(limit.text.find("does not know wrist.angle.brake by implicit: rows with bounds"), std::string::npos)
+      << limit.text;
+  const ShellResult other = compile(CDOT_SOURCE_DIR "/specs/scenes/robot_arm.toml --integrator radau5");
+  EXPECT_EQ(other.status, 2) << other.text;
+}
+
 // A scene compiles, or is refused at a line: no other end.
 TEST(CompileCommand, EveryHardCaseCompilesOrIsRefused) {
   int compiled = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(CDOT_SOURCE_DIR "/tests/hard_cases")) {
     if (entry.path().extension() != ".toml") continue;
-    for (const char* method : {"euler", "rattle"}) {
+    for (const char* method : {"euler", "implicit", "rattle"}) {
       const ShellResult outcome =
           compile(fmt::format("'{}' --step 0.001 --integrator {}", entry.path().string(), method));
       EXPECT_TRUE(outcome.status == 0 || (outcome.status == 2 && outcome.text.find("error: ") != std::string::npos))
@@ -91,7 +100,7 @@ TEST(CompileCommand, EveryHardCaseCompilesOrIsRefused) {
       compiled += outcome.status == 0;
     }
   }
-  EXPECT_GT(compiled, 100);
+  EXPECT_GT(compiled, 150);
 }
 
 }  // namespace

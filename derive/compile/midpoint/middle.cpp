@@ -1,0 +1,206 @@
+#include "derive/compile/midpoint/middle.hpp"
+
+#include <fmt/format.h>
+
+#include "derive/compile/rows/answers.hpp"
+#include "derive/compile/rows/components.hpp"
+#include "derive/compile/rows/laws.hpp"
+#include "derive/kernel/factor.hpp"
+
+namespace cdot::compile {
+namespace {
+
+using derive::element;
+using derive::triangle_element;
+
+std::vector<RowBlock> blocks_of(const RowBlocks& blocks, const JointRows& joints) {
+  std::vector<RowBlock> all = joints.system().blocks();
+  for (std::size_t e = 0; e < blocks.mechanism().effects.size(); ++e) all.push_back(blocks.effect(e));
+  return all;
+}
+
+// One round of Newton. With the stiffness G = -d(J^T lambda)/dq of tension,
+//
+//   (M + h G / 4) d - J^T y = M (before - v) + (h f + J^T lambda) / 2,   J d = -C / h.
+//
+// An effect acts at the share t of the step: in the middle, or near the end if it is too stiff for the step. With its
+// force F at rest, its stiffness k and u = h^2 k K of its row,
+//
+//   lambda = h F - (t - 1/2) h^2 k rate,   t = max(1/2, 1 - 1 / (2 u)),   and for d: y = -t h^2 k / 2 J d.
+class Round {
+ public:
+  Round(const RowBlocks& stiff, const JointRows& joints, Constants& constants)
+      : blocks_(stiff), joints_(joints), algebra_(constants), system_(stiff, blocks_of(stiff, joints)) {
+    h_ = algebra_.input("h"), half_ = algebra_.times(algebra_.value(0.5), h_);
+  }
+
+  Program write() {
+    Answers answers(blocks_, algebra_, system_, [&](const std::string& name) { return factor_.at(name); });
+    const std::size_t joints = joints_.system().blocks().size(), rows = joints_.system().size();
+    for (std::size_t k = 0; k < joints; ++k) add_joint(answers, k);
+    for (std::size_t e = 0; e < blocks_.mechanism().effects.size(); ++e) add_effect(answers, joints + e, e);
+    factor();
+    const int per_step = algebra_.function(Fn::inverse, {h_});
+    const Answers::Answer change = answers.to(lack(), [&](std::size_t row) {
+      return row < rows ? algebra_.times(per_step, algebra_.input(element("C", row))) : algebra_.value(0);
+    });
+    for (std::size_t row = 0; row < rows; ++row) algebra_.output(element("y", row), change.lambda[row]);
+    each_component(blocks_, [&](const Component& component, double, double) {
+      algebra_.output(component.in("d"), change.velocities.at(component.name));
+    });
+    algebra_.output("power", algebra_.sum(power_));
+    return algebra_.finish();
+  }
+
+ private:
+  void add_joint(Answers& answers, std::size_t k) {
+    const RowBlock& joint = system_.blocks()[k];
+    const Values in = blocks_.inputs_with_jacobian(algebra_, joint);
+    system_.add_block(algebra_, k, in);
+    const Values Jv = blocks_.call(algebra_, joint, "velocity", in);
+    const Values C_t = joint.rows->has_rates ? blocks_.call(algebra_, joint, "time_derivative", in) : Values{};
+    std::vector<int> lambda;
+    for (std::size_t r = 0; r < joint.rows->count(); ++r) {
+      const int impulse = algebra_.input(element("lambda", system_.first_row(k) + r));
+      const int drift = C_t.empty() ? algebra_.value(0) : C_t.at(element("C_t", r));
+      power_.add(1, algebra_.times(impulse, algebra_.sum({{Jv.at(element("Jv", r)), drift}, {1, 1}})));
+      lambda.push_back(half_of(impulse));
+    }
+    blocks_.add_forces(algebra_, joint, in, lambda, forces_);
+    answers.add(in, {});
+  }
+
+  void add_effect(Answers& answers, std::size_t k, std::size_t e) {
+    const RowBlock& block = blocks_.effect(e);
+    const Values in = blocks_.inputs_with_jacobian(algebra_, block);
+    system_.add_block(algebra_, k, in);
+    std::vector<int> K, half_impulse, share;
+    for (std::size_t r = 0; r < block.rows->count(); ++r) K.push_back(algebra_.input(element("K", share_.size() + r)));
+    const LawWriter law = LawWriter(blocks_, algebra_, blocks_.mechanism().effects[e], block, in).with_masses(K);
+    const std::vector<int> F = law.at_rest().force(), k_of_row = law.slopes_within_limits().k;
+    const int one = algebra_.value(1), half = algebra_.value(0.5);
+    for (std::size_t r = 0; r < F.size(); ++r) {
+      const int stiff = algebra_.product({h_, k_of_row[r]}, {2, 1});
+      const int late = half_of(algebra_.function(Fn::inverse, {algebra_.times(stiff, K[r])}));
+      const int t = law.most(half, algebra_.sum({{one, late}, {1, -1}}));
+      const int past_middle = algebra_.product({algebra_.sum({{t, half}, {1, -1}}), stiff, law.rate()[r]}, {1, 1, 1});
+      half_impulse.push_back(half_of(algebra_.sum({{algebra_.times(h_, F[r]), past_middle}, {1, -1}})));
+      share.push_back(algebra_.function(Fn::sqrt, {half_of(algebra_.times(t, stiff))}));
+    }
+    blocks_.add_forces(algebra_, block, in, half_impulse, forces_);
+    share_.insert(share_.end(), share.begin(), share.end());
+    answers.add(in, share);
+  }
+
+  void factor() {
+    system_.couple(algebra_);
+    const std::size_t joints = joints_.system().size();
+    for (std::size_t row = joints; row < system_.size(); ++row) system_.soften(algebra_, row, share_[row - joints]);
+    system_.factor(algebra_, [&](const std::string& name, int op) { factor_[name] = op; });
+  }
+
+  // (M + h G / 4)^-1 (M (before - v) + h f / 2 + J^T lambda / 2)
+  Values lack() {
+    Forces torques;
+    blocks_.add_torques(algebra_, torques);
+    for (const auto& [place, terms] : torques) forces_[place].add(1, algebra_.times(half_, algebra_.sum(terms)));
+    std::map<std::pair<int, std::size_t>, int> changes;
+    each_component(blocks_, [&](const Component& c, double a, double) {
+      changes[{c.body, c.column}] = algebra_.sum(
+          {{algebra_.input(c.in("before")), algebra_.input(c.in("v")), algebra_.times(half_, algebra_.value(a))},
+           {1, -1, 1}});
+    });
+    each_component(blocks_, [&](const Component& c, double, double) {
+      const int momentum = blocks_.momentum(algebra_, c.body, c.column, [&](std::size_t column) {
+        return changes.at({c.body, column});
+      });
+      forces_[{c.body, c.column}].add(1, momentum);
+    });
+    Values lack;
+    each_component(
+        blocks_, [&](const Component& c, double, double) { lack[c.name] = change_of(blocks_, algebra_, c, forces_); });
+    return lack;
+  }
+
+  int half_of(int op) { return algebra_.times(algebra_.value(0.5), op); }
+
+  const RowBlocks& blocks_;
+  const JointRows& joints_;
+  Algebra algebra_;
+  RowSystem system_;  // of joints and effects
+  int h_, half_;
+  Summands power_;  // of the joints, in the step
+  std::map<std::string, int> factor_;
+  std::vector<int> share_;  // by row of the effects
+  Forces forces_;           // impulses of half a step
+};
+
+}  // namespace
+
+Middle::Middle(const RowBlocks& blocks, const JointRows& joints, Constants& constants)
+    : blocks_(blocks),
+      stiff_(joints.system().size() > 0 ? blocks.stiffened(constants) : blocks),
+      joints_(joints),
+      constants_(constants) {}
+
+Program Middle::weigh() const {
+  Algebra algebra(constants_);
+  std::size_t row = 0;
+  for (std::size_t e = 0; e < blocks_.mechanism().effects.size(); ++e) {
+    const RowBlock& block = blocks_.effect(e);
+    const Values K = blocks_.call(algebra, block, "effective_mass", blocks_.inputs_with_jacobian(algebra, block));
+    for (std::size_t r = 0; r < block.rows->count(); ++r, ++row) {
+      const int own = K.at(triangle_element("K", r, r));
+      algebra.output(element("K", row), own);
+      constants_.at_start[element("K", row)] = algebra.at_start(own);
+    }
+  }
+  return algebra.finish();
+}
+
+// In the plane, with the positive part of G: inv_I / (1 + h G inv_I / 4).
+int Middle::stiffened(Algebra& algebra, int body, int G) const {
+  const int quarter = algebra.times(algebra.value(0.25), algebra.input("h"));
+  const int inv_I = blocks_.inverse_inertia(algebra, body, 0, 0);
+  const int added = algebra.times(quarter, algebra.function(Fn::select, {G, G, algebra.value(0)}));
+  const int times = algebra.sum({{algebra.value(1), algebra.times(added, inv_I)}, {1, 1}});
+  return algebra.times(inv_I, algebra.function(Fn::inverse, {times}));
+}
+
+Program Middle::stiffen() const {
+  Algebra algebra(constants_);
+  const std::size_t columns = blocks_.mechanism().columns(), linear = blocks_.mechanism().linear();
+  std::map<int, std::vector<Values>> H;  // by body, of each joint: entries of its own rotation
+  for (std::size_t k = 0; k < joints_.system().blocks().size(); ++k) {
+    const RowBlock& joint = joints_.system().blocks()[k];
+    Values in = blocks_.inputs(algebra, joint);
+    for (std::size_t r = 0; r < joint.rows->count(); ++r)
+      in[fmt::format("lambda_{}", r + 1)] = algebra.input(element("lambda", joints_.system().first_row(k) + r));
+    const Values of_joint = blocks_.call(algebra, joint, "stiffness", in);
+    for (std::size_t b = 0; b < joint.bodies->size(); ++b) {
+      Values& own = H[(*joint.bodies)[b]].emplace_back();
+      for (std::size_t i = 0; i + linear < columns; ++i)
+        for (std::size_t j = 0; j + linear < columns; ++j)
+          own[element(element("H", i), j)] =
+              of_joint.at(element(element("H", columns * b + linear + i), columns * b + linear + j));
+    }
+  }
+  for (int body = 0; body < static_cast<int>(blocks_.mechanism().bodies.size()); ++body) {
+    if (!blocks_.mechanism().bodies[static_cast<std::size_t>(body)].turns()) continue;
+    for (std::size_t i = 0; i + linear < columns; ++i)
+      for (std::size_t j = i; j + linear < columns; ++j) {
+        Summands half;
+        for (const Values& own : H[body])
+          for (const auto& [r, c] : {std::pair{i, j}, std::pair{j, i}})
+            half.add({-1, 2}, own.at(element(element("H", r), c)));
+        const int G = algebra.sum(half, "G_" + blocks_.body_name(body));
+        algebra.output(stiff_.stiffened_name(body, i, j),
+                       blocks_.mechanism().spatial() ? G : stiffened(algebra, body, G));
+      }
+  }
+  return algebra.finish();
+}
+
+Program Middle::improve() const { return Round(stiff_, joints_, constants_).write(); }
+
+}  // namespace cdot::compile

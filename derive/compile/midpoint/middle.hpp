@@ -1,0 +1,32 @@
+// The middle of a step by the implicit midpoint rule, as functions of the header. As the World does it:
+// runtime/step/find_middle.cpp.
+#pragma once
+
+#include "derive/compile/rows/joint_rows.hpp"
+
+namespace cdot::compile {
+
+class Middle {
+ public:
+  Middle(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
+
+  // q, time -> K: J M^-1 J^T of each row of an effect, at the start of a step.
+  Program weigh() const;
+  // q, time, h, lambda -> W: inverse inertias with the stiffness of tension, (I + h G / 4)^-1. In space W is G itself:
+  // -d(J^T lambda)/dq of each body's own rotation.
+  Program stiffen() const;
+  // q, time, v, before, W, h, lambda, C, K -> d, y, power: one round of Newton for the mean velocities v of a step from
+  // `before`, and for lambda, which changes by 2 y. q are the poses of the middle, C is that of the end. `power` is
+  // the work of the joints, lambda (J v + dC/dt).
+  Program improve() const;
+
+ private:
+  int stiffened(Algebra& algebra, int body, int G) const;
+
+  const RowBlocks& blocks_;
+  const RowBlocks stiff_;
+  const JointRows& joints_;
+  Constants& constants_;
+};
+
+}  // namespace cdot::compile

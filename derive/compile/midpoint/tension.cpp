@@ -1,0 +1,29 @@
+#include "derive/compile/midpoint/tension.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace cdot::compile {
+
+std::string stiffen_of(const Mechanism& mechanism, const std::vector<std::string>& names) {
+  const bool turning = std::ranges::any_of(mechanism.bodies, &Body::inertia_turns);
+  std::string text = fmt::format(R"(
+  // Inverse inertias with the stiffness of tension in a step of h.
+  static void stiffen($dconst Pose (&q)[bodies], const T& time, {}const T& h, const T (&lambda)[rows], Tensor<T> (&W)[bodies]) {{
+    tension($pq, time, lambda, W);
+)",
+                                 turning ? "const Gyroscope* g, " : "");
+  int count = 0;
+  for (std::size_t b = 0; b < names.size(); ++b) {
+    const Body& body = mechanism.bodies[b];
+    if (!body.turns()) continue;
+    const double I = body.inv_I > 0 ? 1 / body.inv_I : 0;
+    const std::string own = body.inertia_turns
+                                ? fmt::format("g[{}].I", count++)
+                                : fmt::format("Tensor<T>{{T({0}), T({0}), T({0}), T(0), T(0), T(0)}}", I);
+    text += fmt::format("    W[{0}] = stiffened({1}, T(0.25) * h, W[{0}]);\n", names[b], own);
+  }
+  return text + "  }\n";
+}
+
+}  // namespace cdot::compile
