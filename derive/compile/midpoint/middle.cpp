@@ -21,7 +21,9 @@ std::vector<RowBlock> blocks_of(const RowBlocks& blocks, const JointRows& joints
 
 // One round of Newton. With the stiffness G = -d(J^T lambda)/dq of tension,
 //
-//   (M + h G / 4) d - J^T y = M (before - v) + (h f + J^T lambda) / 2,   J d = -C / h.
+//   (M + h G / 4) d - J^T y = M (before - v) + (h f + J^T lambda) / 2,   J d = -C / h,
+//
+// and J d = -(J v + dC/dt) of rows of velocities.
 //
 // An effect acts at the share t of the step: in the middle, or near the end if it is too stiff for the step. With its
 // force F at rest, its stiffness k and u = h^2 k K of its row,
@@ -40,10 +42,8 @@ class Round {
     for (std::size_t k = 0; k < joints; ++k) add_joint(answers, k);
     for (std::size_t e = 0; e < blocks_.mechanism().effects.size(); ++e) add_effect(answers, joints + e, e);
     factor();
-    const int per_step = algebra_.function(Fn::inverse, {h_});
-    const Answers::Answer change = answers.to(lack(), [&](std::size_t row) {
-      return row < rows ? algebra_.times(per_step, algebra_.input(element("C", row))) : algebra_.value(0);
-    });
+    const Answers::Answer change =
+        answers.to(lack(), [&](std::size_t row) { return row < rows ? missed_[row] : algebra_.value(0); });
     for (std::size_t row = 0; row < rows; ++row) algebra_.output(element("y", row), change.lambda[row]);
     each_component(blocks_, [&](const Component& component, double, double) {
       algebra_.output(component.in("d"), change.velocities.at(component.name));
@@ -63,7 +63,11 @@ class Round {
     for (std::size_t r = 0; r < joint.rows->count(); ++r) {
       const int impulse = algebra_.input(element("lambda", system_.first_row(k) + r));
       const int drift = C_t.empty() ? algebra_.value(0) : C_t.at(element("C_t", r));
-      power_.add(1, algebra_.times(impulse, algebra_.sum({{Jv.at(element("Jv", r)), drift}, {1, 1}})));
+      const int rate = algebra_.sum({{Jv.at(element("Jv", r)), drift}, {1, 1}});
+      const bool is_rate = joint.joint->is_rate[r];
+      const int C = algebra_.input(element("C", system_.first_row(k) + r));
+      missed_.push_back(is_rate ? rate : algebra_.times(algebra_.function(Fn::inverse, {h_}), C));
+      power_.add(1, algebra_.times(impulse, rate));
       lambda.push_back(half_of(impulse));
     }
     blocks_.add_forces(algebra_, joint, in, lambda, forces_);
@@ -129,7 +133,8 @@ class Round {
   Algebra algebra_;
   RowSystem system_;  // of joints and effects
   int h_, half_;
-  Summands power_;  // of the joints, in the step
+  std::vector<int> missed_;  // by row of the joints: C / h of the end, or the rate of a row of velocities
+  Summands power_;           // of the joints, in the step
   std::map<std::string, int> factor_;
   std::vector<int> share_;  // by row of the effects
   Forces forces_;           // impulses of half a step

@@ -189,9 +189,9 @@ void Dampers::look_at(Algebra& algebra, const Damped& damped, std::size_t number
     const int rest = algebra.sum({{algebra.input("h"), at.t[i]}, {1, -1}});
     impulse.push_back(algebra.times(rest, at.R[i]));
     const int end = algebra.times(rest, at.d[i]);
-    algebra.output(element("given", damped.first + i), algebra.sum({{impulse[i], algebra.times(end, p[i])}, {1, 1}}));
     ends.push_back(calms_ ? algebra.sum({{end, calming(algebra, law, k[i], masses.own(i))}, {1, 1}}) : end);
     algebra.output(element("end", damped.first + i), ends[i]);
+    algebra.output(element("given", damped.first + i), algebra.sum({{impulse[i], algebra.times(end, p[i])}, {1, 1}}));
   }
   for (std::size_t i = 0; i < rows; ++i) {
     Summands terms{{p[i], r[i]}, {1, -1}};

@@ -52,6 +52,7 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
     joints_.push_back({names.joints[j], names.joints[j], &spec, &spec.rows, &joint.bodies, &joint.parameters});
     if (!joint.in_time.empty()) joints_.back().in_time = &joint.in_time;
     check_time(joints_.back(), joint.name);
+    joints_.back().joint = &joint;
     if (joint.coordinate.empty()) continue;
     joints_.back().owner = owner_of(names.joints[j], joint.name);
     joints_.back().in_time = functions_of(joint.name);

@@ -30,6 +30,7 @@ struct RowBlock {
   const std::vector<double>* parameters = nullptr;
   const Joint* motor = nullptr;                            // whose speed is the rate of its row
   const std::map<std::size_t, InTime>* in_time = nullptr;  // parameters that follow functions of time; null: none
+  const Joint* joint = nullptr;                            // if it is one
 };
 
 // Forces by body and column.

@@ -48,9 +48,8 @@ void refuse_joint(const SceneJoint& joint, const Scene& scene, Refusals& refusal
   const auto has = [&](RowKind kind) {
     return type && std::ranges::find(type->row_kinds, kind) != type->row_kinds.end();
   };
-  const Integrator method = scene.settings.integrator;
-  if (has(RowKind::velocity) && !type->is_effect && (method == Integrator::rattle || method == Integrator::implicit))
-    refuse(fmt::format("rows of velocities by {}, as {} has", row_of(method).name, type->name));
+  if (has(RowKind::velocity) && !type->is_effect && scene.settings.integrator == Integrator::rattle)
+    refuse(fmt::format("rows of velocities by rattle, as {} has", type->name));
   if (has(RowKind::inequality) && !is_rope(*type))
     refuse(fmt::format("inequality beside other rows, as {} has", type->name));
 }
@@ -155,6 +154,7 @@ Joint joint_of(const Scene& scene, const BasicWorld<S>& world, int index) {
   const SceneJoint& source = scene.joints[static_cast<std::size_t>(index)];
   Joint joint{source.name, source.definition.type, {}, world.joint_parameters(index)};
   const int ground = static_cast<int>(scene.bodies.size());
+  for (const RowKind kind : world.joint_type(index).row_kinds) joint.is_rate.push_back(kind == RowKind::velocity);
   for (const int body : source.definition.bodies) joint.bodies.push_back(body == world_body ? ground : body);
   return joint;
 }
@@ -210,6 +210,22 @@ void refuse_counters(const Scene& scene, BasicWorld<S>& world) {
   refusals.throw_any();
 }
 
+// The midpoint rule asks for the rates by the mean spin of the drift.
+void refuse_rates_of_gyroscopes(const Scene& scene, const Mechanism& mechanism) {
+  Refusals refusals(scene);
+  const auto turns = [&](int body) { return mechanism.bodies[static_cast<std::size_t>(body)].inertia_turns; };
+  for (const Joint& joint : mechanism.joints) {
+    if (std::ranges::count(joint.is_rate, true) == 0 || std::ranges::none_of(joint.bodies, turns)) continue;
+    refusals.add(
+        std::ranges::find(scene.joints, joint.name, &SceneJoint::name)->where,
+        fmt::format("{}: cdot compile knows no rows of velocities by implicit on bodies whose moments of inertia "
+                    "differ, as {} has",
+                    joint.name, joint.type),
+        "give another --integrator, or leave it to cdot-run");
+  }
+  refusals.throw_any();
+}
+
 void note_own_specs(Mechanism& mechanism) {
   const auto note = [&](const std::string& type) {
     if (const std::string file = file_of_own_type(type); !file.empty()) mechanism.own_specs[type] = file;
@@ -234,6 +250,7 @@ void add_parts(const Scene& scene, Mechanism& mechanism) {
     if (!world.joint_type(i).is_effect && !is_rope(world.joint_type(i)) &&
         !scene.joints[static_cast<std::size_t>(i)].definition.soft)
       add_joint(scene, world, i, mechanism);
+  if (mechanism.method == Method::implicit) refuse_rates_of_gyroscopes(scene, mechanism);
   add_effects(scene, world, mechanism);
   note_own_specs(mechanism);
 }

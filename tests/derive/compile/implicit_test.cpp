@@ -19,6 +19,7 @@
 #include "heavy_load_planar_implicit.hpp"
 #include "pulley_ratio1_implicit.hpp"
 #include "pulley_ratio2_implicit.hpp"
+#include "rolling_implicit.hpp"
 #include "simple_pendulum_implicit.hpp"
 #include "slider_crank_implicit.hpp"
 #include "slider_crank_space_implicit.hpp"
@@ -65,7 +66,11 @@ TEST(CompiledMidpoint, MovesWithEffectsAsTheWorld) {
   runs(tailgate_implicit<double>(), "specs/scenes/tailgate.toml");
 }
 
-// A light chain under a heavy load at 60 steps a second: without the stiffness of tension no step of these is found.
+TEST(CompiledMidpoint, RollsAsTheWorld) {
+  cdot::runs_as_the_world<rolling_implicit<double>>(scenes + "rolling.toml", Integrator::implicit);
+}
+
+// Light chains under heavy loads at 60 steps a second: rounds of Newton without the stiffness of tension would fail.
 TEST(CompiledMidpoint, MovesUnderHeavyLoadsAsTheWorld) {
   cdot::runs_as_the_world<heavy_load_planar_implicit<double>>(cases + "heavy_load/planar.toml", Integrator::implicit,
                                                               1e-9, 2, 1.0 / 60);
