@@ -46,8 +46,7 @@ class HeaderWriter {
     const BodyTexts bodies{mechanism_, names_.bodies};
     text_ += bodies.turn(equations_.turning) + gyroscopes_of(mechanism_, names_.bodies);
     if (mechanism_.method == Method::euler && !has_effects()) text_ += bodies.push();
-    text_ += bodies.weighed() + bodies.energy(has_effects());
-    if (by_midpoint() && has().drags) text_ += bodies.dragged();
+    text_ += bodies.weighed() + bodies.energy(has_effects()) + (has().midpoint && has().drags ? bodies.dragged() : "");
     write_equations();
     write_corrections();
     if (has().exerts) text_ += start_of(has());
@@ -61,9 +60,6 @@ class HeaderWriter {
   }
 
  private:
-  bool on_accelerations() const { return mechanism_.on_accelerations(); }
-  bool by_rattle() const { return mechanism_.method == Method::rattle; }
-  bool by_midpoint() const { return mechanism_.method == Method::implicit; }
   Contents has() const {
     return {.rows = !equations_.rows.empty(),
             .effects = !mechanism_.effects.empty(),
@@ -73,19 +69,18 @@ class HeaderWriter {
             .spatial = mechanism_.spatial(),
             .gyroscopes = has_gyroscopes(mechanism_),
             .angles = mechanism_.angles > 0,
-            .rattle = by_rattle(),
-            .midpoint = by_midpoint(),
+            .rattle = mechanism_.method == Method::rattle,
+            .midpoint = mechanism_.method == Method::implicit,
             .dampens = !equations_.dampen.outputs.empty(),
             .looks = !equations_.effect_of.empty(),
             .finishes = equations_.finishes,
             .exerts = equations_.exerts,
-            .carries = by_rattle() && carries_spin(mechanism_, !equations_.effect_of.empty()),
-            .modes = !mechanism_.bounded.empty() && on_accelerations(),
+            .carries = mechanism_.method == Method::rattle && carries_spin(mechanism_, !equations_.effect_of.empty()),
+            .modes = !mechanism_.bounded.empty() && mechanism_.on_accelerations(),
             .loads = mechanism_.has_loads(),
             .drags = std::ranges::any_of(mechanism_.bodies, &Body::drags),
             .foresees = !equations_.apply.outputs.empty()};
   }
-  bool has_rows() const { return has().rows; }
   bool has_effects() const { return has().effects || has().bounded; }
 
   bool has_inputs() const { return !equations_.constants.inputs.empty(); }
@@ -117,10 +112,10 @@ class HeaderWriter {
     for (const std::string& note : mechanism_.notes) line("// " + note);
     line("#pragma once");
     line();
-    const bool drags = by_midpoint() && has().drags;
+    const bool drags = has().midpoint && has().drags;
     if (calls_functions(equations_) || mechanism_.spatial() || drags) line("#include <cmath>"), line();
     text_ += arithmetic;
-    if (mechanism_.spatial()) text_ += std::string(space) + (by_midpoint() ? tension : "");
+    if (mechanism_.spatial()) text_ += std::string(space) + (has().midpoint ? tension : "");
     line("namespace cdot::scenes {");
     line();
     line("template <class T>");
@@ -141,7 +136,7 @@ class HeaderWriter {
     for (const auto& [name, value] : equations_.constants.named)
       line(fmt::format("  static constexpr double {} = {};", name, value));
     text_ += types_of(mechanism_);
-    if (has_rows()) {
+    if (has().rows) {
       line("  // The numbers of J, and K = J M^-1 J^T = L D L^T with the rows numbered in the order of elimination.");
       line("  struct Jacobian {");
       for (const std::string& member : equations_.stored) line("    T " + member + ";");
@@ -163,7 +158,7 @@ class HeaderWriter {
       line(fmt::format("    T angle[{0}], turns[{0}];", mechanism_.angles));
       line("  };");
     }
-    if (by_midpoint())
+    if (has().midpoint)
       line(fmt::format("  using Inertia = {};  // its inverse", mechanism_.spatial() ? "Tensor<T>" : "T"));
     if (has().foresees) line("  struct Multipliers {\n    T of[rows];\n  };");
     if (has().events) {
@@ -225,7 +220,7 @@ class HeaderWriter {
     text_ += bounded_of(equations_.is_rate, has());
     if (has().looks)
       text_ += damping_of(equations_.effect_of.size(), equations_.effect_of.back() + 1, equations_.triangle);
-    if (has_rows()) {
+    if (has().rows) {
       write_function("J, and the factor of K", "evaluate(" + at + ", Jacobian& J)", equations_.evaluate);
       write_function("C", "errors(" + at + ", T (&C)[rows])", equations_.errors);
       write_function("J v + dC/dt", "rates(const Jacobian& J, " + moving + ", T (&Cdot)[rows])", equations_.rates);
@@ -236,13 +231,13 @@ class HeaderWriter {
     if (has().foresees) write_foreseen(at);
     if (has_effects())
       write_function("Potential energy of the effects", "potential(" + at + ", T& E)", equations_.potential);
-    if (by_rattle()) write_rattle(at, moving);
-    else if (by_midpoint()) write_midpoint(at, moving);
-    else if (on_accelerations()) write_accelerations(at, moving);
+    if (has().rattle) write_rattle(at, moving);
+    else if (has().midpoint) write_midpoint(at, moving);
+    else if (mechanism_.on_accelerations()) write_accelerations(at, moving);
     else if (has_effects())
       write_function("Velocities after h with the effects, implicit as far as their slopes say",
-                     "kick(" + at + ", " + moving + (has_rows() ? ", const Jacobian& J" : "") +
-                         ", const T& h, Velocity (&next)[bodies]" + (has_rows() ? ", T (&lambda)[rows]" : "") +
+                     "kick(" + at + ", " + moving + (has().rows ? ", const Jacobian& J" : "") +
+                         ", const T& h, Velocity (&next)[bodies]" + (has().rows ? ", T (&lambda)[rows]" : "") +
                          (has().bounded ? ", Bounded& B)" : ")"),
                      equations_.kick);
     if (has().ends) write_ends(at, moving);
@@ -260,7 +255,7 @@ class HeaderWriter {
 
   // At both ends of a step.
   void write_dampers(const std::string& at, const std::string& moving, const std::string& end) {
-    const std::string J = has_rows() ? ", const Jacobian& J" : "", lambda = has_rows() ? ", T (&lambda)[rows]" : "";
+    const std::string J = has().rows ? ", const Jacobian& J" : "", lambda = has().rows ? ", T (&lambda)[rows]" : "";
     if (has().dampens)
       write_function("Velocities after the effects at the start of a step of h that change with their rates",
                      "dampen(" + at + ", " + moving + ", const T& h, Velocity (&next)[bodies])", equations_.dampen);
@@ -285,7 +280,7 @@ class HeaderWriter {
   }
 
   void write_rattle(const std::string& at, const std::string& moving) {
-    const std::string J = has_rows() ? ", const Jacobian& J" : "", lambda = has_rows() ? ", T (&lambda)[rows]" : "";
+    const std::string J = has().rows ? ", const Jacobian& J" : "", lambda = has().rows ? ", T (&lambda)[rows]" : "";
     const std::string end = ", Velocity (&pull)[bodies]" + std::string(has().bounded ? ", Bounded& B)" : ")");
     write_function("Accelerations without joints", "fall(" + at + ", " + moving + ", Velocity (&a)[bodies])",
                    equations_.fall);
@@ -296,20 +291,18 @@ class HeaderWriter {
   }
 
   void write_midpoint(const std::string& at, const std::string& moving) {
-    const bool rows = has_rows();
+    const bool rows = has().rows, spatial = mechanism_.spatial();
     write_dampers(at, moving, ")");
     if (has().effects) {
       line(fmt::format("\n  static constexpr int effect_rows = {};", equations_.weigh.outputs.size()));
       write_function("K of the rows of effects", "weigh_effects(" + at + ", T (&K)[effect_rows])", equations_.weigh);
     }
-    if (rows && mechanism_.spatial())
-      write_function("Stiffness of tension", "tension(" + at + ", const T (&lambda)[rows], Inertia (&W)[bodies])",
+    if (rows)
+      write_function(spatial ? "Stiffness of tension" : "Inverse inertias with the stiffness of tension in a step of h",
+                     (spatial ? "tension(" + at : "stiffen(" + at + ", const T& h") +
+                         ", const T (&lambda)[rows], Inertia (&W)[bodies])",
                      equations_.stiffen);
-    else if (rows)
-      write_function("Inverse inertias with the stiffness of tension in a step of h",
-                     "stiffen(" + at + ", const T& h, const T (&lambda)[rows], Inertia (&W)[bodies])",
-                     equations_.stiffen);
-    if (rows && mechanism_.spatial()) text_ += stiffen_of(mechanism_, names_.bodies);
+    if (rows && spatial) text_ += stiffen_of(mechanism_, names_.bodies);
     write_function("A round of Newton in the middle of a step of h: changes d of v, and y of lambda / 2",
                    "improve(" + at + ", " + moving + ", const Velocity (&before)[bodies], " +
                        (rows ? "const Inertia (&W)[bodies], " : "") + (has().gyroscopes ? "const Gyroscope* g, " : "") +
@@ -333,22 +326,22 @@ class HeaderWriter {
 
   void write_ends(const std::string& at, const std::string& moving) {
     write_function("The part of rows with ends in a projection",
-                   "reach(" + at + (has_rows() ? ", const Jacobian& J" : "") + ", Bounded& B)", equations_.reach);
+                   "reach(" + at + (has().rows ? ", const Jacobian& J" : "") + ", Bounded& B)", equations_.reach);
     write_function("Errors of rows with ends", "past(" + at + ", T (&past)[bounded])", equations_.past);
     write_function("J v of rows with bounds", "along(" + at + ", " + moving + ", T (&along)[bounded])",
                    equations_.along);
   }
 
   void write_accelerations(const std::string& at, const std::string& moving) {
-    if (!has_rows() || has().modes)
+    if (!has().rows || has().modes)
       write_function("Accelerations without joints", "fall(" + at + ", " + moving + ", Velocity (&a)[bodies])",
                      equations_.fall);
-    if (!has_rows() && !has().modes) {
+    if (!has().rows && !has().modes) {
       text_ += free_slope;
       return;
     }
     write_function("M a = f + J^T lambda with J a = gamma = -Jdot v - d/dt(dC/dt)",
-                   "accelerate(" + at + ", " + moving + (has_rows() ? ", const Jacobian& J, T (&lambda)[rows]" : "") +
+                   "accelerate(" + at + ", " + moving + (has().rows ? ", const Jacobian& J, T (&lambda)[rows]" : "") +
                        ", Velocity (&a)[bodies]" + (has().modes ? ", Bounded& B)" : ")"),
                    equations_.accelerate);
     if (has().modes) write_modes(at, moving);
@@ -366,7 +359,7 @@ class HeaderWriter {
         equations_.resolve);
     if (has().loads)
       write_function("The forces with which bounds grow",
-                     "carry(" + at + (has_rows() ? ", const Jacobian& J, const T (&lambda)[rows]" : "") +
+                     "carry(" + at + (has().rows ? ", const Jacobian& J, const T (&lambda)[rows]" : "") +
                          ", const T (&force)[bounded], T (&load)[bounded])",
                      equations_.carry);
     text_ += modes_of(has(), equations_.waits);
@@ -374,7 +367,7 @@ class HeaderWriter {
 
   void write_step() {
     std::string step = step_of(mechanism_, has());
-    if (breaks(mechanism_) || has().modes || by_midpoint()) text_ += replaces;
+    if (breaks(mechanism_) || has().modes || has().midpoint) text_ += replaces;
     if (breaks(mechanism_)) {
       step.replace(step.find(step_head), step_head.size(), "advance(State& s, const T& h)");
       step += step_in_parts(mechanism_.method, has());
@@ -383,7 +376,8 @@ class HeaderWriter {
   }
 
   void write_corrections() {
-    const char* const renew = on_accelerations() ? "        weigh(s.q, renews);\n" : "        follow(s, renews);\n";
+    const char* const renew =
+        mechanism_.on_accelerations() ? "        weigh(s.q, renews);\n" : "        follow(s, renews);\n";
     text_ += corrections_of(mechanism_.tolerance, has(), has().gyroscopes ? renew : "");
   }
 

@@ -209,6 +209,7 @@ Calls calls_of(Method method, const Contents& has) {
   Calls calls{.evaluate = 1, .errors = 2, .rates = 1, .solve = 2};  // the corrections
   if (has.ends) calls.past = 2;
   if (has.events) calls.distances = 1;
+  if (has.modes) calls.guard = 2, calls.reach = 1;
   if (method == Method::rattle) {
     calls.fall = 2, calls.dampen = has.dampens, calls.notice = has.looks, calls.look = has.looks ? 2 : 0;
     if (has.finishes) calls.finish = 1, --calls.rates, --calls.solve;
@@ -240,7 +241,8 @@ long operations_of(const Equations& e, const Calls& calls) {
                                                      {calls.distances, &e.distances}, {calls.dampen, &e.dampen},
                                                      {calls.notice, &e.notice},       {calls.look, &e.look},
                                                      {calls.finish, &e.finish},       {1, &e.weigh},
-                                                     {calls.improve, &e.stiffen},     {calls.improve, &e.improve}};
+                                                     {calls.improve, &e.stiffen},     {calls.guard, &e.guard},
+                                                     {calls.reach, &e.reach},         {calls.improve, &e.improve}};
   long sum = 0;
   for (const auto& [times, program] : programs) sum += long{times} * derive::count(*program).total();
   return sum;

@@ -13,7 +13,7 @@ namespace cdot::compile {
 // How often step() calls each function, with one round of Newton and no end passed.
 struct Calls {
   int evaluate = 0, errors = 0, rates = 0, accelerate = 0, solve = 0, fall = 0, kick = 0, past = 0;
-  int distances = 0;
+  int distances = 0, guard = 0, reach = 0;
   int dampen = 0, notice = 0, look = 0, finish = 0;  // by RATTLE and the midpoint rule
   int improve = 0;                                   // by the midpoint rule
 };

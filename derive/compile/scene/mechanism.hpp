@@ -53,7 +53,7 @@ struct Joint {
   double speed = 0;
   std::optional<InTime> speed_in_time{};
   std::map<std::size_t, InTime> in_time{};  // those of `parameters` that follow functions of time
-  std::vector<bool> is_rate{};  // by row: of velocities, without C
+  std::vector<bool> is_rate{};              // by row: of velocities, without C
 };
 
 // A force along each row of a spec, or along one of its coordinates; a row with bounds on a coordinate.
