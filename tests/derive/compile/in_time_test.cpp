@@ -122,6 +122,7 @@ TEST(CompiledInTime, NumbersOfJointsFollowExpressions) {
 // Functions of time belong to the scene that has written them.
 TEST(CompiledInTime, AreThoseOfTheirScene) {
   const auto read = [](const char* scene) { return cdot::read_scene(std::string(CDOT_SOURCE_DIR) + "/" + scene); };
+  (void)read("tests/derive/compile/scenes/timed.toml");  // has others
   const cdot::Scene timed = read("tests/derive/compile/scenes/timed_bounds.toml"),
                     pushed = read("specs/scenes/chain_10.toml");
   ASSERT_EQ(timed.profiles.size(), 4u);
