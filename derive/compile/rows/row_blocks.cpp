@@ -46,23 +46,25 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
                                                                 : type,
                                of_type, mechanism.method == Method::implicit);
   }
-  for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
-    const Joint& joint = mechanism.joints[j];
-    const SpecPrograms& spec = types_.at(joint.type);
-    joints_.push_back({names.joints[j], names.joints[j], &spec, &spec.rows, &joint.bodies, &joint.parameters});
-    if (!joint.in_time.empty()) joints_.back().in_time = &joint.in_time;
-    check_time(joints_.back(), joint.name);
-    joints_.back().joint = &joint;
-    if (joint.coordinate.empty()) continue;
-    joints_.back().owner = owner_of(names.joints[j], joint.name);
-    joints_.back().in_time = functions_of(joint.name);
-    joints_.back().rows = &spec.coordinates.at(joint.coordinate);
-    joints_.back().motor = &joint;
-  }
+  for (std::size_t j = 0; j < mechanism.joints.size(); ++j) add_joint(mechanism.joints[j], names.joints[j]);
   for (std::size_t e = 0; e < mechanism.effects.size(); ++e)
     effects_.push_back(block_of(names.effects[e], mechanism.effects[e]));
   for (std::size_t b = 0; b < mechanism.bounded.size(); ++b)
     bounded_.push_back(block_of(names.bounded[b], mechanism.bounded[b]));
+}
+
+void RowBlocks::add_joint(const Joint& joint, const std::string& name) {
+  const SpecPrograms& spec = types_.at(joint.type);
+  joints_.push_back({name, name, &spec, &spec.rows, &joint.bodies, &joint.parameters});
+  RowBlock& block = joints_.back();
+  block.joint = &joint;
+  if (!joint.in_time.empty()) block.in_time = &joint.in_time;
+  check_time(block, joint.name);
+  if (joint.coordinate.empty()) return;
+  block.owner = owner_of(name, joint.name);
+  block.in_time = functions_of(joint.name);
+  block.rows = &spec.coordinates.at(joint.coordinate);
+  block.motor = &joint;
 }
 
 const SpecPrograms& RowBlocks::law(const Effect& effect) const { return types_.at(law_of(effect)); }

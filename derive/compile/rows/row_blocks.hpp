@@ -91,6 +91,7 @@ class RowBlocks {
                   Forces& forces) const;
 
  private:
+  void add_joint(const Joint& joint, const std::string& name);
   std::string law_of(const Effect& effect) const;
   void note_coordinate_laws(const derive::SpecsFolder& specs);
   // Of rows whose parameters follow functions of time: dC/dt and gamma, from C and J v at this time.
