@@ -58,7 +58,8 @@ class Round {
     const Values in = blocks_.inputs_with_jacobian(algebra_, joint);
     system_.add_block(algebra_, k, in);
     const Values Jv = blocks_.call(algebra_, joint, "velocity", in);
-    const Values C_t = joint.rows->has_rates ? blocks_.call(algebra_, joint, "time_derivative", in) : Values{};
+    const bool has_rates = joint.rows->has_rates || joint.in_time;
+    const Values C_t = has_rates ? blocks_.call(algebra_, joint, "time_derivative", in) : Values{};
     std::vector<int> lambda;
     for (std::size_t r = 0; r < joint.rows->count(); ++r) {
       const int impulse = algebra_.input(element("lambda", system_.first_row(k) + r));

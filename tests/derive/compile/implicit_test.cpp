@@ -26,6 +26,7 @@
 #include "tailgate_implicit.hpp"
 #include "three_bodies_space_implicit.hpp"
 #include "thrown_implicit.hpp"
+#include "timed_joints_implicit.hpp"
 #include "torque_free_body_space_implicit.hpp"
 #include "torsion_implicit.hpp"
 #include "tumbling_implicit.hpp"
@@ -68,6 +69,10 @@ TEST(CompiledMidpoint, MovesWithEffectsAsTheWorld) {
 
 TEST(CompiledMidpoint, RollsAsTheWorld) {
   cdot::runs_as_the_world<rolling_implicit<double>>(scenes + "rolling.toml", Integrator::implicit);
+}
+
+TEST(CompiledMidpoint, IsDrivenAsTheWorld) {
+  cdot::runs_as_the_world<timed_joints_implicit<double>>(scenes + "timed_joints.toml", Integrator::implicit);
 }
 
 // Light chains under heavy loads at 60 steps a second: rounds of Newton without the stiffness of tension would fail.
