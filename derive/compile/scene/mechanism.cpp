@@ -45,9 +45,6 @@ void refuse_joint(const SceneJoint& joint, const Scene& scene, Refusals& refusal
   const JointType* type = find_joint_type(scene.dimension, joint.definition.type);
   if (type && (joint.definition.soft || is_rope(*type)) && in_time(joint.definition.parameters))
     refuse("ropes and soft joints whose numbers follow functions of time");
-  if (type && !type->is_effect && in_time(joint.definition.parameters) &&
-      scene.settings.integrator == Integrator::implicit)
-    refuse("joints whose numbers follow functions of time by the implicit method");
   const auto has = [&](RowKind kind) {
     return type && std::ranges::find(type->row_kinds, kind) != type->row_kinds.end();
   };

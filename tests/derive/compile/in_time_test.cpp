@@ -119,14 +119,6 @@ TEST(CompiledInTime, NumbersOfJointsFollowExpressions) {
   cdot::runs_as_the_world<timed_joints_dop853<double>>(joints, Integrator::dop853);
 }
 
-TEST(CompiledInTime, JointsByImplicitAreRefused) {
-  const cdot::ShellResult refused = cdot::compile(scenes + "timed_joints.toml --integrator implicit");
-  EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.text.find("error: rod: cdot compile knows no joints whose numbers follow functions of time by the"),
-            std::string::npos)
-      << refused.text;
-}
-
 // Functions of time belong to the scene that has written them.
 TEST(CompiledInTime, AreThoseOfTheirScene) {
   const auto read = [](const char* scene) { return cdot::read_scene(std::string(CDOT_SOURCE_DIR) + "/" + scene); };
