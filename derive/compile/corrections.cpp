@@ -81,7 +81,7 @@ constexpr const char* renews = R"(      const auto is_slow = goes_on && {0}worst
 
 constexpr const char* moves_of_rows = R"(      T lambda[rows];
       Velocity d[bodies];
-      solve($qs.J, {}C, lambda, d);
+      solve({}s.J, {}C, lambda, d);
       for (int i = 0; i < bodies; ++i) d[i] = -d[i];
 )";
 
@@ -89,20 +89,42 @@ constexpr const char* no_moves = R"(      Velocity d[bodies];
       for (int i = 0; i < bodies; ++i) d[i] = still();
 )";
 
-constexpr const char* moves_of_ends = R"(      auto passed = T(1) < T(0);
+constexpr const char* moves_of_ends = R"(      T mu[bounded] = {{}};
+      auto passed = T(1) < T(0);
       for (int i = 0; i < bounded; ++i) passed = passed || active[i];
       if (any(passed)) {{
         if (!reached) reach($sat.q, at.time, {0}B);
         reached = true;
-        T along_ends[bounded], c[bounded], mu[bounded];
+        T along_ends[bounded], c[bounded];
         along($sat.q, at.time, d, along_ends);
-        for (int i = 0; i < bounded; ++i) c[i] = -over[i] - along_ends[i], mu[i] = T(0);
+        for (int i = 0; i < bounded; ++i) c[i] = -over[i] - along_ends[i];
         divide(B.S, active, c, mu);
-        for (int e = 0; e < bounded; ++e) {{
+{1}      }}
+{2})";
+
+constexpr const char* adds_moves_of_ends = R"(        for (int e = 0; e < bounded; ++e) {
           for (int i = 0; i < bodies; ++i) d[i] = d[i] + mu[e] * B.g[e][i];
-        }}
-      }}
+        }
 )";
+
+// Where inertias turn: impulses are found with M^-1 and J of `at`, but act on M^-1 as it is, as in the World.
+constexpr const char* moves_by_all = R"(      Pose mixed[bodies];
+      for (int i = 0; i < bodies; ++i) mixed[i] = at.q[i], mixed[i].I = s.q[i].I;
+{0}      displace($smixed, at.time, {1}mu, d);
+)";
+constexpr const char* sums_impulses = R"(      for (int i = 0; i < rows; ++i) lambda[i] = -lambda[i];
+      if (reached) {
+        for (int e = 0; e < bounded; ++e) {
+          for (int i = 0; i < rows; ++i) lambda[i] = lambda[i] + mu[e] * B.l[e][i];
+        }
+      }
+)";
+
+std::string ends_of(const Contents& has) {
+  const bool keeps = has.gyroscopes && !has.modes;
+  const std::string by_all = fmt::format(moves_by_all, has.rows ? sums_impulses : "", has.rows ? "s.J, lambda, " : "");
+  return fmt::format(moves_of_ends, has.rows ? "s.J, " : "", keeps ? "" : adds_moves_of_ends, keeps ? by_all : "");
+}
 
 constexpr const char* moves_bodies = R"(      for (int i = 0; i < bodies; ++i) d[i] = choose(goes_on, d[i], still());
       for (int i = 0; i < bodies; ++i) moves[i] = moves[i] + d[i];
@@ -328,10 +350,12 @@ std::string corrections_of(double tolerance, const Contents& has, const std::str
         renews, has.ends && !has.modes ? "!more && " : "",
         when(has.rows, "        evaluate($sat.q, at.time, s.J);\n") + when(has.ends, "        reached = false;\n"),
         renew, has.foresees ? aims(has.spatial) : "");
-    text += has.rows ? fmt::format(moves_of_rows, has.foresees ? "B, aimed, " : "") : no_moves;
+    const bool turns_with_ends = has.ends && has.gyroscopes && !has.modes;
+    text += has.rows ? fmt::format(moves_of_rows, turns_with_ends ? "at.q, " : "$q", has.foresees ? "B, aimed, " : "")
+                     : no_moves;
     text += when(has.foresees,
                  "      for (int i = 0; i < rows; ++i) total[i] = total[i] - select(goes_on, lambda[i], T(0));\n");
-    if (has.ends) text += fmt::format(moves_of_ends, has.rows ? "s.J, " : "");
+    if (has.ends) text += ends_of(has);
     text += fmt::format(moves_bodies, has.spatial ? moves_poses_in_space : moves_poses);
   }
   if (has.projects()) text += project_begins + when(has.rows, projects_rows);

@@ -11,6 +11,7 @@
 #include "derive/compile/rows/joint_rows.hpp"
 #include "derive/compile/rows/kick.hpp"
 #include "derive/compile/rows/motion.hpp"
+#include "derive/compile/scene/groups.hpp"
 #include "derive/kernel/factor.hpp"
 #include "derive/program/print.hpp"
 #include "runtime/text/spelling.hpp"
@@ -49,6 +50,7 @@ class EquationWriter {
     if (mechanism_.method == Method::implicit) write_middle();
     if (mechanism_.angles > 0) out_.angles = angles_of(blocks_, out_.constants);
     write_bounded();
+    if (mechanism_.method == Method::rattle && !mechanism_.bounded.empty()) list_groups();
     // Ends that a guess passes are other ones than those that the step passes. By RATTLE forces that change with rates
     // pull beside the joints.
     if (system().size() > 0 && foresees()) write_foreseen();
@@ -104,7 +106,8 @@ class EquationWriter {
 
   bool foresees() const {
     const Method method = mechanism_.method;
-    return (method == Method::euler || method == Method::rattle) && !out_.has_ends && !out_.finishes;
+    return mechanism_.foresees && (method == Method::euler || method == Method::rattle) && !out_.has_ends &&
+           !out_.finishes;
   }
 
   void write_middle() {
@@ -123,6 +126,27 @@ class EquationWriter {
     for (std::size_t row = 0; row < system().size(); ++row) lambda.push_back(algebra.input(element("lambda", row)));
     system().write_changes(algebra, lambda, [&](std::size_t k) { return joints_.inputs(algebra, k); });
     out_.apply = algebra.finish();
+  }
+
+  void list_groups() {
+    const std::vector<int> all = groups_of(mechanism_);
+    std::vector<int> of_body, of_row, of_bound;
+    const auto of = [&](const std::vector<int>& bodies) {
+      for (const int b : bodies)
+        if (const int group = all[static_cast<std::size_t>(b)]; group >= 0) return group;
+      return 0;
+    };
+    std::ranges::copy_if(all, std::back_inserter(of_body), [](int group) { return group >= 0; });
+    for (const RowBlock& block : system().blocks()) of_row.insert(of_row.end(), block.rows->count(), of(*block.bodies));
+    for (const Effect& effect : mechanism_.bounded) of_bound.push_back(of(effect.bodies));
+    out_.groups = 1 + *std::ranges::max_element(of_body);
+    out_.group_lists = fmt::format("  static constexpr int groups = {};  // mechanisms\n", out_.groups);
+    const auto list = [&](const char* name, const std::vector<int>& groups) {
+      if (!groups.empty())
+        out_.group_lists +=
+            fmt::format("  static constexpr int group_of_{}[] = {{{}}};\n", name, fmt::join(groups, ", "));
+    };
+    list("body", of_body), list("row", of_row), list("bound", of_bound);
   }
 
   void check_inputs() const {
@@ -152,7 +176,9 @@ class EquationWriter {
     if (!out_.has_ends) return;
     out_.reach = reach_of(blocks_, joints_, out_.constants);
     out_.past = past_of(blocks_, out_.constants);
+    if (mechanism_.method == Method::rattle) out_.nearest = nearest_of(blocks_, out_.constants);
     out_.along = along_of(blocks_, out_.constants);
+    if (mechanism_.keeps_momenta()) out_.displace = displace_of(blocks_, joints_, out_.constants);
   }
 
   // Numbers that nobody reads are not stored, and c and s of no body that nobody reads.
@@ -177,10 +203,10 @@ class EquationWriter {
 }  // namespace
 
 std::vector<const Program*> programs_of_equations(const Equations& e) {
-  return {&e.evaluate,    &e.errors,  &e.rates,  &e.accelerate, &e.solve,   &e.apply,  &e.aim,
-          &e.solve_aimed, &e.fall,    &e.kick,   &e.potential,  &e.reach,   &e.past,   &e.along,
-          &e.angles,      &e.dampen,  &e.notice, &e.look,       &e.finish,  &e.exert,  &e.distances,
-          &e.guard,       &e.resolve, &e.carry,  &e.weigh,      &e.stiffen, &e.improve};
+  return {&e.evaluate, &e.errors,  &e.rates,     &e.accelerate, &e.solve,     &e.apply, &e.aim,     &e.solve_aimed,
+          &e.fall,     &e.kick,    &e.potential, &e.reach,      &e.past,      &e.along, &e.angles,  &e.dampen,
+          &e.notice,   &e.look,    &e.finish,    &e.exert,      &e.distances, &e.guard, &e.resolve, &e.carry,
+          &e.weigh,    &e.stiffen, &e.improve,   &e.displace,   &e.nearest};
 }
 
 std::set<std::string> functions_of(const Program& program) {

@@ -33,6 +33,8 @@ struct Equations {
   // Of effects and rows with bounds by RATTLE, the first ones also by the midpoint rule:
   bool finishes = false;       // the end of a step solves for more than the joints
   bool exerts = false;         // so does the start of a run
+  int groups = 1;              // mechanisms
+  std::string group_lists;     // by body, by row, by row with bounds
   std::vector<int> effect_of;  // by row of Damping: its effect
   std::size_t triangle = 0;    // numbers in Damping::K
   Program dampen;              // q, v, time, h -> next: v with the dampers at the start
@@ -47,7 +49,9 @@ struct Equations {
   std::string waits;  // "true, false", by row: it waits for an event
   Program reach;      // q, time, J -> B: their part in a projection
   Program past;       // q, time -> past: errors
+  Program nearest;    // q, time -> off, side: of the nearer end; by RATTLE
   Program along;      // q, v, time -> along: J v
+  Program displace;   // q, time, J, lambda, mu -> d; where inertias turn
   Program distances;  // q, v, time -> after, until: distances from events
   Program guard;      // by Runge-Kutta methods (methods/modes.hpp): q, v, time -> B
   Program carry;      // q, time, J, lambda, force -> load: the forces with which bounds grow

@@ -82,19 +82,17 @@ constexpr const char* momentum_functions = R"(
 
 }  // namespace
 
-bool has_gyroscopes(const Mechanism& mechanism) { return std::ranges::any_of(mechanism.bodies, &Body::inertia_turns); }
-
 bool carries_spin(const Mechanism& mechanism, bool looks) {
   const auto drags = [](const Body& body) { return body.inertia_turns && body.angular_drag != 0; };
-  return has_gyroscopes(mechanism) && (looks || std::ranges::any_of(mechanism.bodies, drags));
+  return mechanism.has_gyroscopes() && (looks || std::ranges::any_of(mechanism.bodies, drags));
 }
 
 std::string pose_argument(const Mechanism& mechanism) {
-  return has_gyroscopes(mechanism) ? "const Pose (&q)[bodies], " : "";
+  return mechanism.has_gyroscopes() ? "const Pose (&q)[bodies], " : "";
 }
 
 std::string gyroscopes_of(const Mechanism& mechanism, const std::vector<std::string>& names) {
-  if (!has_gyroscopes(mechanism)) return {};
+  if (!mechanism.has_gyroscopes()) return {};
   std::string weigh, wind, follow, drift, carry;
   int count = 0;
   for (std::size_t b = 0; b < names.size(); ++b) {

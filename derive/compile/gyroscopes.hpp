@@ -8,8 +8,6 @@
 
 namespace cdot::compile {
 
-// True if the inertia of a body turns with it.
-bool has_gyroscopes(const Mechanism& mechanism);
 // True if forces read the spin of such a body: drag does, or some effect (`looks`).
 bool carries_spin(const Mechanism& mechanism, bool looks);
 // An argument of functions that read M^-1: poses, if they have it.

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fmt/format.h>
 
-#include "derive/compile/arithmetic.hpp"
 #include "derive/compile/bodies.hpp"
 #include "derive/compile/equations.hpp"
 #include "derive/compile/foresight/foresight.hpp"
@@ -16,7 +15,6 @@
 #include "derive/compile/methods/state.hpp"
 #include "derive/compile/methods/tables.hpp"
 #include "derive/compile/midpoint/tension.hpp"
-#include "derive/compile/space.hpp"
 #include "derive/compile/steps.hpp"
 #include "derive/compile/texts.hpp"
 #include "derive/compile/types.hpp"
@@ -67,7 +65,7 @@ class HeaderWriter {
             .ends = equations_.has_ends,
             .events = equations_.has_events,
             .spatial = mechanism_.spatial(),
-            .gyroscopes = has_gyroscopes(mechanism_),
+            .gyroscopes = mechanism_.has_gyroscopes(),
             .angles = mechanism_.angles > 0,
             .rattle = mechanism_.method == Method::rattle,
             .midpoint = mechanism_.method == Method::implicit,
@@ -100,22 +98,9 @@ class HeaderWriter {
   }
 
   void write_head() {
-    line("// " + mechanism_.title + ": a step of " + mechanism_.method_name + ", written by");
-    line("//   " + request_.command);
-    line(
-        "// Do not edit. T is float, double, or a pack of them (cdot/pack.hpp): each lane is a mechanism of its own. "
-        "It has");
-    line(
-        "// the bits that it has alone if the compiler contracts nothing: -ffp-contract=off, and "
-        "-fno-tree-slp-vectorize");
-    line("// where GCC 12 may use fused operations. No heap, no exceptions.");
-    for (const std::string& note : mechanism_.notes) line("// " + note);
-    line("#pragma once");
-    line();
     const bool drags = has().midpoint && has().drags;
-    if (calls_functions(equations_) || mechanism_.spatial() || drags) line("#include <cmath>"), line();
-    text_ += arithmetic;
-    if (mechanism_.spatial()) text_ += std::string(space) + (has().midpoint ? tension : "");
+    text_ += head_of(mechanism_, request_.command, calls_functions(equations_) || mechanism_.spatial() || drags);
+    if (mechanism_.spatial() && has().midpoint) text_ += tension;
     line("namespace cdot::scenes {");
     line();
     line("template <class T>");
@@ -132,6 +117,7 @@ class HeaderWriter {
       for (const std::string& name : names_.bounded) rows += name + ", ";
       for (const std::string& wrapped : derive::wrapped("  enum Bound { " + rows + "bounded };")) line(wrapped);
     }
+    if (has().exerts || (has().events && has().pulls())) text_ += equations_.group_lists;
     line(fmt::format("  static constexpr double default_step = {};  // [s]", mechanism_.step));
     for (const auto& [name, value] : equations_.constants.named)
       line(fmt::format("  static constexpr double {} = {};", name, value));
@@ -203,8 +189,8 @@ class HeaderWriter {
     if (has_inputs() && head.find("$d") != std::string::npos) line("    (void)p;");
     if (has().angles && head.find("$d") != std::string::npos) line("    (void)angles;");
     if (has().events && head.find("$d") != std::string::npos) line("    (void)events;");
-    for (const std::string argument : {"q", "v", "a", "time", "J", "B", "b", "h", "lambda", "force", "C", "rate", "K",
-                                       "guess", "given", "end", "before", "W", "g"})
+    for (const std::string argument : {"q", "v",    "a", "time",  "J",     "B",   "b",      "h", "lambda", "force",
+                                       "C", "rate", "K", "guess", "given", "end", "before", "W", "g",      "mu"})
       if (reads(arguments, argument)) line(fmt::format("    (void){};", argument));
     line("  }");
   }
@@ -280,6 +266,7 @@ class HeaderWriter {
   }
 
   void write_rattle(const std::string& at, const std::string& moving) {
+    text_ += pushes_of(has());
     const std::string J = has().rows ? ", const Jacobian& J" : "", lambda = has().rows ? ", T (&lambda)[rows]" : "";
     const std::string end = ", Velocity (&pull)[bodies]" + std::string(has().bounded ? ", Bounded& B)" : ")");
     write_function("Accelerations without joints", "fall(" + at + ", " + moving + ", Velocity (&a)[bodies])",
@@ -328,8 +315,16 @@ class HeaderWriter {
     write_function("The part of rows with ends in a projection",
                    "reach(" + at + (has().rows ? ", const Jacobian& J" : "") + ", Bounded& B)", equations_.reach);
     write_function("Errors of rows with ends", "past(" + at + ", T (&past)[bounded])", equations_.past);
+    if (has().rattle)
+      write_function("C - end of the nearer end, and its side: 1 for the lower one, -1 for the upper one, 0 for both",
+                     "nearest(" + at + ", T (&off)[bounded], T (&side)[bounded])", equations_.nearest);
     write_function("J v of rows with bounds", "along(" + at + ", " + moving + ", T (&along)[bounded])",
                    equations_.along);
+    if (mechanism_.keeps_momenta())
+      write_function("d = M^-1 (J^T lambda + E^T mu), E the rows with bounds",
+                     "displace(" + at + (has().rows ? ", const Jacobian& J, const T (&lambda)[rows]" : "") +
+                         ", const T (&mu)[bounded], Velocity (&d)[bodies])",
+                     equations_.displace);
   }
 
   void write_accelerations(const std::string& at, const std::string& moving) {

@@ -32,6 +32,7 @@ std::string command_of(const Options& options) {
   if (options.wishes.step > 0) command += fmt::format(" --step {}", options.wishes.step);
   for (const std::string& input : options.wishes.inputs)
     command += (input == options.wishes.inputs.front() ? " --input " : ",") + input;
+  if (options.wishes.plain) command += " --no-foresight";
   if (!options.struct_name.empty()) command += " --name " + options.struct_name;
   return command;
 }
@@ -69,6 +70,8 @@ void add_options(Line& line, Options& options) {
            "A number that a run may change, as hinge.angle.motor.speed: a member of State::p. Several are separated by "
            "commas")
       .separated_by_commas();
+  line.add("--no-foresight", &options.wishes.plain,
+           "By euler and rattle: smaller code that projects onto C = 0 in more rounds, from where the step ends");
   line.add("--name", &options.struct_name, "Name of the struct; without it that of the file").shown_as("NAME");
   line.add("--bill", &options.bill,
            "Instead of the header: what each joint and effect costs in a step, and what dropping it saves");

@@ -253,7 +253,7 @@ long state_bytes_of(const Mechanism& mechanism, const Equations& equations, cons
   for (const Body& body : mechanism.bodies) of_bodies += numbers_of(mechanism, body, has.pulls());
   const long of_rows = long{has.foresees ? 1 + foreseen_by(has.rattle) : 1} * long(equations.rows.size()) +
                        long(equations.stored.size()) + (has.closes() ? 1 : 0) + (has.foresees ? 1 : 0) +
-                       (has.exerts ? 1 : 0) +
+                       (has.exerts ? equations.groups : 0) +
                        (has.modes ? 1 + (has.loads ? 7 : 6) * long(mechanism.bounded.size()) : 0) +
                        (has.events ? 3 * long(mechanism.bounded.size()) : 0);
   return long{sizeof(double)} * (1 + of_bodies + of_rows + long(mechanism.bounded.size()) +
@@ -287,7 +287,7 @@ std::string begin_of(Method method, const Contents& has) {
   else if ((method == Method::rattle || method == Method::implicit) && has.rows) text += "    project(s);\n";
   else if (accelerates) text += "    fall($ss.q, s.time, s.v, s.a);\n";
   if (has.pulls()) text += "    for (Velocity& of_body : s.pull) of_body = still();\n";
-  if (has.exerts) text += "    s.begins = T(1);\n";
+  if (has.exerts) text += "    for (T& of_group : s.begins) of_group = T(1);\n";
   return text + "  }\n";
 }
 

@@ -1,14 +1,25 @@
 #include "derive/compile/texts.hpp"
 
 #include <cctype>
+#include <fmt/format.h>
 #include <sstream>
 #include <string_view>
 #include <utility>
+
+#include "derive/compile/arithmetic.hpp"
+#include "derive/compile/space.hpp"
 
 namespace cdot::compile {
 namespace {
 
 bool is_of_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; }
+
+constexpr const char* head = R"(// {}: a step of {}, written by
+//   {}
+// Do not edit. T is float, double, or a pack of them (cdot/pack.hpp): each lane is a mechanism of its own. It has
+// the bits that it has alone if the compiler contracts nothing: -ffp-contract=off, and -fno-tree-slp-vectorize
+// where GCC 12 may use fused operations. No heap, no exceptions.
+)";
 
 // The name `i` as that place.
 std::string at_place(const std::string& text, const std::string& place) {
@@ -21,6 +32,13 @@ std::string at_place(const std::string& text, const std::string& place) {
 }
 
 }  // namespace
+
+std::string head_of(const Mechanism& mechanism, const std::string& command, bool with_cmath) {
+  std::string text = fmt::format(head, mechanism.title, mechanism.method_name, command);
+  for (const std::string& note : mechanism.notes) text += "// " + note + "\n";
+  text += std::string("#pragma once\n\n") + (with_cmath ? "#include <cmath>\n\n" : "") + arithmetic;
+  return mechanism.spatial() ? text + space : text;
+}
 
 std::string unrolled(const std::string& text, const Counts& counts) {
   const struct {

@@ -1,10 +1,15 @@
-// Members of a compiled struct that do not depend on the scene.
+// The head of a header, and members of its struct that do not depend on the scene.
 #pragma once
 
 #include <cstddef>
 #include <string>
 
+#include "derive/compile/scene/mechanism.hpp"
+
 namespace cdot::compile {
+
+// The head of the header: comments, includes, and the parts that are the same in all of them.
+std::string head_of(const Mechanism& mechanism, const std::string& command, bool with_cmath);
 
 struct Counts {
   std::size_t bodies, rows, rates;  // rates: of all bodies that move, their poses and velocities

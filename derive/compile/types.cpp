@@ -156,7 +156,7 @@ std::string slope_of(bool spatial) {
 std::string types_of(const Mechanism& mechanism) {
   const std::string slope = mechanism.on_accelerations() ? slope_of(mechanism.spatial()) : "";
   if (!mechanism.spatial()) return planar_types + slope;
-  const bool gyroscopes = has_gyroscopes(mechanism);
+  const bool gyroscopes = mechanism.has_gyroscopes();
   std::string text = spatial_pose;
   if (gyroscopes) text += spatial_inertia;
   text += fmt::format(spatial_types, gyroscopes ? "    one.I = scenes::choose(now, q.I, p.I);\n" : "");
@@ -169,7 +169,7 @@ long numbers_of(const Mechanism& mechanism, const Body& body, bool pulls) {
   if (!body.moves) return 0;
   const bool accelerates = mechanism.on_accelerations();
   const long columns = static_cast<long>(mechanism.columns());
-  const long pose = mechanism.spatial() ? 16 + (has_gyroscopes(mechanism) ? 6 : 0) : 5;
+  const long pose = mechanism.spatial() ? 16 + (mechanism.has_gyroscopes() ? 6 : 0) : 5;
   return pose + columns * (accelerates || pulls ? 2 : 1) + (body.inertia_turns && !accelerates ? 12 : 0);
 }
 

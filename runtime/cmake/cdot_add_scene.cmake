@@ -1,10 +1,10 @@
-# cdot_add_scene(TARGET name SCENE crane.toml [INTEGRATOR rk4] [STEP 0.001] [NAME crane] [INPUTS hinge.angle.motor.speed …]):
+# cdot_add_scene(TARGET name SCENE crane.toml [INTEGRATOR rk4] [STEP 0.001] [NAME crane] [INPUTS hinge.angle.motor.speed …] [NO_FORESIGHT]):
 # at build time `cdot compile` writes the scene as its own step, and the target finds it by #include "crane.hpp". Needs
 # no library.
 function(cdot_add_scene)
-  cmake_parse_arguments(arg "" "TARGET;SCENE;INTEGRATOR;STEP;NAME" "INPUTS" ${ARGN})
+  cmake_parse_arguments(arg "NO_FORESIGHT" "TARGET;SCENE;INTEGRATOR;STEP;NAME" "INPUTS" ${ARGN})
   if(NOT arg_TARGET OR NOT arg_SCENE OR arg_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "usage: cdot_add_scene(TARGET name SCENE file.toml [INTEGRATOR method] [STEP seconds] [NAME struct] [INPUTS number…])")
+    message(FATAL_ERROR "usage: cdot_add_scene(TARGET name SCENE file.toml [INTEGRATOR method] [STEP seconds] [NAME struct] [INPUTS number…] [NO_FORESIGHT])")
   endif()
   if(NOT TARGET cdot::cdot-compile)
     message(FATAL_ERROR "cdot_add_scene: this cdot was built without its generator (CDOT_DERIVE=OFF)")
@@ -23,6 +23,9 @@ function(cdot_add_scene)
   if(arg_INPUTS)
     list(JOIN arg_INPUTS "," inputs)
     list(APPEND options --input ${inputs})
+  endif()
+  if(arg_NO_FORESIGHT)
+    list(APPEND options --no-foresight)
   endif()
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/cdot_scenes/${arg_TARGET})
   file(MAKE_DIRECTORY ${folder})

@@ -27,10 +27,11 @@ bool is_held(const Batch<S>& batch, int i) {
   return !batch.law || batch.mode[i] == Mode::held;
 }
 
-// True if the row has an error to correct.
+// True if the row has an error to correct, or is an end that has an impulse already.
 template <class S>
 bool has_error(const Batch<S>& batch, int i) {
-  return is_held(batch, i) || (batch.mode[i] == Mode::bounded && batch.error[i] != 0);
+  const bool acts = !is_held(batch, i) && batch.law->error && batch.correction[i] != 0;
+  return is_held(batch, i) || (batch.mode[i] == Mode::bounded && (batch.error[i] != 0 || acts));
 }
 
 template <class S>

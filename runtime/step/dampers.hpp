@@ -147,13 +147,39 @@ struct EffectAtEnd {
     look(now);
   }
 
-  // A force that saturates can throw Newton's method back and forth across its steep part: steps that do not bring the
-  // rates nearer are halved.
+  // A force that saturates can throw Newton's method back and forth across its steep part. Of one row, g grows with p:
+  // the sides found so far bracket the rate.
   void find_rates() {
-    constexpr int most_rounds = 30, most_halvings = 20;
+    if (rows > 1) return find_rates_of_rows();
+    constexpr int most_rounds = 60;
+    T low = -std::numeric_limits<T>::infinity(), high = -low, before = high, best = p[0], least = high;
+    for (int round = 0; round < most_rounds && misses(size_of(g)); ++round) {
+      const T size = std::abs(g[0]);
+      if (size < least) least = size, best = p[0];
+      (g[0] > T(0) ? high : low) = p[0];
+      T next = p[0] - g[0] / (T(1) + end[0] * own(0));
+      const bool inside = low < next && next < high, bracketed = std::isfinite(high - low);
+      if (bracketed && !(inside && T(2) * size < before)) next = T(0.5) * (low + high);
+      before = size;
+      p[0] = next;
+      look_at(p);
+    }
+    if (!(std::abs(g[0]) > least)) return;
+    p[0] = best;
+    look_at(p);
+  }
+
+ private:
+  bool misses(T miss) const {
     constexpr T enough = T(by_precision<T>(1e-4, 1e-6));  // the solver's own step squares it
+    return miss > enough * (size_of(r) + size_of(p));
+  }
+
+  // Steps that do not bring the rates nearer are halved.
+  void find_rates_of_rows() {
+    constexpr int most_rounds = 30, most_halvings = 20;
     T miss = size_of(g);
-    for (int round = 0; round < most_rounds && miss > enough * (size_of(r) + size_of(p)); ++round) {
+    for (int round = 0; round < most_rounds && misses(miss); ++round) {
       T from[most_rows], step[most_rows];
       std::copy_n(p, rows, from);
       for (int c = 0; c < rows; ++c) step[c] = -g[c] / (T(1) + end[c] * own(c));
@@ -171,7 +197,6 @@ struct EffectAtEnd {
     }
   }
 
- private:
   T own(int r) const { return batch.factor[slot * batch.triangle() + r * (r + 1) / 2 + r]; }
 
   // By the energies of the rows.

@@ -68,6 +68,51 @@ void guess_impulses(WorldData<S>& world, Island<S>& island, typename S::Scalar s
   }
 }
 
+// An end that was passed in this half holds from then on, until it would pull. Otherwise the way of Newton's rounds
+// would decide how far inside a body stops.
+template <class S>
+bool end_acts(const Batch<S>& batch, int i) {
+  return batch.law && batch.law->error && batch.law->guard && batch.mode[i] == Mode::bounded &&
+         (batch.error[i] != 0 || batch.correction[i] != 0);
+}
+template <class S>
+Guard<typename S::Scalar> guard_of(const Batch<S>& batch, int i) {
+  Guard<typename S::Scalar> guards[most_rows];
+  batch.law->guard(batch, i / batch.ops->rows, guards);
+  return guards[i % batch.ops->rows];
+}
+
+// The errors of ends that hold count inside, too. True if there are some.
+template <class S>
+bool hold_ends(System<S>& system, typename S::Scalar& worst) {
+  bool some = false;
+  system.each_row([&](int, Batch<S>& batch, int i) {
+    if (!end_acts(batch, i)) return;
+    const auto guard = guard_of(batch, i);
+    if (!guard.one_sided()) return;
+    some = true, batch.error[i] = guard.off_by;
+    worst = std::max(worst, std::abs(guard.off_by));
+  });
+  return some;
+}
+
+// Solves again without the ends that would pull: they give back their impulse of this half.
+template <class S>
+void let_go_of_pulling_ends(System<S>& system) {
+  for (bool any = true; any;) {
+    any = false;
+    system.each_row([&](int row, const Batch<S>& batch, int i) {
+      if (system.fixed[row] || !end_acts(batch, i)) return;
+      const auto guard = guard_of(batch, i);
+      const auto impulse = batch.correction[i] + system.lambda[row];
+      if (!guard.one_sided() || (guard.lower == 0 ? impulse >= 0 : impulse <= 0)) return;
+      system.fixed[row] = System<S>::at_lower, system.lambda[row] = -batch.correction[i];
+      any = true;
+    });
+    if (any) system.factor(), system.solve();
+  }
+}
+
 // True if the half step reversed velocities: 2 |change| > |v| in the metric of the masses.
 template <class S>
 bool turned_round(const WorldData<S>& world, const Island<S>& island) {
@@ -92,13 +137,17 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
   const T time = T(world.time) + h;
   System<S>& system = island.at_work();
   const T near = std::max(converged<T> * island.scale, of_long_arms<T> * T(island.size));
-  island.flow.search.begin([&](size_t row) { return system.diagonal(static_cast<int>(row)); });
+  const auto begin_search = [&] {
+    island.flow.search.begin([&](size_t row) { return system.diagonal(static_cast<int>(row)); });
+  };
+  begin_search();
   T least = std::numeric_limits<T>::infinity(), at_first = 0;
   bool astray = false, first = true;
   for (int vain = 0;;) {
     drift(world, island, h);
-    const T error = find_errors(world, island, time);
+    T error = find_errors(world, island, time);
     if (first && stays_misfit(world, island, error, h)) return true;
+    const bool at_ends = system.lawful() && hold_ends(system, error);
     if (first) at_first = error;
     first = false;
     island.residual = error;
@@ -112,7 +161,12 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
     load_errors(system, T(-1) / h);
     if (system.lawful()) factor_rows_with_errors(system, Rates::free);
     system.solve();
-    if (!island.flow.search.next(system.lambda.data())) return false;
+    if (at_ends) {  // updates would not know which ends hold
+      let_go_of_pulling_ends(system);
+      begin_search();
+    } else if (!island.flow.search.next(system.lambda.data())) {
+      return false;
+    }
     exert_correction(world, island, system, world.bodies.velocity.data());
   }
 }

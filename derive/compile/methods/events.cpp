@@ -9,30 +9,46 @@ namespace {
 constexpr const char* latch_begins = R"(
   // Events at the end of a step.
   static void latch(State& s) {{
-    constexpr bool waits[bounded] = {{{}}};
+    constexpr bool waits[bounded] = {{{0}}};
     T after[bounded], until[bounded];
     distances($ss.q, s.time, s.v, after, until);
     const T near = T(single ? 1e-5 : 1e-10);
-    Mask some = T(1) < T(0);
-    for (int i = 0; i < bounded; ++i) {{
+{1}    for (int i = 0; i < bounded; ++i) {{
       T &began = s.events.began[i], &ended = s.events.ended[i];
       const auto begins_now = after[i] <= near && began < T(1), ends_now = until[i] <= near && ended < T(1);
-      some = some || begins_now || ends_now;
-      began = select(begins_now, T(1), began), ended = select(ends_now, T(1), ended);
+{2}      began = select(begins_now, T(1), began), ended = select(ends_now, T(1), ended);
       s.events.acts[i] = (waits[i] ? began : T(1)) * (T(1) - ended);
     }}
 )";
 
-// The next step does not repeat what ended this one: another set of rows acts in it.
-constexpr const char* forgets = "    for (Velocity& of_body : s.pull) of_body = choose(some, still(), of_body);\n";
+constexpr const char* no_groups = R"(    Mask some[groups];
+    for (Mask& of_group : some) of_group = T(1) < T(0);
+)";
+constexpr const char* none = "    Mask some = T(1) < T(0);\n";
+constexpr const char* notes_any = "      some = some || begins_now || ends_now;\n";
+constexpr const char* notes_group =
+    "      some[group_of_bound[i]] = some[group_of_bound[i]] || begins_now || ends_now;\n";
+
+// The next step of the mechanism does not repeat what ended this one: another set of rows acts in it.
+constexpr const char* forgets =
+    "    for (int i = 0; i < bodies; ++i) s.pull[i] = choose(some[group_of_body[i]], still(), s.pull[i]);\n";
+constexpr const char* restarts =
+    "    for (int i = 0; i < groups; ++i) s.begins[i] = select(some[i], T(1), s.begins[i]);\n";
 
 }  // namespace
 
 std::string latch_of(const std::string& waits, const Contents& has) {
-  std::string text = fmt::format(latch_begins, waits);
-  text += has.pulls() ? forgets : "    (void)some;\n";
+  const bool alone = has.pulls();  // each mechanism begins anew alone
+  std::string text = fmt::format(latch_begins, waits,
+                                 alone       ? no_groups
+                                 : has.modes ? none
+                                             : "",
+                                 alone       ? notes_group
+                                 : has.modes ? notes_any
+                                             : "");
+  if (alone) text += forgets;
   if (has.modes) text += "    s.modes.known = select(some, T(0), s.modes.known);\n";
-  if (has.exerts) text += "    s.begins = select(some, T(1), s.begins);\n";
+  if (has.exerts) text += restarts;
   return text + "  }\n";
 }
 

@@ -49,6 +49,7 @@ constexpr const char* series_begins = R"(    T last = T(1e30);
 
 constexpr const char* ends_begin = R"(    Bounded reached;
     bool reaches = false;
+    T total[bounded] = {};
 )";
 
 constexpr const char* round_begins = "    for (int round = 0; round < 100; ++round) {\n";
@@ -56,8 +57,13 @@ constexpr const char* round_begins = "    for (int round = 0; round < 100; ++rou
 constexpr const char* joint_errors = R"(      T C[rows], impulse[rows];
       errors($ss.q, s.time, C);
 )";
-constexpr const char* end_errors = R"(      T over[bounded];
-      past($ss.q, s.time, over);
+// An end that was passed in this half holds from then on, until it would pull.
+constexpr const char* end_errors = R"(      T over[bounded], side[bounded];
+      nearest($ss.q, s.time, over, side);
+      for (int i = 0; i < bounded; ++i) {
+        const auto inside = side[i] * over[i] >= T(0) && magnitude(side[i]) > T(0);
+        over[i] = select(inside && !(magnitude(total[i]) > T(0)), T(0), over[i]);
+      }
 )";
 
 constexpr const char* judges = R"(      s.residual = select(goes_on, worst, s.residual);
@@ -106,14 +112,14 @@ constexpr const char* no_changes = R"(      Velocity d[bodies];
 // Ends that are passed take part in the round.
 constexpr const char* end_changes = R"(      Mask passed[bounded];
       auto some = T(1) < T(0);
-      for (int i = 0; i < bounded; ++i) passed[i] = goes_on && magnitude(over[i]) > T(0), some = some || passed[i];
+      for (int i = 0; i < bounded; ++i) passed[i] = goes_on && (magnitude(over[i]) > T(0) || magnitude(total[i]) > T(0)), some = some || passed[i];
       if (any(some)) {{
         if (!reaches) reach($sat.q, at.time, {}reached);
         reaches = true;
         T along_ends[bounded], c[bounded], mu[bounded];
         along($sat.q, at.time, d, along_ends);
         for (int i = 0; i < bounded; ++i) c[i] = -over[i] / h - along_ends[i], mu[i] = T(0);
-        divide(reached.S, passed, c, mu);
+        push(reached.S, passed, c, side, total, mu);
         for (int e = 0; e < bounded; ++e) {{
           for (int i = 0; i < bodies; ++i) d[i] = d[i] + mu[e] * reached.g[e][i];
         }}
@@ -166,6 +172,23 @@ constexpr const char* looks = R"(    T C_now[damped], rate_now[damped], K_now[tr
     find_rates($sC_now, rate_now, K_now, s.time, h, given, end);
 )";
 
+// Ends that would pull give back what they gave.
+constexpr const char* pushes = R"(
+  // S mu = c in the rows of `acts`; those that would pull in the whole give back their totals.
+  static void push(const T (&S)[bounded * (bounded + 1) / 2], Mask (&acts)[bounded], const T (&c)[bounded],
+                   const T (&side)[bounded], T (&total)[bounded], T (&mu)[bounded]) {
+    for (bool more = true; more;) {
+      divide(S, acts, c, mu);
+      more = false;
+      for (int i = 0; i < bounded; ++i) {
+        const auto pulls = acts[i] && side[i] * (total[i] + mu[i]) < T(0);
+        mu[i] = select(pulls, -total[i], mu[i]), acts[i] = acts[i] && !pulls, more = more || any(pulls);
+      }
+    }
+    for (int i = 0; i < bounded; ++i) total[i] = total[i] + mu[i];
+  }
+)";
+
 constexpr const char* sums_pulls = R"(    for (int e = 0; e < bounded; ++e) {{
       const T again = select(magnitude(B.low[e] * B.high[e]) > T(0), mu[e], T(0));
       for (int i = 0; i < bodies; ++i) {0}{2}pull[i] = {2}pull[i] + mu[e] * B.p[e][i] + again * B.u[e][i];
@@ -176,10 +199,11 @@ constexpr const char* sums_lambda =
 
 // The first step does not repeat what ended another one.
 constexpr const char* start_begins = R"(
-  // Forces of joints and motors at the start of a run, in lanes that begin.
+  // Forces of joints and motors at the start of a run, of mechanisms and in lanes that begin.
   static void start(State& s, const T& h) {{
-    const auto begins = s.begins > T(0);
-    if (!any(begins)) return;
+    Mask begins[groups], some = T(1) < T(0);
+    for (int i = 0; i < groups; ++i) begins[i] = s.begins[i] > T(0), some = some || begins[i];
+    if (!any(some)) return;
     Bounded B;
     T mu[bounded], hold[bounded];
     Velocity pull[bodies];
@@ -188,13 +212,13 @@ constexpr const char* start_begins = R"(
     settle(B, hold, mu);
 )";
 constexpr const char* start_ends =
-    R"(    for (int i = 0; i < bounded; ++i) s.hold[i] = select(begins, hold[i], s.hold[i]);
-    for (int i = 0; i < bodies; ++i) s.pull[i] = choose(begins, pull[i], s.pull[i]);
-{}    s.begins = T(0);
+    R"(    for (int i = 0; i < bounded; ++i) s.hold[i] = select(begins[group_of_bound[i]], hold[i], s.hold[i]);
+    for (int i = 0; i < bodies; ++i) s.pull[i] = choose(begins[group_of_body[i]], pull[i], s.pull[i]);
+{}    for (T& of_group : s.begins) of_group = T(0);
   }}
 )";
 constexpr const char* start_lambda =
-    "    for (int i = 0; i < rows; ++i) s.lambda[i] = select(begins, lambda[i], s.lambda[i]);\n";
+    "    for (int i = 0; i < rows; ++i) s.lambda[i] = select(begins[group_of_row[i]], lambda[i], s.lambda[i]);\n";
 
 constexpr const char* damping = R"(
   // Rows of effects whose forces change with their rates, these effects, and numbers of K = J M^-1 J^T.
@@ -202,30 +226,50 @@ constexpr const char* damping = R"(
 )";
 
 constexpr const char* finds_rates = R"(
-  // The rates of such effects at the end, were each alone, by Newton: a step that brings them no nearer is halved. A lane
-  // that is done waits for the others unchanged.
+  // The rate of one row by Newton: the sides found so far bracket it.
+  struct Search {{
+    T low = T(-1e30), high = T(1e30), best = T(0), least = T(1e30), before = T(1e30);
+    T step(const T& guess, const T& newton, const T& miss, const Mask& busy) {{
+      const auto better = busy && miss < least, above = newton < T(0);
+      best = select(better, guess, best), least = select(better, miss, least);
+      high = select(busy && above, guess, high), low = select(busy && !above, guess, low);
+      const T next = guess + newton;
+      const auto bracketed = low > T(-1e29) && high < T(1e29), fits = low < next && next < high && T(2) * miss < before;
+      before = select(busy, miss, before);
+      return select(bracketed && !fits, T(0.5) * (low + high) - guess, newton);
+    }}
+  }};
+  // The rates of such effects at the end, were each alone, by Newton. Of several rows a step that brings them no nearer
+  // is halved. A lane that is done waits for the others unchanged.
   static void find_rates($dconst T (&C)[damped], const T (&rate)[damped], const T (&K)[triangles], const T& time,
                          const T& h, T (&given)[damped], T (&end)[damped]) {{
     constexpr int effect[damped] = {{{0}}};
+    constexpr bool alone[dampers] = {{{1}}};
     T guess[damped], step[damped], miss[dampers], size[dampers];
+    Search of_row[damped];
     Mask busy[dampers], now[dampers];
     for (int i = 0; i < damped; ++i) guess[i] = rate[i];
     look($pC, rate, K, guess, time, h, step, given, end, miss, size);
     for (Mask& of_effect : busy) of_effect = T(0) < T(1);
-    for (int round = 0; round < 30; ++round) {{
+    for (int round = 0; round < 60; ++round) {{
       T from[damped], way[damped], before[dampers];
       bool goes_on = false;
       for (int e = 0; e < dampers; ++e) {{
+        if (!alone[e] && round >= 30) busy[e] = T(1) < T(0);
         busy[e] = busy[e] && miss[e] > T(single ? 1e-4 : 1e-6) * size[e];
         before[e] = miss[e], goes_on = goes_on || any(busy[e]);
       }}
-      if (!goes_on) return;
-      for (int i = 0; i < damped; ++i) from[i] = guess[i], way[i] = step[i];
+      if (!goes_on) break;
+      for (int i = 0; i < damped; ++i) {{
+        const int e = effect[i];
+        from[i] = guess[i], way[i] = alone[e] ? of_row[i].step(guess[i], step[i], miss[e], busy[e]) : step[i];
+      }}
       T share = T(1);
       for (int halvings = 0; halvings < 20; ++halvings, share = T(0.5) * share) {{
         bool tries = false;
         for (int e = 0; e < dampers; ++e) {{
-          now[e] = halvings == 0 ? busy[e] : busy[e] && !(miss[e] < before[e]);
+          now[e] = busy[e];
+          if (halvings > 0) now[e] = alone[e] ? T(1) < T(0) : busy[e] && !(miss[e] < before[e]);
           tries = tries || any(now[e]);
         }}
         if (!tries) break;
@@ -235,11 +279,18 @@ constexpr const char* finds_rates = R"(
       bool back = false;
       for (int e = 0; e < dampers; ++e) {{
         now[e] = busy[e] && !(miss[e] < before[e]);
+        if (alone[e]) now[e] = T(1) < T(0);
         busy[e] = busy[e] && !now[e], back = back || any(now[e]);
       }}
       for (int i = 0; i < damped; ++i) guess[i] = select(now[effect[i]], from[i], guess[i]);
       if (back) look($pC, rate, K, guess, time, h, step, given, end, miss, size);
     }}
+    auto back = T(1) < T(0);
+    for (int i = 0; i < damped; ++i) {{
+      const auto worse = miss[effect[i]] > of_row[i].least;
+      guess[i] = select(worse, of_row[i].best, guess[i]), back = back || worse;
+    }}
+    if (any(back)) look($pC, rate, K, guess, time, h, step, given, end, miss, size);
   }}
 )";
 
@@ -288,8 +339,16 @@ std::string damping_of(std::size_t rows, int effects, std::size_t triangle) {
 }
 
 std::string find_rates_of(const std::vector<int>& effect_of) {
-  return fmt::format(finds_rates, fmt::join(effect_of, ", "));
+  std::vector<bool> alone;
+  for (std::size_t row = 0; row < effect_of.size(); ++row) {
+    const bool first = row == 0 || effect_of[row] != effect_of[row - 1];
+    if (first) alone.push_back(true);
+    else alone.back() = false;
+  }
+  return fmt::format(finds_rates, fmt::join(effect_of, ", "), fmt::join(alone, ", "));
 }
+
+std::string pushes_of(const Contents& has) { return has.ends ? pushes : ""; }
 
 std::string start_of(const Contents& has) {
   return fmt::format(start_begins, has.rows ? "    T lambda[rows];\n" : "", has.rows ? "s.J, h, lambda, " : "h, ") +

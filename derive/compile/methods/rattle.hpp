@@ -10,6 +10,8 @@ namespace cdot::compile {
 
 // tolerance: of C.
 std::string rattle(double tolerance, const Contents& has);
+// push(), by which ends act in the first half, if there are some.
+std::string pushes_of(const Contents& has);
 // start(), if `exerts`.
 std::string start_of(const Contents& has);
 // The numbers of rows, and find_rates(); effect_of: the effect of each row.

@@ -57,7 +57,7 @@ std::string state_of(const Mechanism& mechanism, const Contents& has, bool input
   if (inputs) text += "    Inputs p;\n";
   if (has.angles) text += "    Angles angles;\n";
   if (has.events) text += "    Events events;\n";
-  if (has.exerts) text += "    T begins;        // 1 before the first step\n";
+  if (has.exerts) text += "    T begins[groups];  // 1 before the first step of a mechanism\n";
   if (has.closes()) text += "    T residual;      // the largest |C| [m], [rad]\n";
   if (has.rows) text += "    Jacobian J;      // of the poses q\n";
   return text + state_ends;

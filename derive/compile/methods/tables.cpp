@@ -137,7 +137,7 @@ std::string step_in_parts(Method method, const Contents& has) {
     text += "    accelerate($safter.q, after.time, after.v, after.J, after.lambda, after.a);\n";
   if (accelerates && !has.rows) text += "    fall($safter.q, after.time, after.v, after.a);\n";
   if (has.pulls()) text += "    for (Velocity& of_body : after.pull) of_body = still();\n";
-  if (has.exerts) text += "    after.begins = T(1);\n";
+  if (has.exerts) text += "    for (T& of_group : after.begins) of_group = T(1);\n";
   return text + passed;
 }
 

@@ -309,21 +309,31 @@ BoundWriter::Kick BoundWriter::of_force(int h) const {
           algebra_.times(h, limits.at("lower[0]")), algebra_.times(h, limits.at("upper[0]"))};
 }
 
+// The part of C beyond the end.
 int BoundWriter::past() const {
-  const int past = past_while_it_acts();
-  return has_events(blocks_, number_) ? algebra_.function(Fn::select, {acts(), past, algebra_.value(0)}) : past;
+  const End end = nearest();
+  const int zero = algebra_.value(0), low = law_.least(end.off, zero), high = law_.most(end.off, zero);
+  if (algebra_.is_zero(end.side)) return end.off;
+  return algebra_.function(Fn::select, {end.side, low, high});
 }
 
-int BoundWriter::past_while_it_acts() const {
+BoundWriter::End BoundWriter::nearest() const {
+  End end = nearest_while_it_acts();
+  if (!has_events(blocks_, number_)) return end;
+  for (int* of : {&end.off, &end.side}) *of = algebra_.function(Fn::select, {acts(), *of, algebra_.value(0)});
+  return end;
+}
+
+BoundWriter::End BoundWriter::nearest_while_it_acts() const {
   const int zero = algebra_.value(0), C = law_.C()[0];
-  if (effect_.law == Effect::limited || is_rate()) return zero;
+  if (effect_.law == Effect::limited || is_rate()) return {zero, zero};
   const Values B = bounds();
   const int lower = bound(B, "B.lower", -boundless), upper = bound(B, "B.upper", boundless);
   const int above = algebra_.sum({{C, lower}, {1, -1}}), below = algebra_.sum({{upper, C}, {1, -1}});
-  if (are_equal(lower, upper)) return above;
-  const int at_low = algebra_.sum({{below, above}, {1, -1}});
-  return algebra_.function(Fn::select,
-                           {at_low, law_.least(above, zero), law_.most(algebra_.sum({{below}, {-1}}), zero)});
+  if (are_equal(lower, upper)) return {above, zero};
+  const int at_low = algebra_.sum({{below, above}, {1, -1}}), minus = algebra_.sum({{below}, {-1}});
+  return {algebra_.function(Fn::select, {at_low, above, minus}),
+          algebra_.function(Fn::select, {at_low, algebra_.value(1), algebra_.value(-1)})};
 }
 
 }  // namespace cdot::compile

@@ -43,6 +43,11 @@ class BoundWriter {
   Resolution resolution() const;
   // The part of C that the projection removes.
   int past() const;
+  // C - end of the nearer end, 0 without ends; the side: 1 for the lower one, -1 for the upper one, 0 for both.
+  struct End {
+    int off, side;
+  };
+  End nearest() const;
   // The distance from an event, far without one.
   int distance(const std::optional<Program>& event) const;
 
@@ -55,7 +60,7 @@ class BoundWriter {
     Summands rates, accelerations, masses;
   };
   Sizes sizes_of_terms() const;
-  int past_while_it_acts() const;
+  End nearest_while_it_acts() const;
   int acts() const { return algebra_.input(derive::element("events.acts", number_)); }
   bool is_rate() const;
   bool are_equal(int lower, int upper) const;  // they hold the coordinate

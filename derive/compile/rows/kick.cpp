@@ -222,8 +222,30 @@ Program reach_of(const RowBlocks& blocks, const JointRows& joints, Constants& co
   bounded.answer(
       answers, joints.system().size(),
       [&](std::size_t b) { return blocks.mechanism().on_accelerations() || has_ends(blocks, b); },
-      blocks.mechanism().has_loads() ? BoundedSystem::Outputs::impulses : BoundedSystem::Outputs::velocities);
+      blocks.mechanism().has_loads() || blocks.mechanism().keeps_momenta() ? BoundedSystem::Outputs::impulses
+                                                                           : BoundedSystem::Outputs::velocities);
   bounded.output_S({});
+  return algebra.finish();
+}
+
+Program displace_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants) {
+  Algebra algebra(constants);
+  Forces forces;
+  std::size_t row = 0;
+  for (std::size_t k = 0; k < joints.system().blocks().size(); ++k) {
+    const RowBlock& block = joints.system().blocks()[k];
+    std::vector<int> lambda;
+    for (std::size_t r = 0; r < block.rows->count(); ++r) lambda.push_back(algebra.input(element("lambda", row++)));
+    blocks.add_forces(algebra, block, joints.inputs(algebra, k), lambda, forces);
+  }
+  for (std::size_t b = 0; b < blocks.mechanism().bounded.size(); ++b) {
+    if (!has_ends(blocks, b)) continue;
+    const BoundWriter end(blocks, algebra, b);
+    blocks.add_forces(algebra, end.block(), end.inputs(), {algebra.input(element("mu", b))}, forces);
+  }
+  each_component(blocks, [&](const Component& component, double, double) {
+    algebra.output(component.in("d"), change_of(blocks, algebra, component, forces));
+  });
   return algebra.finish();
 }
 
@@ -232,6 +254,16 @@ Program past_of(const RowBlocks& blocks, Constants& constants) {
   for (std::size_t b = 0; b < blocks.mechanism().bounded.size(); ++b) {
     const BoundWriter row(blocks, algebra, b);
     algebra.output(element("past", b), blocks.mechanism().on_accelerations() ? row.guard().off : row.past());
+  }
+  return algebra.finish();
+}
+
+Program nearest_of(const RowBlocks& blocks, Constants& constants) {
+  Algebra algebra(constants);
+  for (std::size_t b = 0; b < blocks.mechanism().bounded.size(); ++b) {
+    const BoundWriter::End end = BoundWriter(blocks, algebra, b).nearest();
+    algebra.output(element("off", b), end.off);
+    algebra.output(element("side", b), end.side);
   }
   return algebra.finish();
 }

@@ -38,8 +38,14 @@ Program exert_of(const RowBlocks& blocks, const JointRows& joints, Constants& co
 // projection.
 Program reach_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
 
+// q, time, J, lambda, mu -> d = M^-1 (J^T lambda + E^T mu), E the rows with bounds.
+Program displace_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
+
 // q, time -> past: errors of rows with bounds; on accelerations, how far each is from its end.
 Program past_of(const RowBlocks& blocks, Constants& constants);
+
+// q, time -> off, side: C - end of the nearer end of each, and 1 for a lower end, -1 for an upper one, 0 for both.
+Program nearest_of(const RowBlocks& blocks, Constants& constants);
 
 // q, v, time -> along: J v of rows with bounds.
 Program along_of(const RowBlocks& blocks, Constants& constants);

@@ -272,6 +272,7 @@ Mechanism read_mechanism(const std::string& file, const Wishes& wishes) {
   if (scene.settings.sleep_after > 0)
     mechanism.notes.emplace_back("Compiled bodies do not sleep: sleep_after is left out.");
   mechanism.inputs = wishes.inputs;
+  mechanism.foresees = !wishes.plain;
   for (std::string& name : mechanism.inputs) std::ranges::replace(name, '.', '_');
   mechanism.gravity = {scene.settings.gravity_x, scene.settings.gravity_y, scene.settings.gravity_z};
   if (mechanism.spatial()) add_parts<Spatial<double>>(scene, mechanism);

@@ -102,6 +102,7 @@ struct Mechanism {
   std::vector<Effect> bounded;                   // rows with bounds
   std::map<std::string, std::string> own_specs;  // files beside the scene, by type
   std::vector<Table> tables;                     // that numbers follow
+  bool foresees = true;                          // corrections may begin close to their end
   int angles = 0;                                // that count whole turns
   std::vector<std::string> notes;                // parts of the scene that are left out
 
@@ -109,7 +110,10 @@ struct Mechanism {
   // True for a Runge-Kutta method; the others step velocities by impulses.
   bool on_accelerations() const { return method == Method::rk4 || method == Method::dop853; }
   bool has_loads() const { return std::ranges::any_of(bounded, &Effect::is_loaded); }
-  std::size_t linear() const { return static_cast<std::size_t>(dimension); }  // columns before the angular ones
+  // True if the inertia of a body turns with it.
+  bool has_gyroscopes() const { return std::ranges::any_of(bodies, &Body::inertia_turns); }
+  bool keeps_momenta() const { return has_gyroscopes() && !on_accelerations(); }  // of such bodies
+  std::size_t linear() const { return static_cast<std::size_t>(dimension); }      // columns before the angular ones
   std::size_t columns() const { return spatial() ? 6 : 3; }
   std::string column(std::size_t c) const {
     constexpr const char *plane[] = {"x", "y", "w"}, *space[] = {"x", "y", "z", "wx", "wy", "wz"};
@@ -124,6 +128,7 @@ struct Wishes {
   std::string integrator;
   double step = 0;
   std::vector<std::string> inputs;  // "hinge.angle.servo.target"
+  bool plain = false;               // corrections foresee nothing
 };
 
 // Throws SceneError for a scene that has mistakes, or that has parts which cannot be compiled.

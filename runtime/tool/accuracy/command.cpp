@@ -16,8 +16,9 @@
 namespace cdot {
 namespace {
 
-constexpr double compiler_share = 1.0 / 3;   // of the budget, at most, for each method that is compiled
-constexpr double reference_share = 1.0 / 9;  // of the budget, at most, for each of three methods of a reference
+// Of the budget, at most: for the compiler; for each of three methods of a reference; for searches. The sweep has the
+// rest, or this much of the budget.
+constexpr double compiler_share = 1.0 / 3, reference_share = 1.0 / 9, search_share = 0.1, sweep_share = 0.25;
 
 Fingerprint fingerprint_of(const Scene& scene, const AccuracyOptions& options) {
   std::string decisive = read_file(scene.file) + fmt::format("\nuntil {}\n", scene.duration);
@@ -51,14 +52,12 @@ void write_files(const std::string& output, const AccuracyReport& report) {
   write_file(output + ".svg", accuracy_svg(report));
 }
 
-constexpr double share_of_searches = 0.1;  // of the budget
-
 // The methods that `simulate --accuracy` finds for every decade that the sweep reaches.
 std::vector<Searched> searched(const AccuracyReport& report, double budget, const Stop& stop) {
   std::vector<Searched> all;
   const double start = cpu_now();
   for (const Advice& advice : report.advice) {
-    if (stop() || cpu_now() - start > share_of_searches * budget) break;
+    if (stop() || cpu_now() - start > search_share * budget) break;
     Scene scene = report.scene;
     scene.accuracy = std::pow(10.0, advice.decade);
     Trajectory trajectory;
@@ -120,11 +119,13 @@ AccuracyOutcome measure_accuracy(const Scene& scene, const AccuracyOptions& opti
   if (options.resume) state = read_state(state_path, fingerprint);
   text::print_messages(stderr, warnings_of(scene));
 
+  const double budget = ways.budget, start = cpu_now() + cpu_of_children();
+  const auto used = [start] { return cpu_now() + cpu_of_children() - start; };
   const Interrupt interrupt;
   const Stop stop = [] { return Interrupt::asked(); };
   ProgressLine line(options.progress);
   if (state.reference.frames.empty()) {
-    line.show("making the reference");
+    line.show(fmt::format("making the reference; in all at most {:.0f} s of CPU time", budget));
     state.reference = options.reference.empty() ? make_reference_run(scene, effort_of(options), stop)
                                                 : read_reference_run(options.reference, scene);
     if (stop()) state.reference = {};  // half of one is none
@@ -132,19 +133,20 @@ AccuracyOutcome measure_accuracy(const Scene& scene, const AccuracyOptions& opti
   std::optional<CompiledScenes> compiled;
   if (!stop()) {
     SceneCompiler compiler = scene_compiler_beside_program();
-    compiler.cpu = compiler_share * ways.budget;
+    compiler.cpu = compiler_share * budget;
     compiled.emplace(scene, ways.ways, compiler, [&](const std::string& what) { line.show(what); });
     ways.compiled = &*compiled;
     if (ways.ways.empty()) throw Error("no way is left: " + fmt::format("{}", fmt::join(compiled->left_out(), "; ")));
   }
-  std::optional<double> first_used;
-  const auto grown = [&](double used, double planned, const std::string& doing) {
-    if (!first_used) first_used = used;
+  ways.budget = std::max((1 - search_share) * budget - used(), sweep_share * budget);
+  std::optional<double> first_done;
+  const auto grown = [&](double done, double planned, const std::string& doing) {
+    if (!first_done) first_done = done;
     if (!line.due()) return;
     write_state(state_path, fingerprint, state);
-    const double pace = used > *first_used ? line.elapsed() / (used - *first_used) : 0;
-    line.show(fmt::format("{:3.0f} %  about {:.0f} s left  {}", std::min(100.0, 100 * used / planned),
-                          std::ceil(pace * std::max(planned - used, 0.0)), doing));
+    const double pace = done > *first_done ? line.elapsed() / (done - *first_done) : 0;
+    line.show(fmt::format("{:3.0f} %  about {:.0f} s left  {}", std::min(100.0, 100 * done / planned),
+                          std::ceil(pace * std::max(planned - done, 0.0)), doing));
   };
   const bool finished = !stop() && sweep(scene, ways, state, {stop, grown});
   line.clear();
@@ -154,7 +156,7 @@ AccuracyOutcome measure_accuracy(const Scene& scene, const AccuracyOptions& opti
     return {};
   }
   AccuracyReport report = report_of(scene, ways, state);
-  report.searched = searched(report, ways.budget, stop);
+  report.searched = searched(report, budget, stop);
   write_files(output, report);
   std::remove(state_path.c_str());
   AccuracyOutcome outcome{true, !report.answers.empty(), options.json ? accuracy_json(report) : accuracy_text(report)};

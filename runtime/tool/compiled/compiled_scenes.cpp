@@ -49,11 +49,15 @@ CompiledScenes::CompiledScenes(const Scene& scene, std::vector<Way>& ways, const
   });
   const bool compiles = has_program(compiler_name());
   if (!compiles) left_out_.push_back(no_compiler());
-  for (const Integrator integrator : wanted) {
-    if (!compiles) break;
+  // The most exact ones first: the compiler has one budget for all.
+  const double start = cpu_of_children();
+  for (auto one = wanted.rbegin(); compiles && one != wanted.rend(); ++one) {
+    const Integrator integrator = *one;
+    SceneCompiler in_time = compiler;
+    in_time.cpu = std::max(1.0, compiler.cpu - (cpu_of_children() - start));
     const std::string name(name_of(integrators, integrator));
     doing("compiling the scene for " + name);
-    const LoadedSteps steps = load_steps(scene, {integrator, most_lanes, {}}, compiler);
+    const LoadedSteps steps = load_steps(scene, {integrator, most_lanes, {}}, in_time);
     if (steps.failure.empty()) steps_[{integrator, 1}] = steps.one, steps_[{integrator, most_lanes}] = steps.many;
     else left_out_.push_back(name + ": " + steps.failure);
   }

@@ -6,6 +6,7 @@
 #include "machine_euler.hpp"
 #include "robot_arm_euler.hpp"
 #include "tests/derive/compile/beside_world.hpp"
+#include "tethers_euler.hpp"
 
 namespace {
 
@@ -18,9 +19,10 @@ TEST(CompiledBounds, MoveAsTheWorld) {
   cdot::runs_as_the_world<bounds_euler<double>>("tests/derive/compile/scenes/bounds.toml", Integrator::euler, 1e-10, 2);
 }
 
-// An end is passed or not by round-off where a joint's correction pushes a body at an end: by h^2 in a step.
 TEST(CompiledBounds, AreCorrectedAsInTheWorld) {
-  cdot::runs_as_the_world<ends_euler<double>>("tests/derive/compile/scenes/ends.toml", Integrator::euler, 1e-5);
+  const std::string scenes = "tests/derive/compile/scenes/";
+  cdot::runs_as_the_world<ends_euler<double>>(scenes + "ends.toml", Integrator::euler);
+  cdot::runs_as_the_world<tethers_euler<double>>(scenes + "tethers.toml", Integrator::euler, 1e-11, 1);
 }
 
 // Every row of the scene is at a bound at some time, and off it at another: else the tests above would miss it. The

@@ -8,9 +8,12 @@
 #include "ends_rattle.hpp"
 #include "hinges_rattle.hpp"
 #include "machine_rattle.hpp"
+#include "planar_drive_rattle.hpp"
 #include "robot_arm_rattle.hpp"
+#include "spatial_drive_rattle.hpp"
 #include "tailgate_rattle.hpp"
 #include "tests/derive/compile/beside_world.hpp"
+#include "tethers_rattle.hpp"
 #include "thrown_rattle.hpp"
 #include "torsion_rattle.hpp"
 #include "tumbling_rattle.hpp"
@@ -39,14 +42,22 @@ TEST(CompiledRattle, MovesWithMotorsAndFrictionAsTheWorld) {
   cdot::runs_as_the_world<bennett_rattle<double>>(shared + "gallery/bennett.toml", Integrator::rattle);
 }
 
-// Up to the first end that is met. Whether the drift then stops at it or just inside is decided by the World's rounds
-// of Newton, which are not the same; a step that starts inside is of another first order.
 TEST(CompiledRattle, MovesWithEndsAsTheWorld) {
-  cdot::runs_as_the_world<bounds_rattle<double>>(scenes + "bounds.toml", Integrator::rattle, 1e-10, 0.37);
-  cdot::runs_as_the_world<bounds_rattle<double>>(scenes + "bounds.toml", Integrator::rattle, 1e-3, 1.5);
-  cdot::runs_as_the_world<ends_rattle<double>>(scenes + "ends.toml", Integrator::rattle, 1e-3);
-  cdot::runs_as_the_world<hinges_rattle<double>>(scenes + "hinges.toml", Integrator::rattle, 1e-10, 0.2);
-  cdot::runs_as_the_world<hinges_rattle<double>>(scenes + "hinges.toml", Integrator::rattle, 1e-6);
+  cdot::runs_as_the_world<bounds_rattle<double>>(scenes + "bounds.toml", Integrator::rattle, 1e-11, 1.5);
+  cdot::runs_as_the_world<ends_rattle<double>>(scenes + "ends.toml", Integrator::rattle, 1e-11);
+  cdot::runs_as_the_world<hinges_rattle<double>>(scenes + "hinges.toml", Integrator::rattle, 1e-11);
+  cdot::runs_as_the_world<tethers_rattle<double>>(scenes + "tethers.toml", Integrator::rattle, 1e-11, 1);
+}
+
+// Their steep part between two saturations is a ten-thousandth of a step's change of the rate.
+TEST(CompiledRattle, MovesWithSaturatingDrivesAsTheWorld) {
+  const std::string drives = "tests/hard_cases/stiff_servo/";
+  for (const double step : {0.001, 1.0 / 60}) {
+    cdot::runs_as_the_world<planar_drive_rattle<double>>(drives + "planar_drive.toml", Integrator::rattle, 1e-9, 2,
+                                                         step);
+    cdot::runs_as_the_world<spatial_drive_rattle<double>>(drives + "spatial_drive.toml", Integrator::rattle, 1e-9, 2,
+                                                          step);
+  }
 }
 
 // The pose of the last body at 0.4 s.
@@ -84,6 +95,8 @@ TEST(CompiledRattle, LanesWithEffectsAreAsAlone) {
   cdot::lanes_are_as_alone<thrown_rattle, float>();
   cdot::lanes_are_as_alone<bounds_rattle>();
   cdot::lanes_are_as_alone<ends_rattle>();
+  cdot::lanes_are_as_alone<planar_drive_rattle>();
+  cdot::lanes_are_as_alone<tethers_rattle>();
   cdot::lanes_are_as_alone<robot_arm_rattle>();
 }
 
