@@ -68,12 +68,19 @@ inline void sin_cos(const T& angle, T& s, T& c) {
   c = select(m > T(0.5) || m < T(-1.5), -c_0, c_0);
 }
 
-// s and c of to.angle, from those of an angle beside it: their sum formulas, with series up to a quarter of a radian.
+// s and c of to.angle, from those of an angle beside it: their sum formulas, with series up to a quarter of a radian,
+// and with two terms up to the move of a correction.
 template <class Pose>
 inline void sin_cos_beside(const Pose& from, Pose& to) {
   using T = decltype(to.angle + to.angle);
   const T d = to.angle - from.angle, z = d * d;
-  const auto is_near = z < T(0.0625);
+  constexpr double slight = sizeof(typename NumberOf<T>::type) == 4 ? 1e-6 : 1e-10;  // d^3 / 6 is round-off
+  const auto is_near = z < T(0.0625), is_slight = z < T(slight);
+  const T half = T(0.5) * z, s_2 = from.s + (from.c * d - from.s * half), c_2 = from.c - (from.s * d + from.c * half);
+  if (!any(!is_slight)) {
+    to.s = s_2, to.c = c_2;
+    return;
+  }
   const T sine =
       d - d * z *
               (T(1.0 / 6) -
@@ -82,7 +89,8 @@ inline void sin_cos_beside(const Pose& from, Pose& to) {
       z * (T(0.5) -
            z * (T(1.0 / 24) -
                 z * (T(1.0 / 720) - z * (T(1.0 / 40320) - z * (T(1.0 / 3628800) - z * T(1.0 / 479001600))))));
-  to.s = from.s + (from.c * sine - from.s * versine), to.c = from.c - (from.s * sine + from.c * versine);
+  const T s_8 = from.s + (from.c * sine - from.s * versine), c_8 = from.c - (from.s * sine + from.c * versine);
+  to.s = select(is_slight, s_2, s_8), to.c = select(is_slight, c_2, c_8);
   if (!any(!is_near)) return;
   T s, c;
   sin_cos(to.angle, s, c);

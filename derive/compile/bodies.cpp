@@ -46,7 +46,7 @@ std::string BodyTexts::turn(const std::set<std::string>& turning) const {
     else if (turning.contains(name)) text += fmt::format("    sin_cos(q[{0}].angle, q[{0}].s, q[{0}].c);\n", name);
     else text += fmt::format("    q[{0}].c = T(1), q[{0}].s = T(0);  // read by no joint\n", name);
   });
-  return text + "  }\n" + (mechanism.on_accelerations() && !mechanism.spatial() ? turn_beside(turning) : "");
+  return text + "  }\n" + (mechanism.spatial() ? "" : turn_beside(turning));
 }
 
 std::string BodyTexts::turn_beside(const std::set<std::string>& turning) const {

@@ -26,7 +26,7 @@ struct BodyTexts {
   std::string judged() const;
   std::string dragged() const;
 
-  // turn() of poses beside turned ones, in the plane.
+  // turn() of poses beside turned ones, in the plane: by their angles apart.
   std::string turn_beside(const std::set<std::string>& turning) const;
 
   // f(body, its name) for those that move.

@@ -132,8 +132,10 @@ constexpr const char* moves_bodies = R"(      for (int i = 0; i < bodies; ++i) d
   }}
 )";
 
-constexpr const char* moves_poses = R"(      for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], d[i]);
-      turn(s.q);
+constexpr const char* moves_poses = R"(      Pose last[bodies];
+      for (int i = 0; i < bodies; ++i) last[i] = s.q[i];
+      for (int i = 0; i < bodies; ++i) move(s.q[i], last[i], d[i]);
+      turn(s.q, last);
 )";
 
 // Turning a pose by nothing would change its bits, in a lane that waits.

@@ -54,6 +54,14 @@ constexpr const char* ends_begin = R"(    Bounded reached;
 
 constexpr const char* round_begins = "    for (int round = 0; round < 100; ++round) {\n";
 
+// Rounds after the first one turn little.
+constexpr const char* drifts_beside = R"(      Pose close_by[bodies];
+      for (int i = 0; i < bodies; ++i) close_by[i] = s.q[i];
+      for (int i = 0; i < bodies; ++i) move(s.q[i], at.q[i], h * s.v[i]);
+      if (round == 0) turn(s.q);
+      else turn(s.q, close_by);
+)";
+
 constexpr const char* joint_errors = R"(      T C[rows], impulse[rows];
       errors($ss.q, s.time, C);
 )";
@@ -299,7 +307,7 @@ std::string closing(double tolerance, const Contents& has) {
   std::string text = closing_begins;
   if (has.foresees) text += series_begins;
   if (has.ends) text += ends_begin;
-  text += round_begins + drifts(has, "at");
+  text += round_begins + (has.spatial ? drifts(has, "at") : drifts_beside);
   if (has.rows) text += joint_errors;
   if (has.ends) text += end_errors;
   text += has.rows ? "      T worst = largest(C);\n" : "      T worst = largest(over);\n";
