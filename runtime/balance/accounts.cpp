@@ -26,6 +26,14 @@ bool is_driven(const Island<S>& island) {
   return false;
 }
 
+template <class S>
+size_t rows_with_bounds(const Island<S>& island) {
+  int rows = 0;
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    if (batch->law && batch->law->guard) rows += (end - begin) * batch->ops->rows;
+  return static_cast<size_t>(rows);
+}
+
 }  // namespace
 
 template <class S>
@@ -36,6 +44,7 @@ void prepare_accounts(WorldData<S>& world) {
     island.rows_work = rows_may_work(island);
     island.works = island.rows_work || S::has_gyroscopes;
     island.driven = is_driven(island);
+    island.flow.first_kick.assign(rows_with_bounds(island), 0);
     works |= island.works;
     find_free_motions(world, island, at);
     if (island.floats) island.momentum.assign(7, -1.0);

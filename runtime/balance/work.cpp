@@ -11,7 +11,8 @@ namespace cdot {
 namespace {
 
 struct Work {
-  double* by_source;  // put in, less taken
+  double* by_source;             // put in, less taken
+  double* first_kick = nullptr;  // Flow::first_kick
   double put_in = 0, taken = 0;
   void put(size_t source, double work) { put_in += work, by_source[source] += work; }
   // Work of a force that can only take. A part with the other sign is the method's own error.
@@ -125,7 +126,7 @@ void work_of_rate(const Batch<S>& batch, const Guard<typename S::Scalar>& guard,
 }
 
 // Rows with bounds: motors put in, friction takes, limits, ropes and latches take what hits them. Other rows that are
-// held on both sides without a rate of their own do no work. Batch::error keeps the work of the first kick.
+// held on both sides without a rate of their own do no work. Flow::first_kick keeps that of the first kick.
 template <class S, class Lambda>
 void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& work) {
   Guard<typename S::Scalar> guards[most_rows];
@@ -133,14 +134,15 @@ void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& 
   const bool moves = !batch.law->error;  // a motor or dry friction
   for (int r = 0; r < batch.ops->rows; ++r) {
     const int i = slot * batch.ops->rows + r;
-    const double before = kick == Kick::second ? double(batch.error[i]) : 0;
+    const double before = kick == Kick::second ? *work.first_kick : 0;
     const double done = double(lambda(i)) * double(batch.rate[i]) + before;
-    if (kick == Kick::first) batch.error[i] = typename S::Scalar(done);
+    if (kick == Kick::first) *work.first_kick = done;
     else if (moves) work_of_rate(batch, guards[r], done, work);
     else if (batch.driven() && !batch.drives_of(slot).empty()) work.give(batch.source, done);
     else if (batch.explicit_time()) work.put(batch.source, done);
     else if (guards[r].one_sided()) work.take(batch.source, done);
     else if (batch.law->distance) work.give(batch.source, done);
+    if (kick != Kick::only) ++work.first_kick;
   }
 }
 
@@ -252,7 +254,8 @@ typename S::Scalar impulse_of(Impulses impulses, const Batch<S>& batch, int i) {
 }
 
 constexpr Kick kick_of(Impulses impulses) {
-  return impulses == Impulses::soft ? Kick::first : impulses == Impulses::relaxed ? Kick::second : Kick::only;
+  if (impulses == Impulses::soft || impulses == Impulses::middle) return Kick::first;
+  return impulses == Impulses::relaxed || impulses == Impulses::end ? Kick::second : Kick::only;
 }
 
 constexpr Springs springs_of(Impulses impulses) {
@@ -289,7 +292,7 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
   }
   const bool at_end = impulses == Impulses::euler || impulses == Impulses::soft;
   const auto* const acted = at_end ? v.data() : start.data();
-  Work work{world.accounts.by_source.data()};
+  Work work{world.accounts.by_source.data(), island.flow.first_kick.data()};
   const bool of_rows = impulses == Impulses::drift || impulses == Impulses::dampers || impulses == Impulses::end ||
                        impulses == Impulses::relaxed;
   if (!of_rows) work_on_bodies(world, island, start.data(), mean.data(), impulses != Impulses::middle, at_end, h, work);

@@ -32,6 +32,12 @@ struct CollocationWorkspace {
   std::vector<T> error;                // estimated, of the numbers at the end
 };
 
+// C of a guarded row and its rate at the start of a step.
+template <class T>
+struct StartOfWay {
+  T C = T(0), rate = T(0);
+};
+
 template <class S>
 struct FlowWorkspace {
   using T = typename S::Scalar;
@@ -42,12 +48,14 @@ struct FlowWorkspace {
   Broyden<ExactNumber<T>> search;  // RATTLE: search for the impulses of its first half
   std::vector<T> kept;             // midpoint rule: impulses at the start of a part
   // Runge-Kutta:
-  std::vector<T> now;            // numbers of a stage, laid out like FlowState::start
-  std::vector<T> low, high;      // margins at the start of a step, then on both sides of an event
-  int guarded = 0;               // number of guarded rows
-  T fixed_step = 0;              // its length; 0: the error chooses the steps
-  bool projects_stages = false;  // in steps near a loss of rank
-  bool astray = false;           // the last attempt at a step reversed a joint's direction
+  std::vector<T> now;               // numbers of a stage, laid out like FlowState::start
+  std::vector<T> low, high;         // margins at the start of a step, then on both sides of an event
+  std::vector<StartOfWay<T>> ways;  // [guarded]
+  std::vector<double> first_kick;   // [J] of rows with bounds in the first of two kicks, by balance/work.cpp
+  int guarded = 0;                  // number of guarded rows
+  T fixed_step = 0;                 // its length; 0: the error chooses the steps
+  bool projects_stages = false;     // in steps near a loss of rank
+  bool astray = false;              // the last attempt at a step reversed a joint's direction
   // Pivots of K at the stages of a step, as shares of their diagonals, [stage][row]; of one row (step/rank_loss.hpp).
   std::vector<double> pivots, of_row;
   T start_residual = 0;        // largest C at the start of the step
