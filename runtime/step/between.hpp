@@ -11,6 +11,15 @@ namespace cdot {
 template <class S>
 bool passed_event(const Flow<S>& flow);
 
+// Call at the start of a step.
+template <class S>
+void note_ways(Island<S>& island);
+
+// True if a step of h leapt over an event: a row met its end within the step and came back,
+// or the bound of a force rose and fell, as over the tooth of a ratchet. No estimate of the error sees that.
+template <class S>
+bool leaps(Island<S>& island, typename S::Scalar h);
+
 // Goes to the first event of a step of h from `time` on that passed one. Returns the time from the step's start to the
 // event; 0 if an implicit method finds no shorter step.
 template <class S>

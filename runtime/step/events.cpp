@@ -24,15 +24,6 @@ constexpr T slight = T(by_precision<T>(1e-4, 1e-9));
 template <class T>
 constexpr T infinite = std::numeric_limits<T>::infinity();
 
-// f(batch, slot) for all slots with guarded rows.
-template <class S, class F>
-void each_guarded_slot(const Island<S>& island, F f) {
-  for (const Segment<S>& segment : island.segments) {
-    if (!segment.batch->law || !segment.batch->law->guard) continue;
-    for (int slot = segment.begin; slot < segment.end; ++slot) f(*segment.batch, slot);
-  }
-}
-
 // f(batch, index, guard, resolution) for every guarded row, with guards at the present C.
 template <class S, class F>
 void each_guarded_row(Island<S>& island, F f) {
@@ -298,6 +289,7 @@ void count_guarded_rows(Island<S>& island) {
   flow.row_rates.assign(rows, infinite<T>);
   for (auto* margins : {&flow.margins, &flow.margins_chosen}) margins->assign(rows + bonds, infinite<T>);
   for (auto* margins : {&flow.low, &flow.high}) margins->assign(rows + bonds, infinite<T>);
+  flow.ways.assign(rows, {});
   flow.resolution.resize(rows);
 }
 
@@ -373,6 +365,14 @@ void measure_margins(const WorldData<S>& world, Island<S>& island, typename S::S
 }
 
 template <class S>
+typename S::Scalar margin_of_row(const Batch<S>& batch, int i, const Resolution<typename S::Scalar>& resolution,
+                                 typename S::Scalar rate) {
+  Guard<typename S::Scalar> guard;  // a coordinate has one row
+  batch.law->guard(batch, i, &guard);
+  return margin_of(batch, i, guard, resolution, rate);
+}
+
+template <class S>
 void drop_modes(Island<S>& island) {
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
@@ -381,11 +381,12 @@ void drop_modes(Island<S>& island) {
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                                    \
-  template void count_guarded_rows(Island<S>&);                                \
-  template void choose_modes(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar); \
-  template void note_rates(WorldData<S>&, Island<S>&);                         \
-  template void measure_margins(const WorldData<S>&, Island<S>&, S::Scalar);   \
+#define CDOT_INSTANTIATE(S)                                                                        \
+  template void count_guarded_rows(Island<S>&);                                                    \
+  template void choose_modes(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar);                     \
+  template void note_rates(WorldData<S>&, Island<S>&);                                             \
+  template void measure_margins(const WorldData<S>&, Island<S>&, S::Scalar);                       \
+  template S::Scalar margin_of_row(const Batch<S>&, int, const Resolution<S::Scalar>&, S::Scalar); \
   template void drop_modes(Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -7,6 +7,15 @@
 
 namespace cdot {
 
+// f(batch, slot) for all slots with guarded rows, in the order of Flow::margins.
+template <class S, class F>
+void each_guarded_slot(const Island<S>& island, F f) {
+  for (const Segment<S>& segment : island.segments) {
+    if (!segment.batch->law || !segment.batch->law->guard) continue;
+    for (int slot = segment.begin; slot < segment.end; ++slot) f(*segment.batch, slot);
+  }
+}
+
 // Allocates the numbers of the island's guarded rows and of its bonds, the joints that may break.
 template <class S>
 void count_guarded_rows(Island<S>& island);
@@ -25,6 +34,11 @@ void note_rates(WorldData<S>& world, Island<S>& island);
 // distance of the force from its bounds. pushed: the missing rate. Then each bond's from its event.
 template <class S>
 void measure_margins(const WorldData<S>& world, Island<S>& island, typename S::Scalar time);
+
+// The distance of one row at its present C and this rate.
+template <class S>
+typename S::Scalar margin_of_row(const Batch<S>& batch, int i, const Resolution<typename S::Scalar>& resolution,
+                                 typename S::Scalar rate);
 
 // Sets all modes to `bounded`, as the other integrators need them.
 template <class S>

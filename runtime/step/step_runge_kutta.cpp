@@ -168,6 +168,16 @@ T after_step(T next, T h, T proposed, int attempt, bool noisy) {
   return noisy && proposed > T(0) ? std::min(next, proposed) : next;
 }
 
+// try_step() with the error that it estimates, in units of `allowed`. Of a step that leapt over an event: one that asks
+// for half the length.
+template <class S>
+double try_adaptive_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+                         typename S::Scalar h, double allowed, double safety) {
+  const double error =
+      try_step(world, island, method, time, h, [&] { return error_of_step(island, method, h, allowed); });
+  return error <= 1 && leaps(island, h) ? std::max(2.0, std::pow(2 * safety, method.error_order)) : error;
+}
+
 // Takes a step as long as the error allows, at most `reach`. Returns like take_fixed_step().
 template <class S>
 typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
@@ -181,9 +191,8 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
   int astray = 0;
   double noise = 0;
   for (int attempt = 0; attempt <= most_rejections && astray < most_astray; ++attempt) {
-    const double error = try_step(world, island, method, time, h, [&] {
-      return error_of_step(island, method, h, std::max(world.settings.local_error, noise));
-    });
+    const double allowed = std::max(world.settings.local_error, noise);
+    const double error = try_adaptive_step(world, island, method, time, h, allowed, safety);
     // A NaN counts as the largest error.
     const double factor = std::clamp(safety * std::pow(error, -1.0 / method.error_order), 0.2, 5.0);
     flow.next_step = h * T(error <= 1e300 ? factor : 0.2);
@@ -306,6 +315,7 @@ bool take_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& me
   }
   keep_start(world, island, method, time, goes_on);
   flow.low.assign(flow.margins.begin(), flow.margins.end());
+  note_ways(island);
   flow.end_kept = flow.projects_stages = false;
   // A hook after the substep may change the World, so no step may pass the end.
   const T reach = world.after_substep.empty() ? std::min(furthest_reach * h, way.to_break) : way.left;

@@ -160,5 +160,65 @@ TEST(EventEffects, ASnapshotBeforeAnEventUndoesIt) {
   }
 }
 
+// --- events within an adaptive step ---
+
+// f(settings, name) for the methods whose error chooses the steps.
+template <class F>
+void each_adaptive(F f) {
+  for (const IntegratorRow& row : integrator_rows) {
+    if (row.level != Level::acceleration) continue;
+    Settings settings = with(row.integrator);
+    settings.local_error = 1e-9;
+    f(settings, row.name);
+  }
+}
+
+// x = v t - a t^2 / 2, which a step follows exactly, passes the end u at t1 = (v - sqrt(v^2 - 2 a u)) / a and comes
+// back. The end stops it: x = u - a (t - t1)^2 / 2.
+TEST(EventEffects, AWayThatTurnsBackWithinAStepMeetsItsEnd) {
+  constexpr double v = 3, a = 2, end = 2.24, met = 1.4;
+  each_adaptive([&](const Settings& settings, const auto& name) {
+    World<double> world(settings);
+    const int slide = world.add_body({.vx = v, .mass = 2, .inertia = 1});
+    world.add_joint({"end_stops",
+                     {slide, world.ground()},
+                     {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {1, 0}}, {"lower", {-9}}, {"upper", {end}}},
+                     {}});
+    world.set_force(slide, {-2 * a, 0, 0});
+    ASSERT_TRUE(world.step(3)) << name;
+    EXPECT_NEAR(world.pose(slide).x, end - a * (3 - met) * (3 - met) / 2, 1e-6) << name;
+  });
+}
+
+// The same with a switch at `end`, which takes the drive away for good.
+TEST(EventEffects, AWayThatTurnsBackWithinAStepMeetsItsSwitch) {
+  constexpr double w = 3, end = 2.24, met = 1.4, I = 0.5, drive = 4, brake = 5, left = 3 - met;
+  each_adaptive([&](const Settings& settings, const auto& name) {
+    World<double> world(settings);
+    const int wheel = world.add_body({.w = w, .mass = 1, .inertia = I});
+    const int axle = revolute(world, world.ground(), wheel, 0, 0, 0, 0);
+    add_effect(world, axle, "angle", SpecEffect{"limit_switch", {{"speed", {100}}, {"max", {drive}}, {"end", {end}}}});
+    world.set_force(wheel, {0, 0, -brake});
+    ASSERT_TRUE(world.step(3)) << name;
+    const double then = w - (brake - drive) / I * met;
+    EXPECT_NEAR(world.pose(wheel).angle, end + then * left - brake / I * left * left / 2, 1e-6) << name;
+  });
+}
+
+// A wheel turns back over narrow teeth, each of which takes W = 2 most / (1 - e) (sin(n f) / n - e f), e = cos(n f).
+// Between the teeth nothing acts, so steps grow beyond them. No method locates the kink at a tooth's edge.
+TEST(EventEffects, NoToothIsNarrowerThanAStep) {
+  constexpr double n = 6, most = 20, f = 0.02, w = -4, I = 0.4;
+  const double e = std::cos(n * f), W = 2 * most / (1 - e) * (std::sin(n * f) / n - e * f);
+  each_adaptive([&](const Settings& settings, const auto& name) {
+    World<double> world(settings);
+    const int rotor = world.add_body({.angle = 0.3, .w = w, .mass = 1, .inertia = I});
+    world.add_joint(
+        {"ratchet", {rotor, world.ground()}, {{"count", {n}}, {"most", {most}}, {"rest", {0}}, {"flank", {f}}}, {}});
+    while (world.pose(rotor).angle > -2.4) ASSERT_TRUE(world.step(0.02)) << name;  // over 3 teeth
+    EXPECT_NEAR(world.velocity(rotor).w, -std::sqrt(w * w - 2 * 3 * W / I), 1e-4) << name;
+  });
+}
+
 }  // namespace
 }  // namespace cdot::test
