@@ -10,6 +10,7 @@
 #include "runtime/balance/balance.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/direct.hpp"
+#include "runtime/solve/longest_move.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
@@ -128,6 +129,25 @@ bool turned_round(const WorldData<S>& world, const Island<S>& island) {
   return 4 * change > before;
 }
 
+// True if one more round would move no body by more than the round-off of its pose. The C of a long rod, u u - l^2,
+// rounds by more than its ends.
+template <class S>
+bool closed_to_round_off(WorldData<S>& world, Island<S>& island) {
+  using T = typename S::Scalar;
+  System<S>& system = island.at_work();
+  auto& moves = world.bodies.increment;
+  load_errors(system, T(-1));
+  if (system.lawful()) factor_rows_with_errors(system, Rates::free);
+  system.solve();
+  system.store([](Batch<S>& batch, int i, auto lambda) { batch.impulse[i] = T(lambda); });
+  exert(world, island, system, &BatchWorkspace<S>::impulse, moves.data());
+  const double way = longest_move<S>(island, moves).way;
+  for (int i : island.bodies) moves[i] = {};
+  for (int r = 0; r < system.rows(); ++r)
+    if (system.unmet(r) != 0) return false;  // rows contradict each other
+  return way <= double(round_off_of(world, island));
+}
+
 // Repeats K lambda = -C / h with the factor of the start and Broyden's updates, velocity += M^-1 J^T lambda, and the
 // drift. False if the error does not shrink because the step is too long. False also if the solution reverses the
 // bodies' velocities. That happens where a joint's direction reverses, as that of a rope whose length passes through 0.
@@ -153,7 +173,8 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
     island.residual = error;
     if (!(island.residual > round_off<T> * island.scale)) return !astray || !turned_round(world, island);
     if (island.residual < T(0.7) * least) least = island.residual, vain = 0;
-    else if (island.residual <= near) return !astray || !turned_round(world, island);  // round-off may end them early
+    else if (island.residual <= near || closed_to_round_off(world, island))  // round-off may end them early
+      return !astray || !turned_round(world, island);
     else if (++vain > most_in_vain)
       return island.residual <= std::max({T(10) * converged<T> * island.scale, near,
                                           std::min(slight<T> * at_first, foreign<T> * island.scale)});
