@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <cdot/spaces.hpp>
@@ -32,8 +33,9 @@ void add_product(const typename System<S>::Product& product, const typename Syst
 }
 
 // K = J weighted^T of one block, lower triangle. In float, kernels evaluate K by unit vectors that are not quite so:
-// that K and its products with other blocks belong to no J. Elimination magnifies their difference, 1e-7, by the ratio
-// r of masses, and pivots are 1 / r: from r = 4000 on they may be wrong or negative.
+// that K and its products with other blocks belong to no J. The difference, 1e-7 and more of the diagonal, takes
+// redundant rows for independent ones. Elimination magnifies it by the ratio r of masses, and pivots are 1 / r: from
+// r = 4000 on they may be wrong or negative.
 template <class S>
 void multiply_own(const typename System<S>::Block& block, const typename System<S>::Real* J,
                   const typename System<S>::Real* weighted, typename System<S>::Real* K) {
@@ -97,8 +99,8 @@ void System<S>::build(const std::vector<Segment<S>>& segments, const Bodies<S>& 
   upper.assign(n, std::numeric_limits<Real>::infinity());
   for (auto* flags : {&fixed, &broken, &out_, &passing_}) flags->assign(n, 0);
   active_set_.assign(n, free);
+  multiplies_own_ = std::is_same_v<T, float> && (has_light_bodies(bodies) || has_loops(bodies));
   order_rows(bodies);
-  multiplies_own_ = std::is_same_v<T, float> && has_light_bodies(bodies);
   each_row([&](int row, const Batch<S>& batch, int) { passing_[row] = batch.law != nullptr; });
   list_products(bodies);
   slacken();
@@ -128,6 +130,24 @@ bool System<S>::has_light_bodies(const Bodies<S>& bodies) const {
   return lightest > much_heavier * heaviest;
 }
 
+// True if rows of joints may be redundant: they connect n bodies, the world one of them, by more than n - 1 links, or
+// the same bodies twice. A joint over k bodies makes k - 1 links.
+template <class S>
+bool System<S>::has_loops(const Bodies<S>& bodies) const {
+  std::map<std::vector<int>, int> joints_over;
+  std::set<int> nodes;
+  size_t links = 0;
+  for (const Block& block : blocks) {
+    std::vector<int> over = movable_bodies(block, bodies);
+    if (over.size() < static_cast<size_t>(std::max(2, block.batch->ops->bodies))) over.push_back(-1);  // the world
+    const auto [found, is_new] = joints_over.emplace(over, 0);
+    if (!block.batch->law && ++found->second > 1) return true;
+    if (is_new) links += over.size() - 1;
+    nodes.insert(over.begin(), over.end());
+  }
+  return links >= nodes.size() && !nodes.empty();
+}
+
 // Blocks over the same bodies (a joint, its limit, its motor) are eliminated as one group. Rows are numbered in the
 // order of elimination.
 template <class S>
@@ -153,7 +173,9 @@ void System<S>::order_rows(const Bodies<S>& bodies) {
     for (int i : groups)
       for (int j : groups)
         if (j < i) coupled.emplace_back(i, j);
-  ldlt_.analyse(rows, coupled, BasicLdlt<Real>::template pivot_share<T>);
+  using Pivots = BasicLdlt<Real>;
+  const bool light = std::is_same_v<T, float> && has_light_bodies(bodies);
+  ldlt_.analyse(rows, coupled, light ? Pivots::pivot_share_of_products : Pivots::template pivot_share<T>);
   size_t i = 0;
   for (auto* list : {&blocks, &tensions})
     for (Block& block : *list) block.first = ldlt_.first(group[i]) + within[i], ++i;

@@ -82,6 +82,9 @@ class BasicLdlt {
   // number type of J and of the masses.
   template <class T>
   static constexpr double pivot_share = std::is_same_v<T, float> ? 1e-7 : 10 * dense::pivot_noise<T>;
+  // The same where all blocks of K are products of one J from floats: a dependent row keeps the square of its rounding,
+  // 4e-15. A body 1000 times lighter than its neighbours leaves 1e-8 and less.
+  static constexpr double pivot_share_of_products = 1e-9;
   // The same for a soft row; below it the softness counts as 0. A dropped row is rigid beside the rows that it depends
   // on, an error of 1e-10 of their stiffness. Otherwise its force would have a relative error of pivot_noise / pivot,
   // 1e-4 and more.
@@ -103,6 +106,8 @@ class BasicLdlt {
   std::vector<Real>& values() { return values_; }
   Real diagonal(int unknown) const { return values_[diagonal_[unknown]]; }
 
+  // From now on a pivot below this share counts as zero, too.
+  void blur(double share) { blur_ = share; }
   // Factors values() plus `added` on the diagonal, without the unknowns marked in `out` (their rows become those of the
   // identity); null: none. `passing` marks rows that may leave, as those of a rope: no row that follows from them is
   // redundant by design. Returns the number of redundant rows.
@@ -177,7 +182,7 @@ class BasicLdlt {
   StateNumber<bool> factored_ = false;   // State: not the first
   std::vector<unsigned char> definite_;  // written by factor_definite(), never read
   bool any_out_ = false;
-  double share_ = pivot_share<Real>;
+  double share_ = pivot_share<Real>, blur_ = 0;
   std::vector<Real> unscaled_, given_;
 };
 

@@ -2,6 +2,7 @@
 // round-off.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -17,6 +18,7 @@ class System {
  public:
   using T = typename S::Scalar;
   using Real = ExactNumber<T>;
+  static constexpr double most_blur = 1e-9;
 
   // Analyses the pattern. tension_rows: the number of each slot in the order of `segments`; empty: none.
   void build(const std::vector<Segment<S>>& segments, const Bodies<S>& bodies,
@@ -40,6 +42,10 @@ class System {
   // Call where rows contradict each other that did not: those that are redundant by design and missed in the last
   // solve() may have been redundant in one pose only, as at a dead centre. False if there are none.
   bool doubt_missed_rows();
+
+  // Poses that miss C = 0 turn rows by about `angle` [rad], which makes redundant rows independent by its square. From
+  // now on such rows are redundant; light bodies leave pivots of that size as well, but smaller ones are rare.
+  void blur(double angle) { ldlt_.blur(std::min(angle * angle, most_blur)); }
 
   // True if there are rows with softness or bounds.
   bool lawful() const { return lawful_; }
@@ -171,6 +177,7 @@ class System {
   void order_rows(const Bodies<S>& bodies);
   void list_products(const Bodies<S>& bodies);
   bool has_light_bodies(const Bodies<S>& bodies) const;
+  bool has_loops(const Bodies<S>& bodies) const;
   std::vector<int> movable_bodies(const Block& block, const Bodies<S>& bodies) const;
   Real largest_b() const;
   char bound_for(int row, Real excess, Real tolerance) const;

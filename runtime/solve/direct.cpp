@@ -244,6 +244,7 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   bool renewed = false, fitted = island.residual <= converged<T> * island.scale;
   // Near a loss of rank the error is magnified, so nothing but round-off may stay.
   const T tolerance = island.flow.projects_stages ? std::numeric_limits<T>::epsilon() : converged<T>;
+  system.blur(0);
   // Known forces do not act in a projection.
   system.give([](const Batch<S>&, int) { return 0.0; });
   // Without laws and at acceleration level the last solve left the right factor.
@@ -261,6 +262,7 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
       if (!fitted || !system.doubt_missed_rows()) return;
       fitted = false;
     }
+    if (fresh) system.blur(double(worst / island.scale));
     if (slow || (fresh && round == 0)) {
       evaluate_anew(world, island, time);
       system.assemble(world.bodies);
