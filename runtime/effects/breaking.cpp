@@ -17,8 +17,9 @@ namespace {
 template <class S>
 void break_overloaded(WorldData<S>& world, typename S::Scalar h) {
   const double time = double(world.time) + double(h);
-  for (const int index : world.awake) {
-    Island<S>& island = world.islands[index];
+  for (std::size_t k = 0; k < world.bonds.size(); ++k) {
+    Island<S>& island = world.islands[world.island_of[movable_body(world, world.joints[world.bonds[k].joint])]];
+    if (island.asleep || island.bonds.front() != static_cast<int>(k)) continue;  // each island once
     if (overloaded_joint(world, island, time, double(h)) < 0) continue;
     island.solver->share(world, island);
     const int joint = overloaded_joint(world, island, time, double(h));
