@@ -368,31 +368,6 @@ TEST(SearchedAccuracy, BelowRoundOffEndsTheSearchSoon) {
       << failure(scene, result);
 }
 
-// Named with the same local error and step, the method rejects more steps. The report says so. A run that goes on from
-// a saved state follows the same pace: its end has the bits of the whole run's.
-TEST(SearchedAccuracy, FollowsThePaceOfTheRunBefore) {
-  for (const char* name : {"slider_crank", "compound_pendulum", "spatial/chain_10"}) {
-    const Scene scene = scene_named(name);
-    std::string warnings;
-    RunOptions options;
-    options.save_at = scene.duration / 2;
-    const RunResult paced = simulate(scene, options, warnings);
-    const Choice& choice = paced.choice.value();
-    ASSERT_EQ(choice.integrator, Integrator::dop853) << name;
-    EXPECT_TRUE(choice.paced);
-    EXPECT_NE(summary_text(scene, paced).find("named, the method takes others"), std::string::npos);
-    const RunResult named = simulate(solved_by(choice, scene), {}, warnings);
-    fmt::print("  {:20} {} evaluations, {} rejected; named {} and {}\n", name, choice.evaluations,
-               paced.counts.rejected, named.counts.evaluations, named.counts.rejected);
-    EXPECT_LT(2 * paced.counts.rejected, named.counts.rejected) << name;
-    EXPECT_LT(static_cast<double>(choice.evaluations), 0.95 * static_cast<double>(named.counts.evaluations)) << name;
-    EXPECT_EQ(summary_text(scene, named).find("by the pace"), std::string::npos);
-    RunOptions further;
-    further.from = paced.state;
-    EXPECT_EQ(simulate(scene, further, warnings).energy_end, paced.energy_end) << name;
-  }
-}
-
 // Rows that were asked for change neither the choice nor the run.
 TEST(SearchedAccuracy, IsTheSameWithAndWithoutOutputs) {
   const Scene scene = scene_named("crank_rocker");
