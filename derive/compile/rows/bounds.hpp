@@ -29,7 +29,7 @@ class BoundWriter {
   struct Guard {
     int off, rate, low, high, acceleration;
   };
-  // What each unit of a load adds to the bounds of the force.
+  // The change of the bounds of the force by each unit of a load.
   struct ByLoad {
     int low, high;
   };

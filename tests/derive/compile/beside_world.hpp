@@ -76,6 +76,32 @@ void runs_as_the_world(const std::string& file, Integrator integrator, double wi
   ::testing::Test::RecordProperty(file, std::to_string(farthest * 1e15));
 }
 
+// A copy of the State goes on with the same bits. Returns it at its end.
+template <class Scene>
+typename Scene::State snapshot_keeps(double step) {
+  typename Scene::State state, kept;
+  Scene::reset(state);
+  for (int k = 0; k < 500; ++k) Scene::step(state, step);
+  std::memcpy(&kept, &state, sizeof state);
+  for (int k = 0; k < 500; ++k) Scene::step(state, step), Scene::step(kept, step);
+  EXPECT_EQ(std::memcmp(&state, &kept, sizeof state), 0);
+  return kept;
+}
+
+// Whether each row with bounds was at one of them in a run, and off it.
+template <class Scene>
+struct MetBounds {
+  explicit MetBounds(int steps, double step = Scene::default_step) {
+    typename Scene::State state;
+    Scene::reset(state);
+    for (int k = 0; k < steps; ++k) {
+      Scene::step(state, step);
+      for (int i = 0; i < Scene::bounded; ++i) (state.hold[i] == 0 ? between : at_bound)[i] = true;
+    }
+  }
+  bool at_bound[Scene::bounded] = {}, between[Scene::bounded] = {};
+};
+
 // Of the first body about an axis.
 template <class Compiled>
 auto& spin_in(typename Compiled::State& state) {

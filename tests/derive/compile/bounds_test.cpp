@@ -29,16 +29,10 @@ TEST(CompiledBounds, AreCorrectedAsInTheWorld) {
 // rotor's motor pulls with all it has at every time.
 TEST(CompiledBounds, AreMetInTheTest) {
   using Scene = bounds_euler<double>;
-  Scene::State state;
-  Scene::reset(state);
-  bool held[Scene::bounded] = {}, free[Scene::bounded] = {};
-  for (int k = 0; k < 2000; ++k) {
-    Scene::step(state);
-    for (int i = 0; i < Scene::bounded; ++i) (state.hold[i] == 0 ? free : held)[i] = true;
-  }
+  const cdot::MetBounds<Scene> met(2000);
   for (int i = 0; i < Scene::bounded; ++i) {
-    EXPECT_TRUE(held[i]) << "row " << i;
-    EXPECT_EQ(free[i], i != Scene::axle_angle_motor) << "row " << i;
+    EXPECT_TRUE(met.at_bound[i]) << "row " << i;
+    EXPECT_EQ(met.between[i], i != Scene::axle_angle_motor) << "row " << i;
   }
 }
 

@@ -36,12 +36,7 @@ TEST(CompiledEvents, HappenInTheTest) {
 
 TEST(CompiledEvents, ASnapshotKeepsThem) {
   using Scene = events_euler<double>;
-  Scene::State state, kept;
-  Scene::reset(state);
-  for (int k = 0; k < 500; ++k) Scene::step(state, 0.001);
-  std::memcpy(&kept, &state, sizeof state);
-  for (int k = 0; k < 500; ++k) Scene::step(state, 0.001), Scene::step(kept, 0.001);
-  EXPECT_EQ(std::memcmp(&state, &kept, sizeof state), 0);
+  Scene::State kept = cdot::snapshot_keeps<Scene>(0.001);
   Scene::reset(kept);
   EXPECT_EQ(kept.events.acts[Scene::hub_angle_timed_motor], 0);
 }

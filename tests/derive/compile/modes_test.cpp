@@ -75,28 +75,14 @@ TEST(CompiledModes, StopASledgeWhereFrictionSays) {
 // have at every time.
 TEST(CompiledModes, AreMetInTheTest) {
   using Scene = bounds_rk4<double>;
-  Scene::State state;
-  Scene::reset(state);
-  bool bound[Scene::bounded] = {}, held[Scene::bounded] = {};
-  for (int k = 0; k < 2000; ++k) {
-    Scene::step(state);
-    for (int i = 0; i < Scene::bounded; ++i) (state.hold[i] == 0 ? held : bound)[i] = true;
-  }
+  const cdot::MetBounds<Scene> met(2000);
   for (int i = 0; i < Scene::bounded; ++i) {
-    EXPECT_TRUE(bound[i]) << "row " << i;
-    EXPECT_EQ(held[i], i != Scene::axle_angle_motor && i != Scene::elbow_angle_friction) << "row " << i;
+    EXPECT_TRUE(met.at_bound[i]) << "row " << i;
+    EXPECT_EQ(met.between[i], i != Scene::axle_angle_motor && i != Scene::elbow_angle_friction) << "row " << i;
   }
 }
 
-TEST(CompiledModes, ASnapshotKeepsThem) {
-  using Scene = dry_arm_rk4<double>;
-  Scene::State state, kept;
-  Scene::reset(state);
-  for (int k = 0; k < 500; ++k) Scene::step(state, 0.001);
-  std::memcpy(&kept, &state, sizeof state);
-  for (int k = 0; k < 500; ++k) Scene::step(state, 0.001), Scene::step(kept, 0.001);
-  EXPECT_EQ(std::memcmp(&state, &kept, sizeof state), 0);
-}
+TEST(CompiledModes, ASnapshotKeepsThem) { cdot::snapshot_keeps<dry_arm_rk4<double>>(0.001); }
 
 TEST(CompiledModes, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<bounds_rk4>();

@@ -45,7 +45,7 @@ TEST(PacedStep, HasTheLengthThatItsMiddleAllows) {
   const double c = 0.3;
   PacedStep step = PacedStep::first(pace, safety, 4, c);
   EXPECT_NEAR(step.proposed(), safety * exact(c, 4), 2e-3);
-  // What one step proposes, the next one understands: c is the same.
+  // The next step understands the length that this one proposes: c is the same.
   const double next = step.next(5, exact(c, 5));
   EXPECT_NEAR(next, safety * exact(c, 5), 1e-12);
   PacedStep further(pace, safety, 5, next);
