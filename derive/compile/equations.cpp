@@ -100,7 +100,8 @@ class EquationWriter {
     out_.effect_of = dampers.effect_of(), out_.triangle = dampers.triangle();
     if (!out_.effect_of.empty()) out_.notice = dampers.notice(), out_.look = dampers.look();
     if (out_.finishes) out_.finish = dampers.finish(joints_);
-    for (std::size_t b = 0; b < mechanism_.bounded.size(); ++b) out_.exerts |= prescribes_rate(blocks_, b);
+    for (std::size_t b = 0; b < mechanism_.bounded.size() && mechanism_.method == Method::rattle; ++b)
+      out_.exerts |= prescribes_rate(blocks_, b);
     if (out_.exerts) out_.exert = exert_of(blocks_, joints_, out_.constants);
   }
 
@@ -113,7 +114,7 @@ class EquationWriter {
   void write_middle() {
     const Middle middle(blocks_, joints_, out_.constants);
     if (!mechanism_.effects.empty()) out_.weigh = middle.weigh();
-    if (system().size() > 0) out_.stiffen = middle.stiffen();
+    if (system().size() > 0 || !mechanism_.bounded.empty()) out_.stiffen = middle.stiffen();
     out_.improve = middle.improve();
   }
 
@@ -176,7 +177,8 @@ class EquationWriter {
     if (!out_.has_ends) return;
     out_.reach = reach_of(blocks_, joints_, out_.constants);
     out_.past = past_of(blocks_, out_.constants);
-    if (mechanism_.method == Method::rattle) out_.nearest = nearest_of(blocks_, out_.constants);
+    if (mechanism_.method == Method::rattle || mechanism_.method == Method::implicit)
+      out_.nearest = nearest_of(blocks_, out_.constants);
     out_.along = along_of(blocks_, out_.constants);
     if (mechanism_.keeps_momenta()) out_.displace = displace_of(blocks_, joints_, out_.constants);
   }

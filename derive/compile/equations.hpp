@@ -30,7 +30,7 @@ struct Equations {
   Program kick;       // q, v, time, J, h -> next: v after an Euler step with effects; lambda of the joints
   Program potential;  // q, time -> E of the effects
   Program angles;     // q, time -> angle, turns: angles that count whole turns
-  // Of effects and rows with bounds by RATTLE, the first ones also by the midpoint rule:
+  // Of effects and rows with bounds by RATTLE and by the midpoint rule:
   bool finishes = false;       // the end of a step solves for more than the joints
   bool exerts = false;         // so does the start of a run
   int groups = 1;              // mechanisms
@@ -49,7 +49,7 @@ struct Equations {
   std::string waits;  // "true, false", by row: it waits for an event
   Program reach;      // q, time, J -> B: their part in a projection
   Program past;       // q, time -> past: errors
-  Program nearest;    // q, time -> off, side: of the nearer end; by RATTLE
+  Program nearest;    // q, time -> off, side: of the nearer end; not by Euler's steps
   Program along;      // q, v, time -> along: J v
   Program displace;   // q, time, J, lambda, mu -> d; where inertias turn
   Program distances;  // q, v, time -> after, until: distances from events

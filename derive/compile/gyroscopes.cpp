@@ -29,20 +29,48 @@ std::string spin_of(const std::string& name) {
   return fmt::format("Vector<T>{{v[{0}].wx, v[{0}].wy, v[{0}].wz}}", name);
 }
 
-// Lines of drift() for one body. The rotation does not depend on the scale of the inertia: of about 1 it suits floats.
-std::string drifted(const Body& body, const std::string& name) {
-  if (!body.inertia_turns) return fmt::format("    move(s.q[{0}], q[{0}], h * s.v[{0}]);\n", name);
+// The arguments by which a body turns freely: those of a symmetric one, or of any other. Its rotation does not depend
+// on the scale of the inertia: of about 1 it suits floats.
+std::string turning_of(const Body& body) {
   const double unit = std::scalbn(1, -std::ilogb(std::max({body.inertia[0], body.inertia[1], body.inertia[2]})));
   const int axis = symmetry_axis(body.inertia);
-  if (axis < 0)
-    return fmt::format("    spin(s.q[{0}], q[{0}], s.v[{0}], {1}, {2}, h);\n", name, text_of(body.inertia, unit),
-                       text_of(body.inverse_inertia, 1 / unit));
+  if (axis < 0) return text_of(body.inertia, unit) + ", " + text_of(body.inverse_inertia, 1 / unit);
   const Tensor& I = body.inertia;
   const double along = I[static_cast<std::size_t>(axis)];
   const std::string e = fmt::format("Vector<T>{{T({}), T({}), T({})}}", int{axis == 0}, int{axis == 1}, int{axis == 2});
-  return fmt::format("    spin(s.q[{0}], q[{0}], s.v[{0}], {1}, T({2}), {3}, h);\n", name, e,
-                     0.5 * unit * (I[0] + I[1] + I[2] - along), text_of(I, unit));
+  return fmt::format("{}, T({}), {}", e, 0.5 * unit * (I[0] + I[1] + I[2] - along), text_of(I, unit));
 }
+
+// Lines of drift() for one body.
+std::string drifted(const Body& body, const std::string& name) {
+  if (!body.inertia_turns) return fmt::format("    move(s.q[{0}], q[{0}], h * s.v[{0}]);\n", name);
+  return fmt::format("    spin(s.q[{0}], q[{0}], s.v[{0}], {1}, h);\n", name, turning_of(body));
+}
+
+// Lines of find_mean_spins() for one body.
+std::string mean_of(const Body& body, const std::string& name) {
+  if (!body.inertia_turns) return fmt::format("    mean[{0}] = v[{0}];\n", name);
+  return fmt::format("    mean[{0}] = mean_of(q[{0}], v[{0}], {1}, h);\n", name, turning_of(body));
+}
+
+constexpr const char* mean_functions = R"(
+  // A velocity with the mean spin of a motion during h, as spin() turns the pose.
+  static Velocity mean_of(const Pose& q, const Velocity& v, const Vector<T>& e, const T& across, const Vector<T>& I,
+                          const T& h) {
+    using std::atan2;
+    const Vector<T> W = to_body(q, Vector<T>{v.wx, v.wy, v.wz});
+    T c;
+    const Vector<T> half = free_turn(e, across, W, times(I, W), h, c);
+    const T sine = root(dot(half, half)), scale = T(2) * atan2(sine, c) / (h * select(sine > T(0), sine, T(1)));
+    const Vector<T> w = to_world(q, scenes::choose(sine > T(0), scale * half, W));
+    return {v.x, v.y, v.z, w.x, w.y, w.z};
+  }
+  template <class Moments>
+  static Velocity mean_of(const Pose& q, const Velocity& v, const Moments& I, const Moments& inverse, const T& h) {
+    const Vector<T> w = to_world(q, mean_spin(I, inverse, to_body(q, Vector<T>{v.wx, v.wy, v.wz}), h));
+    return {v.x, v.y, v.z, w.x, w.y, w.z};
+  }
+)";
 
 constexpr const char* momentum_functions = R"(
   // Keeps I w of a body that moved, in the lanes of `now`.
@@ -116,6 +144,16 @@ std::string gyroscopes_of(const Mechanism& mechanism, const std::vector<std::str
          "  static void carry(const Pose (&from)[bodies], const Pose (&to)[bodies], Velocity (&v)[bodies]) {\n" +
          carry + "  }\n  static void drift(State& s, const Pose (&q)[bodies], const T& h) {\n" + drift +
          "    turn(s.q);\n  }\n";
+}
+
+std::string mean_spins_of(const Mechanism& mechanism, const std::vector<std::string>& names) {
+  std::string lines;
+  for (std::size_t b = 0; b < names.size(); ++b)
+    if (mechanism.bodies[b].moves) lines += mean_of(mechanism.bodies[b], names[b]);
+  return mean_functions +
+         ("  static void find_mean_spins(const Pose (&q)[bodies], const Velocity (&v)[bodies], const T& h, "
+          "Velocity (&mean)[bodies]) {\n" +
+          lines + "  }\n");
 }
 
 std::string torque_of(const Body& body, const std::string& name) {

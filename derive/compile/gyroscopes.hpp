@@ -15,6 +15,8 @@ std::string pose_argument(const Mechanism& mechanism);
 
 // weigh(): M^-1 at the poses. For a step at velocities also wind(), follow() and drift(): spins by angular momenta.
 std::string gyroscopes_of(const Mechanism& mechanism, const std::vector<std::string>& names);
+// find_mean_spins(): velocities by which drift() turns.
+std::string mean_spins_of(const Mechanism& mechanism, const std::vector<std::string>& names);
 
 // A line that declares I^-1 torque of the constant torque as `rod_rate`; empty: there is none.
 std::string torque_of(const Body& body, const std::string& name);

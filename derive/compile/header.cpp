@@ -43,6 +43,7 @@ class HeaderWriter {
     write_start();
     const BodyTexts bodies{mechanism_, names_.bodies};
     text_ += bodies.turn(equations_.turning) + gyroscopes_of(mechanism_, names_.bodies);
+    if (has().midpoint && has().gyroscopes) text_ += mean_spins_of(mechanism_, names_.bodies);
     if (mechanism_.method == Method::euler && !has_effects()) text_ += bodies.push();
     text_ += bodies.weighed() + bodies.energy(has_effects()) + (has().midpoint && has().drags ? bodies.dragged() : "");
     write_equations();
@@ -189,8 +190,9 @@ class HeaderWriter {
     if (has_inputs() && head.find("$d") != std::string::npos) line("    (void)p;");
     if (has().angles && head.find("$d") != std::string::npos) line("    (void)angles;");
     if (has().events && head.find("$d") != std::string::npos) line("    (void)events;");
-    for (const std::string argument : {"q", "v",    "a", "time",  "J",     "B",   "b",      "h", "lambda", "force",
-                                       "C", "rate", "K", "guess", "given", "end", "before", "W", "g",      "mu"})
+    for (const std::string argument :
+         {"q", "v",     "a",     "time", "J",      "B", "b", "h",  "lambda", "force",  "C",   "rate",
+          "K", "guess", "given", "end",  "before", "W", "g", "mu", "mean",   "missed", "side"})
       if (reads(arguments, argument)) line(fmt::format("    (void){};", argument));
     line("  }");
   }
@@ -279,24 +281,27 @@ class HeaderWriter {
 
   void write_midpoint(const std::string& at, const std::string& moving) {
     const bool rows = has().rows, spatial = mechanism_.spatial();
-    write_dampers(at, moving, ")");
+    write_dampers(at, moving, has().bounded ? ", Bounded& B)" : ")");
     if (has().effects) {
       line(fmt::format("\n  static constexpr int effect_rows = {};", equations_.weigh.outputs.size()));
       write_function("K of the rows of effects", "weigh_effects(" + at + ", T (&K)[effect_rows])", equations_.weigh);
     }
-    if (rows)
+    if (has().stiffens())
       write_function(spatial ? "Stiffness of tension" : "Inverse inertias with the stiffness of tension in a step of h",
-                     (spatial ? "tension(" + at : "stiffen(" + at + ", const T& h") +
-                         ", const T (&lambda)[rows], Inertia (&W)[bodies])",
+                     (spatial ? "tension(" + at : "stiffen(" + at + ", const T& h") + ", " + impulses_of(has()) +
+                         "Inertia (&W)[bodies])",
                      equations_.stiffen);
-    if (rows && spatial) text_ += stiffen_of(mechanism_, names_.bodies);
-    write_function("A round of Newton in the middle of a step of h: changes d of v, and y of lambda / 2",
-                   "improve(" + at + ", " + moving + ", const Velocity (&before)[bodies], " +
-                       (rows ? "const Inertia (&W)[bodies], " : "") + (has().gyroscopes ? "const Gyroscope* g, " : "") +
-                       "const T& h, " + (rows ? "const T (&lambda)[rows], const T (&C)[rows], " : "") +
-                       (has().effects ? "const T (&K)[effect_rows], " : "") + "Velocity (&d)[bodies], " +
-                       (rows ? "T (&y)[rows], " : "") + "T& power)",
-                   equations_.improve);
+    if (has().stiffens() && spatial) text_ += stiffen_of(mechanism_, names_.bodies, has());
+    write_function(
+        "A round of Newton in the middle of a step of h: changes d of v, and y of lambda / 2",
+        "improve(" + at + ", " + moving + ", const Velocity (&before)[bodies], " +
+            (has().stiffens() ? "const Inertia (&W)[bodies], " : "") +
+            (has().gyroscopes ? "const Gyroscope* g, const Velocity (&mean)[bodies], " : "") + "const T& h, " +
+            (rows ? "const T (&lambda)[rows], const T (&C)[rows], " : "") +
+            (has().effects ? "const T (&K)[effect_rows], " : "") + (has().bounded ? "const T (&mu)[bounded], " : "") +
+            (has().ends ? "const T (&missed)[bounded], const T (&side)[bounded], " : "") + "Velocity (&d)[bodies], " +
+            (rows ? "T (&y)[rows], " : "") + "T& power" + (has().bounded ? ", Bounded& B)" : ")"),
+        equations_.improve);
     text_ += BodyTexts{mechanism_, names_.bodies}.judged();
   }
 
@@ -315,7 +320,7 @@ class HeaderWriter {
     write_function("The part of rows with ends in a projection",
                    "reach(" + at + (has().rows ? ", const Jacobian& J" : "") + ", Bounded& B)", equations_.reach);
     write_function("Errors of rows with ends", "past(" + at + ", T (&past)[bounded])", equations_.past);
-    if (has().rattle)
+    if (has().rattle || has().midpoint)
       write_function("C - end of the nearer end, and its side: 1 for the lower one, -1 for the upper one, 0 for both",
                      "nearest(" + at + ", T (&off)[bounded], T (&side)[bounded])", equations_.nearest);
     write_function("J v of rows with bounds", "along(" + at + ", " + moving + ", T (&along)[bounded])",

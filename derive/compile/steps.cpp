@@ -257,6 +257,7 @@ long state_bytes_of(const Mechanism& mechanism, const Equations& equations, cons
                        (has.modes ? 1 + (has.loads ? 7 : 6) * long(mechanism.bounded.size()) : 0) +
                        (has.events ? 3 * long(mechanism.bounded.size()) : 0);
   return long{sizeof(double)} * (1 + of_bodies + of_rows + long(mechanism.bounded.size()) +
+                                 (has.midpoint ? long(mechanism.bounded.size()) : 0) +
                                  long(equations.constants.inputs.size()) + 2 * mechanism.angles);
 }
 
@@ -269,6 +270,7 @@ std::string begin_of(Method method, const Contents& has) {
   text += "$C";
   if (has.events) text += "    latch(s);\n";
   if (has.rows) text += "    for (int i = 0; i < rows; ++i) s.lambda[i] = T(0);\n";
+  if (has.bounded && has.midpoint) text += "    for (T& of_row : s.force) of_row = T(0);\n";
   if (has.modes) text += "    s.modes = {};\n    hold_passed_ends(s);\n";
   if (has.closes()) text += "    s.residual = T(1e30);\n";
   if (has.rows) text += evaluates;

@@ -21,7 +21,8 @@ struct Contents {
   bool foresees = false;  // the multipliers of the next projection, by those of the last steps
   bool projects() const { return rows || modes; }  // velocities
   bool closes() const { return rows || ends; }
-  bool pulls() const { return rattle && (rows || bounded); }  // a State has its joints' accelerations
+  bool stiffens() const { return midpoint && (rows || bounded); }  // by tension
+  bool pulls() const { return rattle && (rows || bounded); }       // a State has its joints' accelerations
 };
 
 inline constexpr const char* evaluates = "    evaluate($ss.q, s.time, s.J);\n";

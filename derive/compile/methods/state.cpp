@@ -45,6 +45,7 @@ std::string of_rows(const Mechanism& mechanism, const Contents& has) {
                                                            : "corrections' multipliers by the step's square");
   if (has.bounded)
     text += "    T hold[bounded];  // of the rows with bounds: -1 at the lower one, 1 at the upper one, 0 between\n";
+  if (has.bounded && has.midpoint) text += "    T force[bounded];  // of these\n";
   return text;
 }
 

@@ -29,10 +29,16 @@ constexpr const char* weighs = R"(    T K[effect_rows];
 
 constexpr const char* notes_part = "    for (int i = 0; i < bodies; ++i) before[i] = s.v[i];\n";
 
-constexpr const char* part_guesses = R"(    Inertia W[bodies];
-    T lambda[rows], C[rows], y[rows];
+constexpr const char* part_guesses = R"(    T lambda[rows], C[rows], y[rows];
     for (int i = 0; i < rows; ++i) lambda[i] = h * s.lambda[i];
 )";
+
+// low and high: bounds of mu in the middle.
+constexpr const char* guesses_bounded = R"(    Bounded B;
+    T mu[bounded], x[bounded], low[bounded], high[bounded];
+    for (int i = 0; i < bounded; ++i) mu[i] = h * s.force[i], low[i] = mu[i], high[i] = mu[i];
+)";
+constexpr const char* declares_ends = "    T off[bounded], side[bounded], missed_ends[bounded];\n";
 
 // Goals of Newton: the change of a pose beside the size of the mechanism, and C beside its tolerance. Round-off may
 // stop it before. A larger change than twice the size means that the part is too long.
@@ -48,8 +54,28 @@ constexpr const char* rounds_begin = R"(    s.time = s.time + half;
 constexpr const char* keeps_middle = "      for (int i = 0; i < bodies; ++i) middle[i] = s.q[i];\n";
 
 constexpr const char* measures = R"(      errors($ss.q, end, C);
-      const T worst = largest(C);
+      const T of_joints = largest(C);
 )";
+
+// Ends that are passed are errors. Such rows miss their end by a rate.
+constexpr const char* measures_ends = R"(      nearest($ss.q, end, off, side);
+      for (int i = 0; i < bounded; ++i) {{
+        const auto inside = side[i] * off[i] >= T(0) && magnitude(side[i]) > T(0);
+        missed_ends[i] = off[i] / h, off[i] = select(inside, T(0), off[i]);
+      }}
+      const T worst = {};
+)";
+
+// The impulses of rows with bounds take half of the change x.
+constexpr const char* settles_round = R"(      T hold[bounded];
+      for (int i = 0; i < bounded; ++i) hold[i] = s.hold[i];
+      settle(B, hold, x);
+      for (int i = 0; i < bounded; ++i) {{
+        s.hold[i] = select(goes_on, hold[i], s.hold[i]);
+        low[i] = select(goes_on, mu[i] + T(2) * B.low[i], low[i]), high[i] = select(goes_on, mu[i] + T(2) * B.high[i], high[i]);
+        mu[i] = mu[i] + select(goes_on, T(2) * x[i], T(0));
+      }}
+{})";
 
 constexpr const char* rounds_end =
     R"(      const T way = farthest(d, h), miss = larger(T(single ? 1e6 : 1e12) * way, T({1}) * worst);
@@ -81,8 +107,8 @@ constexpr const char* looks_part =
     find_rates($sC_now, rate_now, K_now, s.time, h, given, at_end);
 )";
 
-constexpr const char* finishes = R"(    finish($ss.q, s.time, s.v, {0}h, {1}d{2});
-    for (int i = 0; i < bodies; ++i) s.v[i] = d[i];
+constexpr const char* finishes = R"(    finish($ss.q, s.time, s.v, {0}h, {1}d{2}{3});
+{4}    for (int i = 0; i < bodies; ++i) s.v[i] = d[i];
 )";
 
 constexpr const char* projects = R"(    solve($qs.J, rate, y, d);
@@ -90,9 +116,22 @@ constexpr const char* projects = R"(    solve($qs.J, rate, y, d);
     for (int i = 0; i < rows; ++i) y[i] = -y[i];
 )";
 
+// A motor keeps to the bounds of the middle; the whole impulse of an end never pulls.
+constexpr const char* settles_end = R"(    for (int i = 0; i < bounded; ++i) {{
+      B.low[i] = (is_rate[i] ? low[i] : B.low[i]) - mu[i], B.high[i] = (is_rate[i] ? high[i] : B.high[i]) - mu[i];
+    }}
+    settle(B, s.hold, x);
+    for (int i = 0; i < bounded; ++i) mu[i] = mu[i] + x[i], s.force[i] = mu[i] / h;
+{})";
+
+// An end that was hit takes energy by itself.
 constexpr const char* judges_end = R"(    T loss = T(0);
     for (int i = 0; i < rows; ++i) loss = loss - T(0.5) * y[i] * rate[i];
-    found = found && (last || !(loss > slight * energy) || stands);
+)";
+constexpr const char* forgives_hits = R"(    for (int i = 0; i < bounded; ++i)
+      if (!is_rate[i]) loss = select(magnitude(mu[i]) > T(0), T(0), loss);
+)";
+constexpr const char* stores_end = R"(    found = found && (last || !(loss > slight * energy) || stands);
     for (int i = 0; i < rows; ++i) s.lambda[i] = (lambda[i] + y[i]) / h;
 )";
 
@@ -105,29 +144,46 @@ constexpr const char* rescue_begins = R"(
     T power;
     for (int i = 0; i < bodies; ++i) before[i] = s.v[i];
 )";
-constexpr const char* rescues_rows = R"(    Evaluated at;
+constexpr const char* notes_start = R"(    Evaluated at;
     at.time = s.time;
     for (int i = 0; i < bodies; ++i) at.q[i] = s.q[i];
-    Inertia W[bodies];
-    T lambda[rows], C[rows], y[rows];
+)";
+constexpr const char* rescues_rows = R"(    T lambda[rows], C[rows], y[rows];
     for (int i = 0; i < rows; ++i) lambda[i] = twice * s.lambda[i];
-    stiffen($ss.q, s.time, {}twice, lambda, W);
-    rates(s.J, s.v, C);
+)";
+constexpr const char* rescues_bounded = R"(    Bounded B;
+    T mu[bounded], x[bounded];
+    for (int i = 0; i < bounded; ++i) mu[i] = twice * s.force[i];
+)";
+constexpr const char* forgets_rows = R"(    rates(s.J, s.v, C);
     for (int i = 0; i < rows; ++i) lambda[i] = T(0), C[i] = twice * C[i];
 )";
+constexpr const char* forgets_bounded = "    for (T& of_row : mu) of_row = T(0);\n";
+// C may shrink to an end within the step, but not further.
+constexpr const char* aims_at_ends = R"(    T off[bounded], side[bounded], missed_ends[bounded];
+    nearest($ss.q, s.time, off, side);
+    along($ss.q, s.time, s.v, missed_ends);
+    for (int i = 0; i < bounded; ++i)
+      missed_ends[i] = missed_ends[i] + select(side[i] * off[i] > T(0), off[i] / h, T(0));
+)";
+constexpr const char* rescue_settles = R"(    settle(B, s.hold, x);
+    for (int i = 0; i < bounded; ++i) s.force[i] = x[i] / h;
+{})";
 constexpr const char* rescue_moves = "    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + d[i];\n";
 constexpr const char* rescue_closes = R"(    Velocity moves[bodies];
     close(s, at, T(0.2), moves);
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + (T(1) / h) * moves[i];
-    for (int i = 0; i < rows; ++i) s.lambda[i] = y[i] / h;
 )";
+constexpr const char* rescue_notes = "    for (int i = 0; i < rows; ++i) s.lambda[i] = y[i] / h;\n";
 
 constexpr const char* parts = R"(
   // The implicit midpoint rule; a step that is too long is taken in parts, in each lane for itself.
   static T step(State& s, T h = T(default_step)) {{
     for (T parts = T(1), done = T(0);;) {{
       const auto busy = done < parts, last = T(2) * parts > T(single ? 8 : 64);
-      if (!any(busy)) return {0};
+      if (!any(busy)) {{
+{1}        return {0};
+      }}
       const T part = h / parts;
       State next = s;
       const auto found = go(next, part, last) && busy, halves = busy && !found && !last, fails = busy && !found && last;
@@ -143,6 +199,14 @@ constexpr const char* parts = R"(
   }}
 )";
 
+// What impulses x of rows with bounds change.
+std::string adds_bounded(const Contents& has, const char* indent) {
+  std::string text = fmt::format("{}for (int e = 0; e < bounded; ++e) {{\n", indent);
+  text += fmt::format("{}  for (int i = 0; i < bodies; ++i) d[i] = d[i] + x[e] * B.g[e][i];\n", indent);
+  if (has.rows) text += fmt::format("{}  for (int i = 0; i < rows; ++i) y[i] = y[i] + x[e] * B.l[e][i];\n", indent);
+  return text + indent + "}\n";
+}
+
 // The velocities at the end: J v = -dC/dt, with what effects do there.
 std::string ending(const Contents& has) {
   std::string text;
@@ -156,25 +220,47 @@ std::string ending(const Contents& has) {
         "    T rate[rows];\n    rates(s.J, s.v, rate);\n"
         "    const T energy = moved_energy(s.q, s.v, before);\n    const auto stands = hardly_moves(s.v, h);\n";
   if (has.finishes)
-    text += fmt::format(finishes, has.rows ? "s.J, " : "", has.looks ? "given, at_end, " : "", has.rows ? ", y" : "");
+    text +=
+        fmt::format(finishes, has.rows ? "s.J, " : "", has.looks ? "given, at_end, " : "", has.rows ? ", y" : "",
+                    has.bounded ? ", B" : "", has.bounded ? fmt::format(settles_end, adds_bounded(has, "    ")) : "");
   else if (has.rows) text += projects;
-  return has.rows ? text + judges_end : text + "    (void)last, (void)work, (void)residual;\n";
+  if (!has.rows) return text + "    (void)last, (void)work, (void)residual;\n";
+  return text + judges_end + (has.ends ? forgives_hits : "") + stores_end;
 }
 
 std::string gyroscopes(const Contents& has) { return has.gyroscopes ? "s.g, " : ""; }
 
+std::string stiffens(const Contents& has, const std::string& q, const std::string& h) {
+  if (!has.stiffens()) return "";
+  return fmt::format("    stiffen($s{}, s.time, {}{}, {}{}W);\n", q, gyroscopes(has), h, has.rows ? "lambda, " : "",
+                     has.bounded ? "mu, " : "");
+}
+
+std::string bounded_arguments(const Contents& has) {
+  return std::string(has.bounded ? "mu, " : "") + (has.ends ? "missed_ends, side, " : "");
+}
+
 // q: poses of the middle; h: of the step.
 std::string improves(const Contents& has, const std::string& q, const std::string& h) {
-  return fmt::format("    improve($s{}, s.time, s.v, before, {}{}, {}{}d, {}power);\n", q,
-                     (has.rows ? "W, " : "") + gyroscopes(has), h, has.rows ? "lambda, C, " : "",
-                     has.effects ? "K, " : "", has.rows ? "y, " : "");
+  return fmt::format("    improve($s{}, s.time, s.v, before, {}{}{}, {}{}{}d, {}power{});\n", q,
+                     has.stiffens() ? "W, " : "", has.gyroscopes ? "s.g, mean, " : "", h, has.rows ? "lambda, C, " : "",
+                     has.effects ? "K, " : "", bounded_arguments(has), has.rows ? "y, " : "", has.bounded ? ", B" : "");
+}
+
+// The errors of a round at its end.
+std::string measured(const Contents& has) {
+  std::string text = has.rows ? measures : "";
+  if (has.ends) text += fmt::format(measures_ends, has.rows ? "larger(largest(off), of_joints)" : "largest(off)");
+  else text += fmt::format("      const T worst = {};\n", has.rows ? "of_joints" : "T(0)");
+  return text;
 }
 
 std::string round(const Mechanism& mechanism, const Contents& has) {
   std::string text = rounds_begin + drifts(has, "at", "half") + keeps_middle + drifts(has, "at", "h");
-  text += has.rows ? measures : "      const T worst = T(0);\n";
-  if (has.rows) text += "      stiffen($smiddle, s.time, " + gyroscopes(has) + "h, lambda, W);\n";
+  text += measured(has) + stiffens(has, "middle", "h");
+  if (has.gyroscopes) text += "      find_mean_spins(at.q, s.v, h, mean);\n";
   text += "      T power;\n" + improves(has, "middle", "h");
+  if (has.bounded) text += fmt::format(settles_round, adds_bounded(has, "      "));
   const auto bodies = static_cast<double>(std::ranges::count_if(mechanism.bodies, &Body::moves));
   const double goal = 0.01 * mechanism.tolerance, few = std::clamp(bodies * bodies, 1e2, 1e4);
   return text +
@@ -183,14 +269,30 @@ std::string round(const Mechanism& mechanism, const Contents& has) {
          drifts(has, "at", "h");
 }
 
+std::string declares(const Contents& has) {
+  return std::string(has.stiffens() ? "    Inertia W[bodies];\n" : "") +
+         (has.gyroscopes ? "    Velocity mean[bodies];\n" : "");
+}
+
 std::string rescue(const Contents& has) {
   std::string text = rescue_begins;
-  if (has.rows) text += fmt::format(rescues_rows, gyroscopes(has));
+  text += declares(has);
+  if (has.closes()) text += notes_start;
+  if (has.rows) text += rescues_rows;
+  if (has.bounded) text += rescues_bounded;
+  text += stiffens(has, "s.q", "twice");
+  if (has.rows) text += forgets_rows;
+  if (has.bounded) text += forgets_bounded;
+  if (has.ends) text += aims_at_ends;
   if (has.effects) text += weighs;
-  text += improves(has, "s.q", "twice") + rescue_moves + drifts(has, "s", "h") + "    s.time = s.time + h;\n";
+  if (has.gyroscopes) text += "    for (int i = 0; i < bodies; ++i) mean[i] = s.v[i];\n";
+  text += improves(has, "s.q", "twice");
+  if (has.bounded) text += fmt::format(rescue_settles, adds_bounded(has, "    "));
+  text += rescue_moves + drifts(has, "s", "h") + "    s.time = s.time + h;\n";
   if (has.gyroscopes) text += follows;
-  if (has.rows) text += rescue_closes;
-  if (has.rows && has.gyroscopes) text += follows;
+  if (has.closes()) text += rescue_closes;
+  if (has.rows) text += rescue_notes;
+  if (has.closes() && has.gyroscopes) text += follows;
   text += "$C";
   if (has.rows) text += std::string(evaluates) + "    project(s);\n";
   return text + "    (void)power;\n  }\n";
@@ -204,11 +306,16 @@ std::string implicit(const Mechanism& mechanism, const Contents& has) {
   if (has.effects) text += weighs;
   if (has.drags) text += "    drag(s.v, half);\n";
   text += notes_part;
+  text += declares(has);
   if (has.rows) text += part_guesses;
+  if (has.bounded) text += guesses_bounded;
+  if (has.ends) text += declares_ends;
   text += round(mechanism, has);
-  if (has.rows) text += std::string(judges_middle) + "    s.residual = residual;\n";
+  if (has.rows) text += judges_middle;
+  if (has.closes()) text += "    s.residual = residual;\n";
   text += doubles + ending(has) + "    return found;\n  }\n";
-  return text + rescue(has) + fmt::format(parts, has.closes() ? "s.residual" : "T(0)");
+  return text + rescue(has) +
+         fmt::format(parts, has.closes() ? "s.residual" : "T(0)", has.events ? "        latch(s);\n" : "");
 }
 
 }  // namespace cdot::compile

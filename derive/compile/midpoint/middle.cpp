@@ -32,8 +32,14 @@ std::vector<RowBlock> blocks_of(const RowBlocks& blocks, const JointRows& joints
 class Round {
  public:
   Round(const RowBlocks& stiff, const JointRows& joints, Constants& constants)
-      : blocks_(stiff), joints_(joints), algebra_(constants), system_(stiff, blocks_of(stiff, joints)) {
+      : blocks_(stiff),
+        joints_(joints),
+        algebra_(constants),
+        system_(stiff, blocks_of(stiff, joints)),
+        bounded_(stiff, algebra_) {
     h_ = algebra_.input("h"), half_ = algebra_.times(algebra_.value(0.5), h_);
+    const char* const array = stiff.mechanism().has_gyroscopes() ? "mean" : "v";
+    each_component(blocks_, [&](const Component& c, double, double) { mean_[c.name] = algebra_.input(c.in(array)); });
   }
 
   Program write() {
@@ -49,14 +55,19 @@ class Round {
       algebra_.output(component.in("d"), change.velocities.at(component.name));
     });
     algebra_.output("power", algebra_.sum(power_));
+    if (blocks_.mechanism().bounded.empty()) return algebra_.finish();
+    bounded_.answer(
+        answers, rows, [](std::size_t) { return true; }, BoundedSystem::Outputs::impulses);
+    bounded_.output_changes(change.velocities, mean_, h_);
     return algebra_.finish();
   }
 
  private:
   void add_joint(Answers& answers, std::size_t k) {
     const RowBlock& joint = system_.blocks()[k];
-    const Values in = blocks_.inputs_with_jacobian(algebra_, joint);
+    Values in = blocks_.inputs_with_jacobian(algebra_, joint);
     system_.add_block(algebra_, k, in);
+    blocks_.replace_velocities(in, joint, mean_);
     const Values Jv = blocks_.call(algebra_, joint, "velocity", in);
     const bool has_rates = joint.rows->has_rates || joint.in_time;
     const Values C_t = has_rates ? blocks_.call(algebra_, joint, "time_derivative", in) : Values{};
@@ -106,6 +117,7 @@ class Round {
 
   // (M + h G / 4)^-1 (M (before - v) + h f / 2 + J^T lambda / 2)
   Values lack() {
+    bounded_.add_half_impulses(forces_);
     Forces torques;
     blocks_.add_torques(algebra_, torques);
     for (const auto& [place, terms] : torques) forces_[place].add(1, algebra_.times(half_, algebra_.sum(terms)));
@@ -133,7 +145,9 @@ class Round {
   const JointRows& joints_;
   Algebra algebra_;
   RowSystem system_;  // of joints and effects
+  BoundedSystem bounded_;
   int h_, half_;
+  Values mean_;              // velocities of the drift
   std::vector<int> missed_;  // by row of the joints: C / h of the end, or the rate of a row of velocities
   Summands power_;           // of the joints, in the step
   std::map<std::string, int> factor_;
@@ -145,7 +159,7 @@ class Round {
 
 Middle::Middle(const RowBlocks& blocks, const JointRows& joints, Constants& constants)
     : blocks_(blocks),
-      stiff_(joints.system().size() > 0 ? blocks.stiffened(constants) : blocks),
+      stiff_(joints.system().size() > 0 || !blocks.mechanism().bounded.empty() ? blocks.stiffened(constants) : blocks),
       joints_(joints),
       constants_(constants) {}
 
@@ -176,21 +190,23 @@ int Middle::stiffened(Algebra& algebra, int body, int G) const {
 Program Middle::stiffen() const {
   Algebra algebra(constants_);
   const std::size_t columns = blocks_.mechanism().columns(), linear = blocks_.mechanism().linear();
-  std::map<int, std::vector<Values>> H;  // by body, of each joint: entries of its own rotation
-  for (std::size_t k = 0; k < joints_.system().blocks().size(); ++k) {
-    const RowBlock& joint = joints_.system().blocks()[k];
-    Values in = blocks_.inputs(algebra, joint);
-    for (std::size_t r = 0; r < joint.rows->count(); ++r)
-      in[fmt::format("lambda_{}", r + 1)] = algebra.input(element("lambda", joints_.system().first_row(k) + r));
-    const Values of_joint = blocks_.call(algebra, joint, "stiffness", in);
-    for (std::size_t b = 0; b < joint.bodies->size(); ++b) {
-      Values& own = H[(*joint.bodies)[b]].emplace_back();
+  std::map<int, std::vector<Values>> H;  // by body, of each joint and bound: entries of its own rotation
+  const auto add = [&](const RowBlock& block, const char* impulses, std::size_t first) {
+    Values in = blocks_.inputs(algebra, block);
+    for (std::size_t r = 0; r < block.rows->count(); ++r)
+      in[fmt::format("lambda_{}", r + 1)] = algebra.input(element(impulses, first + r));
+    const Values of_block = blocks_.call(algebra, block, "stiffness", in);
+    for (std::size_t b = 0; b < block.bodies->size(); ++b) {
+      Values& own = H[(*block.bodies)[b]].emplace_back();
       for (std::size_t i = 0; i + linear < columns; ++i)
         for (std::size_t j = 0; j + linear < columns; ++j)
           own[element(element("H", i), j)] =
-              of_joint.at(element(element("H", columns * b + linear + i), columns * b + linear + j));
+              of_block.at(element(element("H", columns * b + linear + i), columns * b + linear + j));
     }
-  }
+  };
+  for (std::size_t k = 0; k < joints_.system().blocks().size(); ++k)
+    add(joints_.system().blocks()[k], "lambda", joints_.system().first_row(k));
+  for (std::size_t b = 0; b < blocks_.mechanism().bounded.size(); ++b) add(blocks_.bounded(b), "mu", b);
   for (int body = 0; body < static_cast<int>(blocks_.mechanism().bodies.size()); ++body) {
     if (!blocks_.mechanism().bodies[static_cast<std::size_t>(body)].turns()) continue;
     for (std::size_t i = 0; i + linear < columns; ++i)

@@ -5,14 +5,19 @@
 
 namespace cdot::compile {
 
-std::string stiffen_of(const Mechanism& mechanism, const std::vector<std::string>& names) {
+std::string impulses_of(const Contents& has) {
+  return std::string(has.rows ? "const T (&lambda)[rows], " : "") + (has.bounded ? "const T (&mu)[bounded], " : "");
+}
+
+std::string stiffen_of(const Mechanism& mechanism, const std::vector<std::string>& names, const Contents& has) {
   const bool turning = std::ranges::any_of(mechanism.bodies, &Body::inertia_turns);
   std::string text = fmt::format(R"(
   // Inverse inertias with the stiffness of tension in a step of h.
-  static void stiffen($dconst Pose (&q)[bodies], const T& time, {}const T& h, const T (&lambda)[rows], Tensor<T> (&W)[bodies]) {{
-    tension($pq, time, lambda, W);
+  static void stiffen($dconst Pose (&q)[bodies], const T& time, {}const T& h, {}Tensor<T> (&W)[bodies]) {{
+    tension($pq, time, {}W);
 )",
-                                 turning ? "const Gyroscope* g, " : "");
+                                 turning ? "const Gyroscope* g, " : "", impulses_of(has),
+                                 std::string(has.rows ? "lambda, " : "") + (has.bounded ? "mu, " : ""));
   int count = 0;
   for (std::size_t b = 0; b < names.size(); ++b) {
     const Body& body = mechanism.bodies[b];

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "derive/compile/methods/contents.hpp"
 #include "derive/compile/scene/mechanism.hpp"
 
 namespace cdot::compile {
@@ -63,7 +64,9 @@ inline Tensor<T> stiffened(const Tensor<T>& I, const T& h, const Tensor<T>& G) {
 
 )";
 
+// The arguments of impulses, of joints and of rows with bounds.
+std::string impulses_of(const Contents& has);
 // stiffen(), by the program tension().
-std::string stiffen_of(const Mechanism& mechanism, const std::vector<std::string>& names);
+std::string stiffen_of(const Mechanism& mechanism, const std::vector<std::string>& names, const Contents& has);
 
 }  // namespace cdot::compile

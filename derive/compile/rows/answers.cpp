@@ -89,6 +89,26 @@ void BoundedSystem::output_bounds(const Values& next, int h, bool halved) {
   output_S(softness);
 }
 
+void BoundedSystem::output_changes(const Values& w, const Values& v, int h) {
+  const int half = algebra_.value(0.5);
+  for (std::size_t b = 0; b < rows_.size(); ++b) {
+    BoundWriter::Kick kick = rows_[b].in_middle(h);
+    Summands missed{{rows_[b].along(w), kick.bias}, {1, 1}};
+    if (prescribes_rate(blocks_, b)) missed.add(1, rows_[b].along(v)), missed.add(1, rows_[b].drift());
+    const int mu = algebra_.input(element("mu", b));
+    for (int* bound : {&kick.low, &kick.high}) *bound = algebra_.times(half, algebra_.sum({{*bound, mu}, {1, -1}}));
+    output_row(b, algebra_.sum({{algebra_.sum(missed)}, {-1}}), kick);
+  }
+  output_S({});
+}
+
+void BoundedSystem::add_half_impulses(Forces& forces) const {
+  for (std::size_t b = 0; b < rows_.size(); ++b) {
+    const int half = algebra_.times(algebra_.value(0.5), algebra_.input(element("mu", b)));
+    blocks_.add_forces(algebra_, rows_[b].block(), rows_[b].inputs(), {half}, forces);
+  }
+}
+
 void BoundedSystem::output_forces(const Values& a, int h) {
   const int per_half = algebra_.function(Fn::inverse, {algebra_.times(algebra_.value(0.5), h)});
   const int zero = algebra_.value(0);

@@ -57,6 +57,11 @@ class BoundedSystem {
   void output_S(const std::vector<int>& softness);
   // Of a step of h; halved: the other half acts at the start of the next step.
   void output_bounds(const Values& next, int h, bool halved);
+  // Of the impulses mu of a step of h, half of the change that answers to a change w of its mean velocities v. A row of
+  // a rate misses it in the middle.
+  void output_changes(const Values& w, const Values& v, int h);
+  // forces += J^T mu / 2
+  void add_half_impulses(Forces& forces) const;
   // The forces that hold rows, from accelerations a: J a + J g mu = gamma + the derivative of the prescribed rate.
   void output_accelerations(const Values& a);
   // Forces by which rates become those prescribed in the time h/2, from accelerations a:

@@ -165,9 +165,19 @@ int BoundWriter::rate_change() const {
   return blocks_.in_time(algebra_, speed->second, "rate", block_.name + "_speed");
 }
 
+BoundWriter::Kick BoundWriter::kick(int h) const { return while_it_acts(kick_while_it_acts(h)); }
+
+BoundWriter::Kick BoundWriter::in_middle(int h) const {
+  if (is_rate()) return kick(h);
+  const int zero = algebra_.value(0), most = algebra_.value(boundless), least = algebra_.value(-boundless);
+  const int side = algebra_.input(element("side", number_)), other = algebra_.sum({{side}, {-1}});
+  return while_it_acts({algebra_.input(element("missed", number_)), zero,
+                        algebra_.function(Fn::select, {side, zero, least}),
+                        algebra_.function(Fn::select, {other, zero, most})});
+}
+
 // A row that does not act has no impulse.
-BoundWriter::Kick BoundWriter::kick(int h) const {
-  Kick kick = kick_while_it_acts(h);
+BoundWriter::Kick BoundWriter::while_it_acts(Kick kick) const {
   if (!has_events(blocks_, number_)) return kick;
   for (int* bound : {&kick.low, &kick.high})
     *bound = algebra_.function(Fn::select, {acts(), *bound, algebra_.value(0)});

@@ -24,6 +24,9 @@ class BoundWriter {
     int bias, softness, low, high;
   };
   Kick kick(int h) const;
+  // The same in the middle of a step of h: rows with ends miss the input `missed`, and serve the end of the input
+  // `side`, both by the row.
+  Kick in_middle(int h) const;
   // On accelerations, as the World's Guard: how far C is from the end that the row serves, the rate that it prescribes
   // and its derivative, and the bounds of its force.
   struct Guard {
@@ -53,6 +56,7 @@ class BoundWriter {
 
  private:
   Kick kick_while_it_acts(int h) const;
+  Kick while_it_acts(Kick kick) const;
   Guard guard_while_it_acts() const;
   // The largest change of C by the mechanism's size and 1 rad; the terms |J v|, |J dv/dt| and 1/m.
   struct Sizes {

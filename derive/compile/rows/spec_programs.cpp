@@ -68,7 +68,7 @@ SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& sp
   };
   std::erase_if(kernel.coordinates,
                 [&](const derive::KernelBlock& c) { return !coordinates.contains(c.name) && !has_bounds(c.name); });
-  for (derive::KernelBlock& coordinate : kernel.coordinates) keep_needed(coordinate, false);
+  for (derive::KernelBlock& coordinate : kernel.coordinates) keep_needed(coordinate, stiffness);
   kernel.defaults.clear();
   kernel = derive::simplified(std::move(kernel));
   SpecPrograms programs;

@@ -115,8 +115,6 @@ class EffectReader {
     else if (law.distance && by_own_force(place)) refuse_(source, fmt::format("{}: events by a force", effect.name));
     else if (law.error && !effect.in_time.empty())
       refuse_(source, fmt::format("{}: ends that follow functions of time", effect.name));
-    else if (mechanism_.method == Method::implicit)
-      refuse_(source, fmt::format("{} by implicit: rows with bounds", effect.name));
     else if (mechanism_.method != Method::euler && effect.law == Effect::bound && !law.error && !effect.in_time.empty())
       refuse_(source, fmt::format("{}: a rate of a spec that follows a function of time by {}", effect.name,
                                   mechanism_.method_name));

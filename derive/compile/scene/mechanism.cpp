@@ -188,8 +188,7 @@ void add_effects(const Scene& scene, BasicWorld<S>& world, Mechanism& mechanism)
   Refusals refusals(scene);
   const auto refuse = [&](const SceneJoint& joint, const std::string& what) {
     refusals.add(joint.where, fmt::format("{}: cdot compile does not know {}", joint.name, what),
-                 mechanism.method == Method::implicit ? "give another --integrator, or leave it to cdot-run"
-                                                      : "leave it to cdot-run");
+                 "leave it to cdot-run");
   };
   read_effects(scene, world, refuse, mechanism);
   refusals.throw_any();
@@ -206,22 +205,6 @@ void refuse_counters(const Scene& scene, BasicWorld<S>& world) {
                    fmt::format("{}: cdot compile knows no rows that count whole turns, as {} has", joint.name,
                                joint.definition.type),
                    "leave it to cdot-run");
-  }
-  refusals.throw_any();
-}
-
-// The midpoint rule asks for the rates by the mean spin of the drift.
-void refuse_rates_of_gyroscopes(const Scene& scene, const Mechanism& mechanism) {
-  Refusals refusals(scene);
-  const auto turns = [&](int body) { return mechanism.bodies[static_cast<std::size_t>(body)].inertia_turns; };
-  for (const Joint& joint : mechanism.joints) {
-    if (std::ranges::count(joint.is_rate, true) == 0 || std::ranges::none_of(joint.bodies, turns)) continue;
-    refusals.add(
-        std::ranges::find(scene.joints, joint.name, &SceneJoint::name)->where,
-        fmt::format("{}: cdot compile knows no rows of velocities by implicit on bodies whose moments of inertia "
-                    "differ, as {} has",
-                    joint.name, joint.type),
-        "give another --integrator, or leave it to cdot-run");
   }
   refusals.throw_any();
 }
@@ -250,7 +233,6 @@ void add_parts(const Scene& scene, Mechanism& mechanism) {
     if (!world.joint_type(i).is_effect && !is_rope(world.joint_type(i)) &&
         !scene.joints[static_cast<std::size_t>(i)].definition.soft)
       add_joint(scene, world, i, mechanism);
-  if (mechanism.method == Method::implicit) refuse_rates_of_gyroscopes(scene, mechanism);
   add_effects(scene, world, mechanism);
   note_own_specs(mechanism);
 }

@@ -78,18 +78,6 @@ TEST(CompileCommand, HeaderBuildsFreestanding) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(CompileCommand, RefusesWhatTheMidpointRuleDoesNotKnow) {
-  const ShellResult limit = compile(CDOT_SOURCE_DIR "/specs/scenes/robot_arm.toml --integrator implicit");
-  EXPECT_EQ(limit.status, 2);
-  EXPECT_NE(limit.text.find("does not know wrist.angle.brake by implicit: rows with bounds"), std::string::npos)
-      << limit.text;
-  const ShellResult coin = compile(CDOT_SOURCE_DIR "/specs/scenes/gallery/coin.toml --integrator implicit");
-  EXPECT_EQ(coin.status, 2);
-  EXPECT_NE(coin.text.find("no rows of velocities by implicit on bodies whose moments of inertia differ"),
-            std::string::npos)
-      << coin.text;
-}
-
 // A scene compiles, or is refused at a line: no other end.
 TEST(CompileCommand, EveryHardCaseCompilesOrIsRefused) {
   int compiled = 0;
@@ -104,7 +92,7 @@ TEST(CompileCommand, EveryHardCaseCompilesOrIsRefused) {
       compiled += outcome.status == 0;
     }
   }
-  EXPECT_GT(compiled, 150);
+  EXPECT_GT(compiled, 200);
 }
 
 }  // namespace

@@ -12,24 +12,17 @@
 #include "crank_rocker_implicit.hpp"
 #include "double_pendulum_implicit.hpp"
 #include "double_pendulum_space_implicit.hpp"
-#include "effects_implicit.hpp"
 #include "four_bar_implicit.hpp"
 #include "four_bar_space_implicit.hpp"
 #include "gyroscope_space_implicit.hpp"
 #include "heavy_load_planar_implicit.hpp"
 #include "pulley_ratio1_implicit.hpp"
 #include "pulley_ratio2_implicit.hpp"
-#include "rolling_implicit.hpp"
 #include "simple_pendulum_implicit.hpp"
 #include "slider_crank_implicit.hpp"
 #include "slider_crank_space_implicit.hpp"
-#include "tailgate_implicit.hpp"
 #include "three_bodies_space_implicit.hpp"
-#include "thrown_implicit.hpp"
-#include "timed_joints_implicit.hpp"
 #include "torque_free_body_space_implicit.hpp"
-#include "torsion_implicit.hpp"
-#include "tumbling_implicit.hpp"
 // clang-format on
 #include "tests/derive/compile/beside_world.hpp"
 
@@ -37,8 +30,6 @@ namespace {
 
 using cdot::Integrator;
 using namespace cdot::scenes;
-
-const std::string scenes = "tests/derive/compile/scenes/", cases = "tests/hard_cases/";
 
 #define CDOT_BY_MIDPOINT(scene) \
   cdot::runs_as_the_world<scene##_implicit<double>>("specs/scenes/" #scene ".toml", Integrator::implicit);
@@ -51,29 +42,14 @@ TEST(CompiledMidpoint,
                               CDOT_BY_MIDPOINT(pulley_ratio1) CDOT_BY_MIDPOINT(pulley_ratio2)
                                   CDOT_BY_MIDPOINT(simple_pendulum) CDOT_BY_MIDPOINT(slider_crank)}
 
-TEST(CompiledMidpoint, MovesInSpaceAsTheWorld){
-    CDOT_IN_SPACE_BY_MIDPOINT(chain_10) CDOT_IN_SPACE_BY_MIDPOINT(double_pendulum) CDOT_IN_SPACE_BY_MIDPOINT(four_bar)
-        CDOT_IN_SPACE_BY_MIDPOINT(gyroscope) CDOT_IN_SPACE_BY_MIDPOINT(slider_crank)
-            CDOT_IN_SPACE_BY_MIDPOINT(three_bodies) CDOT_IN_SPACE_BY_MIDPOINT(torque_free_body)}
-
-TEST(CompiledMidpoint, MovesWithEffectsAsTheWorld) {
-  const auto runs = [](auto compiled, const std::string& file) {
-    cdot::runs_as_the_world<decltype(compiled)>(file, Integrator::implicit);
-  };
-  runs(effects_implicit<double>(), scenes + "effects.toml");
-  runs(thrown_implicit<double>(), scenes + "thrown.toml");
-  runs(torsion_implicit<double>(), scenes + "torsion.toml");
-  runs(tumbling_implicit<double>(), scenes + "tumbling.toml");
-  runs(tailgate_implicit<double>(), "specs/scenes/tailgate.toml");
+TEST(CompiledMidpoint, MovesInSpaceAsTheWorld) {
+  CDOT_IN_SPACE_BY_MIDPOINT(chain_10)
+  CDOT_IN_SPACE_BY_MIDPOINT(double_pendulum)
+  CDOT_IN_SPACE_BY_MIDPOINT(four_bar) CDOT_IN_SPACE_BY_MIDPOINT(gyroscope) CDOT_IN_SPACE_BY_MIDPOINT(slider_crank)
+      CDOT_IN_SPACE_BY_MIDPOINT(three_bodies) CDOT_IN_SPACE_BY_MIDPOINT(torque_free_body)
 }
 
-TEST(CompiledMidpoint, RollsAsTheWorld) {
-  cdot::runs_as_the_world<rolling_implicit<double>>(scenes + "rolling.toml", Integrator::implicit);
-}
-
-TEST(CompiledMidpoint, IsDrivenAsTheWorld) {
-  cdot::runs_as_the_world<timed_joints_implicit<double>>(scenes + "timed_joints.toml", Integrator::implicit);
-}
+const std::string cases = "tests/hard_cases/";
 
 // Light chains under heavy loads at 60 steps a second: rounds of Newton without the stiffness of tension would fail.
 TEST(CompiledMidpoint, MovesUnderHeavyLoadsAsTheWorld) {
@@ -89,7 +65,6 @@ TEST(CompiledMidpoint, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<slider_crank_implicit>();
   cdot::lanes_are_as_alone<chain_10_implicit, float>();
   cdot::lanes_are_as_alone<three_bodies_space_implicit>();
-  cdot::lanes_are_as_alone<effects_implicit>();
 }
 
 }  // namespace
