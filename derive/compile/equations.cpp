@@ -33,6 +33,7 @@ class EquationWriter {
     blocks_.note_start(out_.constants);
     if (system().size() > 0) {
       out_.evaluate = joints_.evaluate(out_.constants, out_.stored);
+      check_redundancy();
       write_errors();
       write_rates();
       write_solve();
@@ -50,6 +51,7 @@ class EquationWriter {
     if (mechanism_.method == Method::implicit) write_middle();
     if (mechanism_.angles > 0) out_.angles = angles_of(blocks_, out_.constants);
     write_bounded();
+    if (!mechanism_.bonds.empty()) write_bonds();
     if (mechanism_.method == Method::rattle && !mechanism_.bounded.empty()) list_groups();
     // Ends that a guess passes are other ones than those that the step passes. By RATTLE forces that change with rates
     // pull beside the joints.
@@ -150,6 +152,23 @@ class EquationWriter {
     list("body", of_body), list("row", of_row), list("bound", of_bound);
   }
 
+  void write_bonds() {
+    out_.strain = strain_of(blocks_, out_.constants);
+    std::size_t row = 0;
+    for (std::size_t j = 0; j < mechanism_.joints.size(); row += blocks_.joint(j++).rows->count())
+      out_.first_rows.push_back(row);
+    out_.first_rows.push_back(row);
+  }
+
+  // The World shares the loads of redundant rows.
+  void check_redundancy() const {
+    if (!mechanism_.bonds.empty() && system().has_redundant_rows())
+      throw std::runtime_error(
+          fmt::format("{}: cdot compile knows no joints that break beside redundant ones, whose loads are to be "
+                      "shared. Fix: leave it to cdot-run",
+                      mechanism_.bonds.front().name));
+  }
+
   void check_inputs() const {
     const std::vector<std::string> known(out_.constants.known.begin(), out_.constants.known.end());
     for (const std::string& input : out_.constants.inputs) {
@@ -208,7 +227,7 @@ std::vector<const Program*> programs_of_equations(const Equations& e) {
   return {&e.evaluate, &e.errors,  &e.rates,     &e.accelerate, &e.solve,     &e.apply, &e.aim,     &e.solve_aimed,
           &e.fall,     &e.kick,    &e.potential, &e.reach,      &e.past,      &e.along, &e.angles,  &e.dampen,
           &e.notice,   &e.look,    &e.finish,    &e.exert,      &e.distances, &e.guard, &e.resolve, &e.carry,
-          &e.weigh,    &e.stiffen, &e.improve,   &e.displace,   &e.nearest};
+          &e.weigh,    &e.stiffen, &e.improve,   &e.displace,   &e.nearest,   &e.strain};
 }
 
 std::set<std::string> functions_of(const Program& program) {

@@ -9,11 +9,13 @@
 #include "derive/compile/foresight/foresight.hpp"
 #include "derive/compile/gyroscopes.hpp"
 #include "derive/compile/identifiers.hpp"
+#include "derive/compile/methods/bonds.hpp"
 #include "derive/compile/methods/events.hpp"
 #include "derive/compile/methods/modes.hpp"
 #include "derive/compile/methods/rattle.hpp"
 #include "derive/compile/methods/state.hpp"
 #include "derive/compile/methods/tables.hpp"
+#include "derive/compile/midpoint/implicit.hpp"
 #include "derive/compile/midpoint/tension.hpp"
 #include "derive/compile/steps.hpp"
 #include "derive/compile/texts.hpp"
@@ -77,6 +79,7 @@ class HeaderWriter {
             .carries = mechanism_.method == Method::rattle && carries_spin(mechanism_, !equations_.effect_of.empty()),
             .modes = !mechanism_.bounded.empty() && mechanism_.on_accelerations(),
             .loads = mechanism_.has_loads(),
+            .bonds = !mechanism_.bonds.empty(),
             .drags = std::ranges::any_of(mechanism_.bodies, &Body::drags),
             .foresees = !equations_.apply.outputs.empty()};
   }
@@ -85,8 +88,8 @@ class HeaderWriter {
   bool has_inputs() const { return !equations_.constants.inputs.empty(); }
 
   std::string with_arguments(std::string text) const {
-    return compile::with_arguments(
-        std::move(text), {has_inputs(), has().angles, has().events, has().gyroscopes, pose_argument(mechanism_)});
+    return compile::with_arguments(std::move(text), {has_inputs(), has().angles, has().events, has().bonds,
+                                                     has().gyroscopes, pose_argument(mechanism_)});
   }
 
   void line(const std::string& line = {}) { text_ += line + "\n"; }
@@ -99,8 +102,8 @@ class HeaderWriter {
   }
 
   void write_head() {
-    const bool drags = has().midpoint && has().drags;
-    text_ += head_of(mechanism_, request_.command, calls_functions(equations_) || mechanism_.spatial() || drags);
+    const bool calls = calls_functions(equations_) || has().bonds || (has().midpoint && has().drags);
+    text_ += head_of(mechanism_, request_.command, calls || mechanism_.spatial());
     if (mechanism_.spatial() && has().midpoint) text_ += tension;
     line("namespace cdot::scenes {");
     line();
@@ -154,6 +157,7 @@ class HeaderWriter {
       line("    T began[bounded], ended[bounded], acts[bounded];");
       line("  };");
     }
+    if (has().bonds) text_ += bonds_type(mechanism_);
     text_ += state_of(mechanism_, has(), has_inputs());
   }
 
@@ -165,11 +169,7 @@ class HeaderWriter {
     text_ += BodyTexts{mechanism_, names_.bodies}.start();
     for (const auto& [name, value] : equations_.constants.inputs_read)
       line(fmt::format("    s.p.{} = T({});", name, value));
-    if (has().bounded) line("    for (T& of_row : s.hold) of_row = T(0);");
-    if (has().events) line("    for (T& of_row : s.events.began) of_row = T(0);");
-    if (has().events) line("    for (T& of_row : s.events.ended) of_row = T(0);");
-    if (has().angles) line("    for (T& angle : s.angles.angle) angle = T(0);");
-    if (has().angles) line("    for (T& turns : s.angles.turns) turns = T(0);");
+    text_ += reset_of(has());
     line("    begin(s);");
     line("  }");
     text_ += begin_of(mechanism_.method, has());
@@ -190,9 +190,10 @@ class HeaderWriter {
     if (has_inputs() && head.find("$d") != std::string::npos) line("    (void)p;");
     if (has().angles && head.find("$d") != std::string::npos) line("    (void)angles;");
     if (has().events && head.find("$d") != std::string::npos) line("    (void)events;");
+    if (has().bonds && head.find("$d") != std::string::npos) line("    (void)bonds;");
     for (const std::string argument :
-         {"q", "v",     "a",     "time", "J",      "B", "b", "h",  "lambda", "force",  "C",   "rate",
-          "K", "guess", "given", "end",  "before", "W", "g", "mu", "mean",   "missed", "side"})
+         {"q", "v",     "a",     "time", "J",      "B", "b", "h",  "lambda", "force",  "C",    "rate",
+          "K", "guess", "given", "end",  "before", "W", "g", "mu", "mean",   "missed", "side", "load"})
       if (reads(arguments, argument)) line(fmt::format("    (void){};", argument));
     line("  }");
   }
@@ -234,6 +235,13 @@ class HeaderWriter {
                      "distances(" + at + ", " + moving + ", T (&after)[bounded], T (&until)[bounded])",
                      equations_.distances);
       text_ += latch_of(equations_.waits, has());
+    }
+    if (has().bonds) {
+      write_function("How far joints are from breaking",
+                     fmt::format("strain($dconst T& time, const T (&load)[{}], T (&from)[{}])", mechanism_.breakable(),
+                                 mechanism_.bonds.size()),
+                     equations_.strain);
+      text_ += snap_of(mechanism_, equations_.first_rows, has());
     }
     if (has().angles)
       write_function("Angles with their whole turns",
@@ -280,7 +288,7 @@ class HeaderWriter {
   }
 
   void write_midpoint(const std::string& at, const std::string& moving) {
-    const bool rows = has().rows, spatial = mechanism_.spatial();
+    const bool spatial = mechanism_.spatial();
     write_dampers(at, moving, has().bounded ? ", Bounded& B)" : ")");
     if (has().effects) {
       line(fmt::format("\n  static constexpr int effect_rows = {};", equations_.weigh.outputs.size()));
@@ -292,16 +300,8 @@ class HeaderWriter {
                          "Inertia (&W)[bodies])",
                      equations_.stiffen);
     if (has().stiffens() && spatial) text_ += stiffen_of(mechanism_, names_.bodies, has());
-    write_function(
-        "A round of Newton in the middle of a step of h: changes d of v, and y of lambda / 2",
-        "improve(" + at + ", " + moving + ", const Velocity (&before)[bodies], " +
-            (has().stiffens() ? "const Inertia (&W)[bodies], " : "") +
-            (has().gyroscopes ? "const Gyroscope* g, const Velocity (&mean)[bodies], " : "") + "const T& h, " +
-            (rows ? "const T (&lambda)[rows], const T (&C)[rows], " : "") +
-            (has().effects ? "const T (&K)[effect_rows], " : "") + (has().bounded ? "const T (&mu)[bounded], " : "") +
-            (has().ends ? "const T (&missed)[bounded], const T (&side)[bounded], " : "") + "Velocity (&d)[bodies], " +
-            (rows ? "T (&y)[rows], " : "") + "T& power" + (has().bounded ? ", Bounded& B)" : ")"),
-        equations_.improve);
+    write_function("A round of Newton in the middle of a step of h: changes d of v, and y of lambda / 2",
+                   "improve(" + at + ", " + moving + arguments_of_improve(has()), equations_.improve);
     text_ += BodyTexts{mechanism_, names_.bodies}.judged();
   }
 

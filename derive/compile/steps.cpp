@@ -255,7 +255,7 @@ long state_bytes_of(const Mechanism& mechanism, const Equations& equations, cons
                        long(equations.stored.size()) + (has.closes() ? 1 : 0) + (has.foresees ? 1 : 0) +
                        (has.exerts ? equations.groups : 0) +
                        (has.modes ? 1 + (has.loads ? 7 : 6) * long(mechanism.bounded.size()) : 0) +
-                       (has.events ? 3 * long(mechanism.bounded.size()) : 0);
+                       2 * mechanism.breakable() + (has.events ? 3 * long(mechanism.bounded.size()) : 0);
   return long{sizeof(double)} * (1 + of_bodies + of_rows + long(mechanism.bounded.size()) +
                                  (has.midpoint ? long(mechanism.bounded.size()) : 0) +
                                  long(equations.constants.inputs.size()) + 2 * mechanism.angles);

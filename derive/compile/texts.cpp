@@ -64,15 +64,17 @@ std::string unrolled(const std::string& text, const Counts& counts) {
 }
 
 std::string with_arguments(std::string text, const Arguments& given) {
-  const auto& [inputs, angles, events, turns, poses] = given;
+  const auto& [inputs, angles, events, bonds, turns, poses] = given;
   const std::pair<std::string_view, std::string> marks[] = {
       {"$C", angles ? "    Angles next_angles;\n    count($ss.q, s.time, next_angles.angle, next_angles.turns);\n    "
                       "s.angles = next_angles;\n"
                     : ""},
       {"$d", std::string(inputs ? "const Inputs& p, " : "") + (angles ? "const Angles& angles, " : "") +
-                 (events ? "const Events& events, " : "")},
-      {"$s", std::string(inputs ? "s.p, " : "") + (angles ? "s.angles, " : "") + (events ? "s.events, " : "")},
-      {"$p", std::string(inputs ? "p, " : "") + (angles ? "angles, " : "") + (events ? "events, " : "")},
+                 (events ? "const Events& events, " : "") + (bonds ? "const Bonds& bonds, " : "")},
+      {"$s", std::string(inputs ? "s.p, " : "") + (angles ? "s.angles, " : "") + (events ? "s.events, " : "") +
+                 (bonds ? "s.bonds, " : "")},
+      {"$p", std::string(inputs ? "p, " : "") + (angles ? "angles, " : "") + (events ? "events, " : "") +
+                 (bonds ? "bonds, " : "")},
       {"$g", poses},
       {"$q", turns ? "s.q, " : ""},
       {"$t", turns ? "q, " : ""},

@@ -17,6 +17,7 @@ struct Contents {
   bool carries = false;   // by RATTLE, forces at the end read the spin of a body whose inertia turns
   bool modes = false;     // of rows with bounds by Runge-Kutta methods
   bool loads = false;     // bounds of these that grow with loads
+  bool bonds = false;     // some joint may break
   bool drags = false;     // some body has drag
   bool foresees = false;  // the multipliers of the next projection, by those of the last steps
   bool projects() const { return rows || modes; }  // velocities

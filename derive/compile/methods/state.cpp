@@ -51,6 +51,18 @@ std::string of_rows(const Mechanism& mechanism, const Contents& has) {
 
 }  // namespace
 
+std::string reset_of(const Contents& has) {
+  std::string text;
+  const auto set = [&](bool has, const char* of, const char* list, int value) {
+    if (has) text += fmt::format("    for (T& {0} : s.{1}) {0} = T({2});\n", of, list, value);
+  };
+  set(has.bounded, "of_row", "hold", 0);
+  set(has.events, "of_row", "events.began", 0), set(has.events, "of_row", "events.ended", 0);
+  set(has.bonds, "of_joint", "bonds.holds", 1), set(has.bonds, "of_joint", "bonds.load", 0);
+  set(has.angles, "angle", "angles.angle", 0), set(has.angles, "turns", "angles.turns", 0);
+  return text;
+}
+
 std::string state_of(const Mechanism& mechanism, const Contents& has, bool inputs) {
   std::string text =
       (has.modes ? modes_types(has) : "") + state_begins + of_bodies(mechanism, has) + of_rows(mechanism, has);
@@ -58,6 +70,7 @@ std::string state_of(const Mechanism& mechanism, const Contents& has, bool input
   if (inputs) text += "    Inputs p;\n";
   if (has.angles) text += "    Angles angles;\n";
   if (has.events) text += "    Events events;\n";
+  if (has.bonds) text += "    Bonds bonds;\n";
   if (has.exerts) text += "    T begins[groups];  // 1 before the first step of a mechanism\n";
   if (has.closes()) text += "    T residual;      // the largest |C| [m], [rad]\n";
   if (has.rows) text += "    Jacobian J;      // of the poses q\n";

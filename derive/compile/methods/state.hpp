@@ -10,4 +10,7 @@ namespace cdot::compile {
 
 std::string state_of(const Mechanism& mechanism, const Contents& has, bool inputs);
 
+// Lines of reset(): numbers of a State that begin() keeps.
+std::string reset_of(const Contents& has);
+
 }  // namespace cdot::compile

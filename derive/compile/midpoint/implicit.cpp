@@ -228,6 +228,10 @@ std::string ending(const Contents& has) {
   return text + judges_end + (has.ends ? forgives_hits : "") + stores_end;
 }
 
+std::string snaps(const Contents& has) {
+  return fmt::format("        snap(s{}{});\n", has.rows ? ", s.lambda" : "", has.bounded ? ", s.force" : "");
+}
+
 std::string gyroscopes(const Contents& has) { return has.gyroscopes ? "s.g, " : ""; }
 
 std::string stiffens(const Contents& has, const std::string& q, const std::string& h) {
@@ -300,6 +304,19 @@ std::string rescue(const Contents& has) {
 
 }  // namespace
 
+std::string arguments_of_improve(const Contents& has) {
+  std::string text = ", const Velocity (&before)[bodies], ";
+  if (has.stiffens()) text += "const Inertia (&W)[bodies], ";
+  if (has.gyroscopes) text += "const Gyroscope* g, const Velocity (&mean)[bodies], ";
+  text += "const T& h, ";
+  if (has.rows) text += "const T (&lambda)[rows], const T (&C)[rows], ";
+  if (has.effects) text += "const T (&K)[effect_rows], ";
+  if (has.bounded) text += "const T (&mu)[bounded], ";
+  if (has.ends) text += "const T (&missed)[bounded], const T (&side)[bounded], ";
+  return text + "Velocity (&d)[bodies], " + (has.rows ? "T (&y)[rows], " : "") + "T& power" +
+         (has.bounded ? ", Bounded& B)" : ")");
+}
+
 std::string implicit(const Mechanism& mechanism, const Contents& has) {
   std::string text = part_begins;
   if (has.dampens) text += part_dampens;
@@ -315,7 +332,8 @@ std::string implicit(const Mechanism& mechanism, const Contents& has) {
   if (has.closes()) text += "    s.residual = residual;\n";
   text += doubles + ending(has) + "    return found;\n  }\n";
   return text + rescue(has) +
-         fmt::format(parts, has.closes() ? "s.residual" : "T(0)", has.events ? "        latch(s);\n" : "");
+         fmt::format(parts, has.closes() ? "s.residual" : "T(0)",
+                     (has.bonds ? snaps(has) : "") + (has.events ? "        latch(s);\n" : ""));
 }
 
 }  // namespace cdot::compile

@@ -8,6 +8,8 @@
 
 namespace cdot::compile {
 
+// Of improve(), after those of its poses and velocities.
+std::string arguments_of_improve(const Contents& has);
 std::string implicit(const Mechanism& mechanism, const Contents& has);
 
 }  // namespace cdot::compile

@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 
 #include "derive/kernel/factor.hpp"
+#include "derive/kernel/plan.hpp"
 
 namespace cdot::compile {
 
@@ -39,6 +41,27 @@ Program distances_of(const RowBlocks& blocks, Constants& constants) {
     const std::optional<Program> none;
     algebra.output(element("after", b), row.distance(of_spec ? blocks.law(effect).bounded[effect.row].after : none));
     algebra.output(element("until", b), row.distance(of_spec ? blocks.law(effect).bounded[effect.row].until : none));
+  }
+  return algebra.finish();
+}
+
+Program strain_of(const RowBlocks& blocks, Constants& constants) {
+  Algebra algebra(constants);
+  for (std::size_t k = 0; k < blocks.mechanism().bonds.size(); ++k) {
+    const Bond& bond = blocks.mechanism().bonds[k];
+    const SpecPrograms& spec = blocks.bond(bond);
+    const std::string& owner = bond.joint < 0 ? blocks.bounded(static_cast<std::size_t>(bond.rope)).name
+                                              : blocks.joint(static_cast<std::size_t>(bond.joint)).name;
+    Values in;
+    for (std::size_t p = 0; p < spec.parameters.size(); ++p)
+      in[spec.parameters[p]] =
+          algebra.value(bond.numbers[p], fmt::format("{}_{}_{}", owner, bond.type, spec.parameters[p]));
+    in["pi"] = algebra.value(std::numbers::pi);
+    in["time"] = algebra.input("time");
+    in[derive::bounded_load] = algebra.input(element("load", static_cast<std::size_t>(bond.holds)));
+    const Values out = algebra.inlined(
+        *spec.bounded.front().breaks, [&](const std::string& text) { return in.at(text); }, "bond");
+    algebra.output(element("from", k), out.at("D"));
   }
   return algebra.finish();
 }
@@ -122,6 +145,15 @@ BoundWriter::BoundWriter(const RowBlocks& blocks, Algebra& algebra, std::size_t 
       in_(blocks.inputs_with_jacobian(algebra, block_)),
       law_(blocks, algebra, effect_, block_, in_) {}
 
+bool BoundWriter::has_events() const { return compile::has_events(blocks_, number_); }
+
+int BoundWriter::acts() const {
+  std::vector<int> factors;
+  if (has_events()) factors.push_back(algebra_.input(element("events.acts", number_)));
+  if (block_.holds >= 0) factors.push_back(in_.at("holds"));
+  return algebra_.product(factors, std::vector<int>(factors.size(), 1));
+}
+
 int BoundWriter::along(const Values& velocities) const {
   Values in = in_;
   blocks_.replace_velocities(in, block_, velocities);
@@ -178,7 +210,7 @@ BoundWriter::Kick BoundWriter::in_middle(int h) const {
 
 // A row that does not act has no impulse.
 BoundWriter::Kick BoundWriter::while_it_acts(Kick kick) const {
-  if (!has_events(blocks_, number_)) return kick;
+  if (!may_rest()) return kick;
   for (int* bound : {&kick.low, &kick.high})
     *bound = algebra_.function(Fn::select, {acts(), *bound, algebra_.value(0)});
   return kick;
@@ -196,7 +228,7 @@ BoundWriter::Kick BoundWriter::kick_while_it_acts(int h) const {
 // A row that does not act serves no end, and has no force.
 BoundWriter::Guard BoundWriter::guard() const {
   Guard guard = guard_while_it_acts();
-  if (!has_events(blocks_, number_)) return guard;
+  if (!may_rest()) return guard;
   for (int* number : {&guard.off, &guard.rate, &guard.low, &guard.high, &guard.acceleration})
     *number = algebra_.function(Fn::select, {acts(), *number, algebra_.value(0)});
   return guard;
@@ -207,7 +239,7 @@ BoundWriter::ByLoad BoundWriter::by_load() const {
   if (!effect_.is_loaded()) return {zero, zero};
   const Values B = law_.call(*law_.spec().bounded[effect_.row].by_load);
   ByLoad by{bound(B, "B.lower", 0), bound(B, "B.upper", 0)};
-  if (has_events(blocks_, number_))
+  if (may_rest())
     for (int* number : {&by.low, &by.high}) *number = algebra_.function(Fn::select, {acts(), *number, zero});
   return by;
 }
@@ -329,7 +361,7 @@ int BoundWriter::past() const {
 
 BoundWriter::End BoundWriter::nearest() const {
   End end = nearest_while_it_acts();
-  if (!has_events(blocks_, number_)) return end;
+  if (!may_rest()) return end;
   for (int* of : {&end.off, &end.side}) *of = algebra_.function(Fn::select, {acts(), *of, algebra_.value(0)});
   return end;
 }

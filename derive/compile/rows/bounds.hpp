@@ -65,7 +65,10 @@ class BoundWriter {
   };
   Sizes sizes_of_terms() const;
   End nearest_while_it_acts() const;
-  int acts() const { return algebra_.input(derive::element("events.acts", number_)); }
+  // It begins or ends to act, or its joint may break; and the number of this.
+  bool may_rest() const { return has_events() || block_.holds >= 0; }
+  bool has_events() const;
+  int acts() const;
   bool is_rate() const;
   bool are_equal(int lower, int upper) const;  // they hold the coordinate
   Kick of_rate(int h) const;
@@ -99,6 +102,8 @@ Program guard_of(const RowBlocks& blocks, Constants& constants);
 Program resolve_of(const RowBlocks& blocks, Constants& constants);
 // q, time, J, lambda, force -> load: the force with which the bounds of each row grow.
 Program carry_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
+// load, time -> from: the distances of bonds from their end, at most 0 where one breaks.
+Program strain_of(const RowBlocks& blocks, Constants& constants);
 // True for a row with ends, or one that holds a value.
 bool has_ends(const RowBlocks& blocks, std::size_t bounded);
 

@@ -38,12 +38,13 @@ Program JointRows::evaluate(Constants& constants, std::vector<std::string>& stor
       in["J." + field] = J.at("J." + field);
       J_[k][field] = store(joint.name + "_" + field, in["J." + field]);
     }
+    if (joint.holds >= 0) holds_[k] = store(joint.name + "_holds", in.at("holds"));
     const Values C_t =
         joint.rows->has_rates || joint.in_time ? blocks_.call(algebra, joint, "time_derivative", in) : Values{};
     for (std::size_t r = 0, row = system_.first_row(k); r < joint.rows->count(); ++r, ++row) {
       Summands drift;
       if (!C_t.empty()) drift.add(1, C_t.at(derive::element("C_t", r)));
-      if (joint.motor && joint.motor->speed_in_time) drift.add(-1, blocks_.speed(algebra, joint));
+      if (joint.motor && joint.motor->speed_in_time) drift.add(-1, held(algebra, in, blocks_.speed(algebra, joint)));
       if (!drift.args.empty()) rates_[row] = store(system_.names()[row] + "_rate", algebra.sum(drift));
     }
     system_.add_block(algebra, k, in);
@@ -53,9 +54,16 @@ Program JointRows::evaluate(Constants& constants, std::vector<std::string>& stor
   return algebra.finish();
 }
 
+// A number of a joint that may break.
+int JointRows::held(Algebra& algebra, const Values& in, int number) {
+  const auto holds = in.find("holds");
+  return holds == in.end() ? number : algebra.times(holds->second, number);
+}
+
 Values JointRows::inputs(Algebra& algebra, std::size_t block) const {
   Values in = blocks_.inputs(algebra, system_.blocks()[block]);
   for (const auto& [field, stored] : J_[block]) in["J." + field] = read(algebra, stored);
+  if (const auto holds = holds_.find(block); holds != holds_.end()) in["holds"] = read(algebra, holds->second);
   return in;
 }
 
@@ -73,7 +81,7 @@ std::vector<int> JointRows::rates(Algebra& algebra, const Values& velocities) co
     const Values Jv = blocks_.call(algebra, joint, "velocity", in);
     for (std::size_t r = 0; r < joint.rows->count(); ++r) {
       Summands rate{{Jv.at(derive::element("Jv", r)), drift(algebra, rates.size())}, {1, 1}};
-      if (joint.motor && !joint.motor->speed_in_time) rate.add(-1, blocks_.speed(algebra, joint));
+      if (joint.motor && !joint.motor->speed_in_time) rate.add(-1, held(algebra, in, blocks_.speed(algebra, joint)));
       rates.push_back(algebra.sum(rate));
     }
   }

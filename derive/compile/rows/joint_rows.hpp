@@ -36,11 +36,13 @@ class JointRows {
     std::string member;
   };
   static int read(Algebra& algebra, const Stored& stored);
+  static int held(Algebra& algebra, const Values& in, int number);
 
   const RowBlocks& blocks_;
   RowSystem system_;
   std::vector<std::map<std::string, Stored>> J_;  // by block and field
   std::map<std::size_t, Stored> rates_;           // drift(), by row
+  std::map<std::size_t, Stored> holds_;           // by block of a joint that may break
   std::map<std::string, Stored> factor_;
 };
 

@@ -155,7 +155,7 @@ class Accelerated {
       answers.add(in, {});
       const Values g = blocks.call(algebra, joint, "gamma", in);
       for (std::size_t r = 0; r < joint.rows->count(); ++r)
-        rest.push_back(algebra.sum({{g.at(element("g", r)), faster(blocks, algebra, joint)}, {-1, -1}}));
+        rest.push_back(algebra.sum({{g.at(element("g", r)), faster(blocks, algebra, joint, in)}, {-1, -1}}));
     }
     end = answers.to(free_accelerations(blocks, algebra), [&](std::size_t row) { return rest[row]; });
     for (std::size_t row = 0; row < rest.size(); ++row) algebra.output(element("lambda", row), end.lambda[row]);
@@ -165,8 +165,10 @@ class Accelerated {
   Answers::Answer end;
 
  private:
-  static int faster(const RowBlocks& blocks, Algebra& algebra, const RowBlock& joint) {
-    return joint.motor ? blocks.speed_rate(algebra, joint) : algebra.value(0);
+  static int faster(const RowBlocks& blocks, Algebra& algebra, const RowBlock& joint, const Values& in) {
+    if (!joint.motor) return algebra.value(0);
+    const int rate = blocks.speed_rate(algebra, joint);
+    return joint.holds < 0 ? rate : algebra.times(in.at("holds"), rate);
   }
 };
 

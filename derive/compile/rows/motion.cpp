@@ -68,7 +68,8 @@ Program potential_of(const RowBlocks& blocks, Constants& constants) {
   Summands terms;
   const auto add = [&](const Effect& effect, const RowBlock& block) {
     const Values in = blocks.inputs_with_jacobian(algebra, block);
-    terms.add(1, LawWriter(blocks, algebra, effect, block, in).energy());
+    const int energy = LawWriter(blocks, algebra, effect, block, in).energy();
+    terms.add(1, block.holds < 0 ? energy : algebra.times(in.at("holds"), energy));
   };
   const Mechanism& all = blocks.mechanism();
   for (std::size_t e = 0; e < all.effects.size(); ++e) add(all.effects[e], blocks.effect(e));

@@ -36,6 +36,7 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
       if (!effect.coordinate.empty()) of_type.insert(effect.coordinate);
       if (!effect.law_type.empty()) coordinates[law_of(effect)];
     }
+  for (const Bond& bond : mechanism.bonds) coordinates[bond_of(bond)];
   const std::string folder = mechanism.spatial() ? "spatial/" : "planar/";
   for (const auto& [type, of_type] : coordinates) {
     const auto own = mechanism.own_specs.find(type.substr(type.find('/') + 1));
@@ -57,7 +58,7 @@ void RowBlocks::add_joint(const Joint& joint, const std::string& name) {
   const SpecPrograms& spec = types_.at(joint.type);
   joints_.push_back({name, name, &spec, &spec.rows, &joint.bodies, &joint.parameters});
   RowBlock& block = joints_.back();
-  block.joint = &joint;
+  block.joint = &joint, block.holds = joint.holds;
   if (!joint.in_time.empty()) block.in_time = &joint.in_time;
   check_time(block, joint.name);
   if (joint.coordinate.empty()) return;
@@ -78,6 +79,10 @@ void RowBlocks::note_coordinate_laws(const derive::SpecsFolder& specs) {
 std::string RowBlocks::law_of(const Effect& effect) const {
   if (!effect.coordinate.empty() && coordinate_laws_.contains(effect.law_type)) return "coordinate/" + effect.law_type;
   return (mechanism_.spatial() && !effect.coordinate.empty() ? "planar/" : "") + effect.law_type;
+}
+
+std::string RowBlocks::bond_of(const Bond& bond) const {
+  return (coordinate_laws_.contains(bond.type) ? "coordinate/" : "") + bond.type;
 }
 
 const std::map<std::size_t, InTime>* RowBlocks::functions_of(const std::string& effect) const {
@@ -110,6 +115,7 @@ RowBlock RowBlocks::block_of(const std::string& name, const Effect& effect) cons
   RowBlock block{name,           effect.coordinate.empty() ? name : owner_of(name, effect.name),
                  &spec,          coordinate.empty() ? &spec.rows : &spec.coordinates.at(coordinate),
                  &effect.bodies, &effect.parameters};
+  block.holds = effect.holds;
   if (effect.coordinate.empty()) check_functions(effect, block);
   else block.in_time = functions_of(effect.name);
   return block;
@@ -166,6 +172,7 @@ Values RowBlocks::inputs(Algebra& algebra, const RowBlock& block) const {
   }
   in["pi"] = algebra.value(3.14159265358979323846);
   in["time"] = algebra.input("time");
+  if (block.holds >= 0) in["holds"] = algebra.input(element("bonds.holds", static_cast<std::size_t>(block.holds)));
   return in;
 }
 
@@ -177,6 +184,19 @@ Values RowBlocks::inputs_with_jacobian(Algebra& algebra, const RowBlock& block) 
 }
 
 Values RowBlocks::call(Algebra& algebra, const RowBlock& block, const std::string& function, const Values& in) const {
+  Values out = call_held(algebra, block, function, in);
+  if (block.holds < 0 || function == "jacobian") return out;
+  const int holds = in.at("holds"), broken = algebra.sum({{algebra.value(1), holds}, {1, -1}});
+  for (auto& [name, op] : out) op = algebra.times(holds, op);
+  for (std::size_t r = 0; function == "effective_mass" && r < block.rows->count(); ++r) {
+    int& own = out.at(derive::triangle_element("K", r, r));
+    own = algebra.sum({{own, broken}, {1, 1}});
+  }
+  return out;
+}
+
+Values RowBlocks::call_held(Algebra& algebra, const RowBlock& block, const std::string& function,
+                            const Values& in) const {
   if (block.in_time && (function == "time_derivative" || function == "gamma"))
     return call_in_time(algebra, block, function, in);
   return algebra.inlined(
@@ -185,14 +205,14 @@ Values RowBlocks::call(Algebra& algebra, const RowBlock& block, const std::strin
 
 // dC/dt = C_t, gamma = gamma at fixed parameters - 2 d(J v)/dt - C_tt, with derivatives at fixed poses and velocities.
 Values RowBlocks::call_in_time(Algebra& algebra, const RowBlock& block, const std::string& function, Values in) const {
-  const Values C = call(algebra, block, "position", in);
+  const Values C = call_held(algebra, block, "position", in);
   const bool first = function == "time_derivative";
   Values out, Jv;
   if (!first) {
     out = algebra.inlined(
         block.rows->function(function), [&](const std::string& text) { return in.at(text); }, block.name);
     for (const auto& [name, op] : call(algebra, block, "jacobian", in)) in[name] = op;
-    Jv = call(algebra, block, "velocity", in);
+    Jv = call_held(algebra, block, "velocity", in);
   }
   for (std::size_t r = 0; r < block.rows->count(); ++r) {
     const int C_t = algebra.by_time(C.at(element("C", r)));

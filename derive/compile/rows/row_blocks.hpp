@@ -31,6 +31,7 @@ struct RowBlock {
   const Joint* motor = nullptr;                            // whose speed is the rate of its row
   const std::map<std::size_t, InTime>* in_time = nullptr;  // parameters that follow functions of time; null: none
   const Joint* joint = nullptr;                            // if it is one
+  int holds = -1;                                          // of a joint that may break, or on one: as Joint::holds
 };
 
 // Forces by body and column.
@@ -49,6 +50,8 @@ class RowBlocks {
   const RowBlock& joint(std::size_t j) const { return joints_[j]; }
   const RowBlock& effect(std::size_t e) const { return effects_[e]; }
   const RowBlock& bounded(std::size_t b) const { return bounded_[b]; }
+  // The spec by which a joint breaks.
+  const SpecPrograms& bond(const Bond& bond) const { return types_.at(bond_of(bond)); }
   // The spec whose law the effect has.
   const SpecPrograms& law(const Effect& effect) const;
   const std::string& body_name(int index) const { return names_.bodies[static_cast<std::size_t>(index)]; }
@@ -67,7 +70,7 @@ class RowBlocks {
   Values inputs_with_jacobian(Algebra& algebra, const RowBlock& block) const;
   // Puts these in place of v in the inputs; by the names of components, "rod.x"; empty: leaves v.
   void replace_velocities(Values& in, const RowBlock& block, const Values& velocities) const;
-  // One of its functions.
+  // One of its functions. Where the joint broke all is 0, but for a diagonal of 1 of K.
   Values call(Algebra& algebra, const RowBlock& block, const std::string& function, const Values& in) const;
   // M^-1 f of a body in a column, from f by columns.
   int weighted(Algebra& algebra, int body, std::size_t column, const std::function<int(std::size_t column)>& f) const;
@@ -93,6 +96,8 @@ class RowBlocks {
  private:
   void add_joint(const Joint& joint, const std::string& name);
   std::string law_of(const Effect& effect) const;
+  std::string bond_of(const Bond& bond) const;
+  Values call_held(Algebra& algebra, const RowBlock& block, const std::string& function, const Values& in) const;
   void note_coordinate_laws(const derive::SpecsFolder& specs);
   // Of rows whose parameters follow functions of time: dC/dt and gamma, from C and J v at this time.
   Values call_in_time(Algebra& algebra, const RowBlock& block, const std::string& function, Values in) const;

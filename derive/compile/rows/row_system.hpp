@@ -1,6 +1,7 @@
 // K = J M^-1 J^T of several row blocks as operations: assembled, factored and solved in a fixed order of elimination.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -45,6 +46,8 @@ class RowSystem {
   void write_changes(Algebra& algebra, const std::vector<int>& lambda,
                      const std::function<Values(std::size_t block)>& inputs) const;
   const std::vector<std::size_t>& order() const { return order_; }
+  // At the start. After factor().
+  bool has_redundant_rows() const { return std::ranges::find(redundant_, true) != redundant_.end(); }
 
  private:
   void order_rows();

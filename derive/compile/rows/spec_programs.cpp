@@ -82,10 +82,11 @@ SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& sp
   if (derivation.joint.law) programs.leaves = leaves_of_law(derivation.joint);
   for (derive::KernelBound& bound : kernel.bounded) {
     programs.bounded.push_back(
-        {bound.row->coordinate, bound.row->of_rate, std::move(bound.function.program), {}, {}, {}});
+        {bound.row->coordinate, bound.row->of_rate, std::move(bound.function.program), {}, {}, {}, {}});
     for (derive::KernelFunction& other : bound.others) {
       if (other.name == "by_load") programs.bounded.back().by_load = std::move(other.program);
       if (other.name == "after") programs.bounded.back().after = std::move(other.program);
+      if (other.name == "breaks") programs.bounded.back().breaks = std::move(other.program);
       if (other.name == "until") programs.bounded.back().until = std::move(other.program);
     }
   }

@@ -31,6 +31,7 @@ struct BoundPrograms {
   derive::Program bounds;  // of C and the time: B.lower, B.upper, B.rate
   // Of C, its rate and the time: D, the distance from the event at which the row begins or ends to act.
   std::optional<derive::Program> after, until;
+  std::optional<derive::Program> breaks;   // of the load on a joint and the time: D, the distance from the joint's end
   std::optional<derive::Program> by_load;  // B.lower, B.upper: what each unit of its load adds to them
   bool has_events() const { return after || until; }
 };

@@ -7,6 +7,7 @@
 
 #include <cdot/effects.hpp>
 
+#include "derive/compile/scene/bonds.hpp"
 #include "runtime/rows/spline.hpp"
 #include "runtime/state/world_data.hpp"
 #include "runtime/tool/scene/profile.hpp"
@@ -72,6 +73,7 @@ class EffectReader {
     const int ground = static_cast<int>(scene_.bodies.size());
     for (int& body : effect.bodies) body = body == world_.ground() ? ground : body;
     effect.parameters = world_.joint_parameters(joint);
+    effect.holds = number_among_breakable(world_, joint);
     prepare_topology(world_.data());
     for (const int body : record(joint).bodies)
       if (const int island = world_.data().island_of[static_cast<std::size_t>(body)]; island >= 0)
@@ -189,6 +191,7 @@ class EffectReader {
   void add_strong_motor(const Effect& effect) {
     mechanism_.joints.push_back(
         {effect.name + ".motor", effect.type, effect.bodies, effect.parameters, effect.coordinate, effect.numbers[0]});
+    mechanism_.joints.back().holds = effect.holds;
     if (const auto speed = effect.in_time.find(0); speed != effect.in_time.end())
       mechanism_.joints.back().speed_in_time = speed->second;
   }

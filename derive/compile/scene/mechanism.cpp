@@ -8,6 +8,7 @@
 
 #include <cdot/world.hpp>
 
+#include "derive/compile/scene/bonds.hpp"
 #include "derive/compile/scene/effects.hpp"
 #include "runtime/own/own.hpp"
 #include "runtime/solve/projection.hpp"
@@ -41,8 +42,11 @@ void refuse_joint(const SceneJoint& joint, const Scene& scene, Refusals& refusal
   const auto refuse = [&](const std::string& part) {
     refusals.add(joint.where, fmt::format("{}: cdot compile knows no {}", name, part), "leave it to cdot-run");
   };
-  if (!joint.bonds.empty()) refuse("joints that break");
   const JointType* type = find_joint_type(scene.dimension, joint.definition.type);
+  if (!joint.bonds.empty() && scene.settings.integrator != Integrator::implicit)
+    refuse(fmt::format("joints that break by {}", row_of(scene.settings.integrator).name));
+  if (!joint.bonds.empty() && (joint.definition.soft || (type && type->is_effect)))
+    refuse("effects and soft joints that break");
   if (type && (joint.definition.soft || is_rope(*type)) && in_time(joint.definition.parameters))
     refuse("ropes and soft joints whose numbers follow functions of time");
   const auto has = [&](RowKind kind) {
@@ -162,6 +166,7 @@ Joint joint_of(const Scene& scene, const BasicWorld<S>& world, int index) {
 template <class S>
 void add_joint(const Scene& scene, BasicWorld<S>& world, int index, Mechanism& mechanism) {
   Joint joint = joint_of(scene, world, index);
+  joint.holds = number_among_breakable(world, index);
   const JointRecord& record = world.data().joints[static_cast<std::size_t>(index)];
   if (!find_functions(scene, record, -1, mechanism, joint.in_time)) {
     Refusals refusals(scene);
@@ -214,6 +219,7 @@ void note_own_specs(Mechanism& mechanism) {
     if (const std::string file = file_of_own_type(type); !file.empty()) mechanism.own_specs[type] = file;
   };
   for (const Joint& joint : mechanism.joints) note(joint.type);
+  for (const Bond& bond : mechanism.bonds) note(bond.type);
   for (const auto* list : {&mechanism.effects, &mechanism.bounded})
     for (const Effect& effect : *list) note(effect.type), note(effect.law_type);
 }
@@ -234,6 +240,7 @@ void add_parts(const Scene& scene, Mechanism& mechanism) {
         !scene.joints[static_cast<std::size_t>(i)].definition.soft)
       add_joint(scene, world, i, mechanism);
   add_effects(scene, world, mechanism);
+  read_bonds(scene, world, mechanism);
   note_own_specs(mechanism);
 }
 

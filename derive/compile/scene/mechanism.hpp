@@ -54,6 +54,7 @@ struct Joint {
   std::optional<InTime> speed_in_time{};
   std::map<std::size_t, InTime> in_time{};  // those of `parameters` that follow functions of time
   std::vector<bool> is_rate{};              // by row: of velocities, without C
+  int holds = -1;                           // of a joint that may break: its number among these
 };
 
 // A force along each row of a spec, or along one of its coordinates; a row with bounds on a coordinate.
@@ -82,7 +83,16 @@ struct Effect {
   double size = 1;                          // Island::size of its mechanism [m]
   // Of a row whose bounds grow with a load: what carries it, among Mechanism::bounded or Mechanism::joints.
   int loaded_by_row = -1, loaded_by_joint = -1;
+  int holds = -1;  // of a joint that may break, on which it acts: as Joint::holds
   bool is_loaded() const { return loaded_by_row >= 0 || loaded_by_joint >= 0; }
+};
+
+// By which a joint breaks.
+struct Bond {
+  std::string name, type;         // "hinge.breaking", "breaking"
+  int holds = 0;                  // the number of the joint among those that may break
+  int joint = -1, rope = -1;      // which carries the load: among Mechanism::joints or Mechanism::bounded
+  std::vector<double> numbers{};  // Parameters<T> of the spec
 };
 
 enum class Method { euler, implicit, rattle, rk4, dop853 };
@@ -100,6 +110,7 @@ struct Mechanism {
   std::vector<Joint> joints;
   std::vector<Effect> effects;                   // by forces
   std::vector<Effect> bounded;                   // rows with bounds
+  std::vector<Bond> bonds;                       // by joint
   std::map<std::string, std::string> own_specs;  // files beside the scene, by type
   std::vector<Table> tables;                     // that numbers follow
   bool foresees = true;                          // corrections may begin close to their end
@@ -109,6 +120,7 @@ struct Mechanism {
   bool spatial() const { return dimension == 3; }
   // True for a Runge-Kutta method; the others step velocities by impulses.
   bool on_accelerations() const { return method == Method::rk4 || method == Method::dop853; }
+  int breakable() const { return bonds.empty() ? 0 : bonds.back().holds + 1; }  // joints that may break
   bool has_loads() const { return std::ranges::any_of(bounded, &Effect::is_loaded); }
   // True if the inertia of a body turns with it.
   bool has_gyroscopes() const { return std::ranges::any_of(bodies, &Body::inertia_turns); }

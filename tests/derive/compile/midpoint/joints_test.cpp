@@ -32,21 +32,31 @@ using cdot::Integrator;
 using namespace cdot::scenes;
 
 #define CDOT_BY_MIDPOINT(scene) \
-  cdot::runs_as_the_world<scene##_implicit<double>>("specs/scenes/" #scene ".toml", Integrator::implicit);
+  cdot::runs_as_the_world<scene##_implicit<double>>("specs/scenes/" #scene ".toml", Integrator::implicit)
 #define CDOT_IN_SPACE_BY_MIDPOINT(scene) \
-  cdot::runs_as_the_world<scene##_space_implicit<double>>("specs/scenes/spatial/" #scene ".toml", Integrator::implicit);
+  cdot::runs_as_the_world<scene##_space_implicit<double>>("specs/scenes/spatial/" #scene ".toml", Integrator::implicit)
 
-TEST(CompiledMidpoint,
-     MovesAsTheWorld){CDOT_BY_MIDPOINT(cantilever) CDOT_BY_MIDPOINT(chain_10) CDOT_BY_MIDPOINT(compound_pendulum)
-                          CDOT_BY_MIDPOINT(crank_rocker) CDOT_BY_MIDPOINT(double_pendulum) CDOT_BY_MIDPOINT(four_bar)
-                              CDOT_BY_MIDPOINT(pulley_ratio1) CDOT_BY_MIDPOINT(pulley_ratio2)
-                                  CDOT_BY_MIDPOINT(simple_pendulum) CDOT_BY_MIDPOINT(slider_crank)}
+TEST(CompiledMidpoint, MovesAsTheWorld) {
+  CDOT_BY_MIDPOINT(cantilever);
+  CDOT_BY_MIDPOINT(chain_10);
+  CDOT_BY_MIDPOINT(compound_pendulum);
+  CDOT_BY_MIDPOINT(crank_rocker);
+  CDOT_BY_MIDPOINT(double_pendulum);
+  CDOT_BY_MIDPOINT(four_bar);
+  CDOT_BY_MIDPOINT(pulley_ratio1);
+  CDOT_BY_MIDPOINT(pulley_ratio2);
+  CDOT_BY_MIDPOINT(simple_pendulum);
+  CDOT_BY_MIDPOINT(slider_crank);
+}
 
 TEST(CompiledMidpoint, MovesInSpaceAsTheWorld) {
-  CDOT_IN_SPACE_BY_MIDPOINT(chain_10)
-  CDOT_IN_SPACE_BY_MIDPOINT(double_pendulum)
-  CDOT_IN_SPACE_BY_MIDPOINT(four_bar) CDOT_IN_SPACE_BY_MIDPOINT(gyroscope) CDOT_IN_SPACE_BY_MIDPOINT(slider_crank)
-      CDOT_IN_SPACE_BY_MIDPOINT(three_bodies) CDOT_IN_SPACE_BY_MIDPOINT(torque_free_body)
+  CDOT_IN_SPACE_BY_MIDPOINT(chain_10);
+  CDOT_IN_SPACE_BY_MIDPOINT(double_pendulum);
+  CDOT_IN_SPACE_BY_MIDPOINT(four_bar);
+  CDOT_IN_SPACE_BY_MIDPOINT(gyroscope);
+  CDOT_IN_SPACE_BY_MIDPOINT(slider_crank);
+  CDOT_IN_SPACE_BY_MIDPOINT(three_bodies);
+  CDOT_IN_SPACE_BY_MIDPOINT(torque_free_body);
 }
 
 const std::string cases = "tests/hard_cases/";

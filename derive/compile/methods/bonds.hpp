@@ -1,0 +1,18 @@
+// Joints that break at the end of a step, as text.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "derive/compile/methods/contents.hpp"
+#include "derive/compile/scene/mechanism.hpp"
+
+namespace cdot::compile {
+
+// The type of State::bonds.
+std::string bonds_type(const Mechanism& mechanism);
+// snap(); rows: the first row of each joint of the mechanism, and the number of all rows. Its arguments are the forces
+// of these rows and of rows with bounds.
+std::string snap_of(const Mechanism& mechanism, const std::vector<std::size_t>& rows, const Contents& has);
+
+}  // namespace cdot::compile
