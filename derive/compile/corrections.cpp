@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "derive/compile/foresight/foresight.hpp"
+#include "derive/compile/methods/weights.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -156,8 +157,7 @@ constexpr const char* project_begins = R"(
   static void project(State& s) {
 )";
 
-constexpr const char* projects_rows = R"(    T rate[rows], lambda[rows];
-    rates(s.J, s.v, rate);
+constexpr const char* projects_rows = R"(    rates(s.J, s.v, rate);
     Velocity d[bodies];
     solve($qs.J, rate, lambda, d);
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] - d[i];
@@ -334,7 +334,8 @@ std::string corrections_of(double tolerance, const Contents& has, const std::str
   if (has.closes()) {
     if (has.foresees) text += foresight(has.rattle);
     text += fmt::format(close_begins, has.foresees ? " and multipliers to those foreseen" : "",
-                        has.foresees ? "Mask foreseen, " : "", has.foresees ? ", T (&total)[rows]" : "");
+                        has.foresees ? "Mask foreseen, " : "",
+                        (has.foresees ? ", T (&total)[rows]" : "") + parameters_of_gained(has));
     text += has.foresees ? moves_as_foreseen : "    for (int i = 0; i < bodies; ++i) moves[i] = still();\n";
     text += when(has.ends,
                  "    Bounded B;\n    bool reached = false;  // B is that of `at`\n    Mask active[bounded];\n"
@@ -357,10 +358,13 @@ std::string corrections_of(double tolerance, const Contents& has, const std::str
                      : no_moves;
     text += when(has.foresees,
                  "      for (int i = 0; i < rows; ++i) total[i] = total[i] - select(goes_on, lambda[i], T(0));\n");
-    if (has.ends) text += ends_of(has);
+    text += gains_of_rows(has);
+    if (has.ends) text += ends_of(has) + gains_of_ends(has);
     text += fmt::format(moves_bodies, has.spatial ? moves_poses_in_space : moves_poses);
   }
-  if (has.projects()) text += project_begins + when(has.rows, projects_rows);
+  if (has.weighs_joints()) text += project_with_impulses();
+  else if (has.projects()) text += project_begins + when(has.rows, "    T rate[rows], lambda[rows];\n");
+  if (has.projects()) text += when(has.rows, projects_rows);
   if (has.modes) text += fmt::format(projects_held_rows, has.rows ? "s.J, " : "");
   if (has.projects()) text += "  }\n";
   return text;

@@ -109,8 +109,8 @@ class EquationWriter {
 
   bool foresees() const {
     const Method method = mechanism_.method;
-    return mechanism_.foresees && (method == Method::euler || method == Method::rattle) && !out_.has_ends &&
-           !out_.finishes;
+    return mechanism_.foresees && mechanism_.bonds.empty() && (method == Method::euler || method == Method::rattle) &&
+           !out_.has_ends && !out_.finishes;
   }
 
   void write_middle() {
@@ -154,6 +154,9 @@ class EquationWriter {
 
   void write_bonds() {
     out_.strain = strain_of(blocks_, out_.constants);
+    if (mechanism_.method == Method::rattle)
+      out_.draw =
+          displace_of(blocks_, joints_, out_.constants, [&](std::size_t b) { return prescribes_rate(blocks_, b); });
     std::size_t row = 0;
     for (std::size_t j = 0; j < mechanism_.joints.size(); row += blocks_.joint(j++).rows->count())
       out_.first_rows.push_back(row);
@@ -199,7 +202,9 @@ class EquationWriter {
     if (mechanism_.method == Method::rattle || mechanism_.method == Method::implicit)
       out_.nearest = nearest_of(blocks_, out_.constants);
     out_.along = along_of(blocks_, out_.constants);
-    if (mechanism_.keeps_momenta()) out_.displace = displace_of(blocks_, joints_, out_.constants);
+    if (mechanism_.keeps_momenta())
+      out_.displace =
+          displace_of(blocks_, joints_, out_.constants, [&](std::size_t b) { return has_ends(blocks_, b); });
   }
 
   // Numbers that nobody reads are not stored, and c and s of no body that nobody reads.
@@ -224,10 +229,10 @@ class EquationWriter {
 }  // namespace
 
 std::vector<const Program*> programs_of_equations(const Equations& e) {
-  return {&e.evaluate, &e.errors,  &e.rates,     &e.accelerate, &e.solve,     &e.apply, &e.aim,     &e.solve_aimed,
-          &e.fall,     &e.kick,    &e.potential, &e.reach,      &e.past,      &e.along, &e.angles,  &e.dampen,
-          &e.notice,   &e.look,    &e.finish,    &e.exert,      &e.distances, &e.guard, &e.resolve, &e.carry,
-          &e.weigh,    &e.stiffen, &e.improve,   &e.displace,   &e.nearest,   &e.strain};
+  return {&e.evaluate, &e.errors,  &e.rates,     &e.accelerate, &e.solve,     &e.apply,  &e.aim,     &e.solve_aimed,
+          &e.fall,     &e.kick,    &e.potential, &e.reach,      &e.past,      &e.along,  &e.angles,  &e.dampen,
+          &e.notice,   &e.look,    &e.finish,    &e.exert,      &e.distances, &e.guard,  &e.resolve, &e.carry,
+          &e.weigh,    &e.stiffen, &e.improve,   &e.displace,   &e.nearest,   &e.strain, &e.draw};
 }
 
 std::set<std::string> functions_of(const Program& program) {

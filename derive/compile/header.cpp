@@ -67,6 +67,7 @@ class HeaderWriter {
             .bounded = !mechanism_.bounded.empty(),
             .ends = equations_.has_ends,
             .events = equations_.has_events,
+            .forces = mechanism_.has_events_by_force(),
             .spatial = mechanism_.spatial(),
             .gyroscopes = mechanism_.has_gyroscopes(),
             .angles = mechanism_.angles > 0,
@@ -80,11 +81,11 @@ class HeaderWriter {
             .modes = !mechanism_.bounded.empty() && mechanism_.on_accelerations(),
             .loads = mechanism_.has_loads(),
             .bonds = !mechanism_.bonds.empty(),
+            .weighs = mechanism_.weighs(),
             .drags = std::ranges::any_of(mechanism_.bodies, &Body::drags),
             .foresees = !equations_.apply.outputs.empty()};
   }
   bool has_effects() const { return has().effects || has().bounded; }
-
   bool has_inputs() const { return !equations_.constants.inputs.empty(); }
 
   std::string with_arguments(std::string text) const {
@@ -93,7 +94,6 @@ class HeaderWriter {
   }
 
   void line(const std::string& line = {}) { text_ += line + "\n"; }
-
   // f(body, its name) for those that move.
   template <class F>
   void each_body(F f) const {
@@ -232,15 +232,15 @@ class HeaderWriter {
     if (has().ends) write_ends(at, moving);
     if (has().events) {
       write_function("Distances from the events of rows with bounds",
-                     "distances(" + at + ", " + moving + ", T (&after)[bounded], T (&until)[bounded])",
+                     "distances(" + at + ", " + moving + (has().forces ? ", const T (&force)[bounded]" : "") +
+                         ", T (&after)[bounded], T (&until)[bounded])",
                      equations_.distances);
       text_ += latch_of(equations_.waits, has());
     }
     if (has().bonds) {
-      write_function("How far joints are from breaking",
-                     fmt::format("strain($dconst T& time, const T (&load)[{}], T (&from)[{}])", mechanism_.breakable(),
-                                 mechanism_.bonds.size()),
+      write_function("How far joints are from breaking", "strain(" + arguments_of_strain(mechanism_),
                      equations_.strain);
+      if (has().rattle) write_function(draws, "draw(" + at + arguments_of_draw(has()), equations_.draw);
       text_ += snap_of(mechanism_, equations_.first_rows, has());
     }
     if (has().angles)
@@ -288,18 +288,18 @@ class HeaderWriter {
   }
 
   void write_midpoint(const std::string& at, const std::string& moving) {
-    const bool spatial = mechanism_.spatial();
     write_dampers(at, moving, has().bounded ? ", Bounded& B)" : ")");
     if (has().effects) {
       line(fmt::format("\n  static constexpr int effect_rows = {};", equations_.weigh.outputs.size()));
       write_function("K of the rows of effects", "weigh_effects(" + at + ", T (&K)[effect_rows])", equations_.weigh);
     }
     if (has().stiffens())
-      write_function(spatial ? "Stiffness of tension" : "Inverse inertias with the stiffness of tension in a step of h",
-                     (spatial ? "tension(" + at : "stiffen(" + at + ", const T& h") + ", " + impulses_of(has()) +
-                         "Inertia (&W)[bodies])",
-                     equations_.stiffen);
-    if (has().stiffens() && spatial) text_ += stiffen_of(mechanism_, names_.bodies, has());
+      write_function(
+          has().spatial ? "Stiffness of tension" : "Inverse inertias with the stiffness of tension in a step of h",
+          (has().spatial ? "tension(" + at : "stiffen(" + at + ", const T& h") + ", " + impulses_of(has()) +
+              "Inertia (&W)[bodies])",
+          equations_.stiffen);
+    if (has().stiffens() && has().spatial) text_ += stiffen_of(mechanism_, names_.bodies, has());
     write_function("A round of Newton in the middle of a step of h: changes d of v, and y of lambda / 2",
                    "improve(" + at + ", " + moving + arguments_of_improve(has()), equations_.improve);
     text_ += BodyTexts{mechanism_, names_.bodies}.judged();

@@ -5,6 +5,7 @@
 #include "derive/compile/foresight/foresight.hpp"
 #include "derive/compile/methods/modes.hpp"
 #include "derive/compile/methods/rattle.hpp"
+#include "derive/compile/methods/weights.hpp"
 #include "derive/compile/midpoint/implicit.hpp"
 #include "derive/compile/types.hpp"
 #include "runtime/step/runge_kutta_tables.hpp"
@@ -12,9 +13,9 @@
 namespace cdot::compile {
 namespace {
 
-constexpr const char* closes = R"(    Velocity moves[bodies];
-    close(s, at, T({}), moves);
-)";
+std::string closes(const Contents& has) {
+  return declares_gained(has) + "    Velocity moves[bodies];\n    close(s, at, T(0.2), moves" + gained(has) + ");\n";
+}
 constexpr const char* begins_series = R"(    s.known = T(0);
     for (Multipliers& numbers : s.past)
       for (T& of_row : numbers.of) of_row = T(0);
@@ -88,8 +89,8 @@ constexpr const char* euler_corrects_as_foreseen =
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + select(keep, T(1) / h, T(0)) * moves[i];
 )";
 
-constexpr const char* euler_corrects = R"(    Velocity moves[bodies];
-    const T error = close(s, at, T(0.2), moves);
+constexpr const char* euler_corrects = R"({0}    Velocity moves[bodies];
+    const T error = close(s, at, T(0.2), moves{1});
     // A displacement beyond the motion of the step, or of an error older than it, would add energy.
     const auto keep = left <= T(0.1) * error && T(4) * weighed(s.q, moves) <= h * h * weighed(s.q, s.v);
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + select(keep, T(1) / h, T(0)) * moves[i];
@@ -193,10 +194,12 @@ std::string euler(double tolerance, const Contents& has) {
                     (has.gyroscopes ? "" : "    for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], h * s.v[i]);\n"),
                 has.spatial ? "auto" : "const auto") +
             fmt::format(euler_corrects_as_foreseen, tolerance);
-  else if (has.closes()) text += euler_corrects;
+  else if (has.closes()) text += fmt::format(euler_corrects, declares_gained(has), gained(has));
   if (has.gyroscopes && has.closes()) text += follows;
   text += "$C";
-  if (has.rows) text += std::string(evaluates) + "    project(s);\n";
+  if (has.rows) text += evaluates;
+  if (has.weighs) text += euler_weighs(has);
+  else if (has.rows) text += "    project(s);\n";
   if (has.events) text += "    latch(s);\n";
   return text + fmt::format("    return {};\n  }}\n", has.closes() ? "s.residual" : "T(0)");
 }
@@ -257,7 +260,8 @@ long state_bytes_of(const Mechanism& mechanism, const Equations& equations, cons
                        (has.modes ? 1 + (has.loads ? 7 : 6) * long(mechanism.bounded.size()) : 0) +
                        2 * mechanism.breakable() + (has.events ? 3 * long(mechanism.bounded.size()) : 0);
   return long{sizeof(double)} * (1 + of_bodies + of_rows + long(mechanism.bounded.size()) +
-                                 (has.midpoint ? long(mechanism.bounded.size()) : 0) +
+                                 (has.midpoint || has.weighs ? long(mechanism.bounded.size()) : 0) +
+                                 (has.exerts && has.weighs ? long(mechanism.bounded.size()) : 0) +
                                  long(equations.constants.inputs.size()) + 2 * mechanism.angles);
 }
 
@@ -268,15 +272,15 @@ std::string begin_of(Method method, const Contents& has) {
       "    turn(s.q);\n";
   if (has.gyroscopes) text += accelerates ? "$W" : "    wind(s);\n";
   text += "$C";
+  if (has.bounded && (has.midpoint || has.weighs)) text += "    for (T& of_row : s.force) of_row = T(0);\n";
   if (has.events) text += "    latch(s);\n";
   if (has.rows) text += "    for (int i = 0; i < rows; ++i) s.lambda[i] = T(0);\n";
-  if (has.bounded && has.midpoint) text += "    for (T& of_row : s.force) of_row = T(0);\n";
+  if (has.exerts && has.weighs) text += "    for (T& of_row : s.repeats) of_row = T(0);\n";
   if (has.modes) text += "    s.modes = {};\n    hold_passed_ends(s);\n";
   if (has.closes()) text += "    s.residual = T(1e30);\n";
   if (has.rows) text += evaluates;
   if (has.closes())
-    text +=
-        notes_poses(has) + (has.foresees ? std::string(begins_series) + closes_unforeseen : fmt::format(closes, 0.2));
+    text += notes_poses(has) + (has.foresees ? std::string(begins_series) + closes_unforeseen : closes(has));
   if (has.closes() && has.gyroscopes) text += accelerates ? "$W" : follows;
   if (has.rows) text += evaluates;
   if (has.modes)

@@ -53,9 +53,31 @@ std::string load_of(const Bond& bond, const std::vector<std::size_t>& rows) {
   return fmt::format("    s.bonds.load[{}] = sqrt({});\n", bond.holds, squares);
 }
 
+// By RATTLE the next step begins with the pull of those that are left.
+std::string pulls_anew(const Mechanism& mechanism, const Contents& has) {
+  std::string text;
+  for (std::size_t b = 0; has.exerts && b < mechanism.bounded.size(); ++b)
+    if (const int holds = mechanism.bounded[b].holds; holds >= 0)
+      text += fmt::format("    s.repeats[{0}] = select(now[{1}], T(0), s.repeats[{0}]);\n", b, holds);
+  return text + fmt::format(
+                    "    Velocity pull[bodies];\n    draw($ss.q, s.time, {}{}pull);\n"
+                    "    for (int i = 0; i < bodies; ++i) s.pull[i] = choose(some, pull[i], s.pull[i]);\n",
+                    has.rows ? "s.J, s.lambda, " : "", has.exerts ? "s.repeats, " : "");
+}
+
 }  // namespace
 
 std::string bonds_type(const Mechanism& mechanism) { return fmt::format(bonds_type_text, mechanism.breakable()); }
+
+std::string arguments_of_strain(const Mechanism& mechanism) {
+  return fmt::format("$dconst T& time, const T (&load)[{}], T (&from)[{}])", mechanism.breakable(),
+                     mechanism.bonds.size());
+}
+
+std::string arguments_of_draw(const Contents& has) {
+  return std::string(has.rows ? ", const Jacobian& J, const T (&lambda)[rows]" : "") +
+         (has.exerts ? ", const T (&mu)[bounded]" : "") + ", Velocity (&d)[bodies])";
+}
 
 std::string snap_of(const Mechanism& mechanism, const std::vector<std::size_t>& rows, const Contents& has) {
   const std::vector<int> groups = groups_of(mechanism);
@@ -73,9 +95,10 @@ std::string snap_of(const Mechanism& mechanism, const std::vector<std::size_t>& 
     loads += load_of(bond, rows);
     for (std::size_t r = is_rope ? 0 : rows[number]; !is_rope && r < rows[number + 1]; ++r)
       forgets += fmt::format("    s.lambda[{0}] = select(now[{1}], T(0), s.lambda[{0}]);\n", r, bond.holds);
-    if (is_rope && has.midpoint)
+    if (is_rope)
       forgets += fmt::format("    s.force[{0}] = select(now[{1}], T(0), s.force[{0}]);\n", number, bond.holds);
   }
+  if (has.rattle) forgets += pulls_anew(mechanism, has);
   const std::string arguments =
       std::string(has.rows ? ", const T (&force)[rows]" : "") + (has.bounded ? ", const T (&of_bounds)[bounded]" : "");
   std::string text = fmt::format(snap_begins, arguments, mechanism.bonds.size(), fmt::join(joints, ", "),

@@ -11,6 +11,10 @@ namespace cdot::compile {
 
 // The type of State::bonds.
 std::string bonds_type(const Mechanism& mechanism);
+std::string arguments_of_strain(const Mechanism& mechanism);
+inline constexpr const char* draws = "d = M^-1 (J^T lambda + R^T mu), R the rows that prescribe a rate";
+// After its poses.
+std::string arguments_of_draw(const Contents& has);
 // snap(); rows: the first row of each joint of the mechanism, and the number of all rows. Its arguments are the forces
 // of these rows and of rows with bounds.
 std::string snap_of(const Mechanism& mechanism, const std::vector<std::size_t>& rows, const Contents& has);

@@ -10,6 +10,7 @@ namespace cdot::compile {
 struct Contents {
   bool rows = false, effects = false, bounded = false, ends = false;
   bool events = false;                                       // among rows with bounds some that begin or end to act
+  bool forces = false;                                       // by the force that a row carries
   bool spatial = false, gyroscopes = false, angles = false;  // angles: that count whole turns
   // By RATTLE: effects act by their rates at the start; rates at the end are looked for; the end solves for more than
   // the joints, and so does the start of a run.
@@ -18,9 +19,11 @@ struct Contents {
   bool modes = false;     // of rows with bounds by Runge-Kutta methods
   bool loads = false;     // bounds of these that grow with loads
   bool bonds = false;     // some joint may break
+  bool weighs = false;    // by Euler's steps or RATTLE: the impulses of corrections count as loads
   bool drags = false;     // some body has drag
   bool foresees = false;  // the multipliers of the next projection, by those of the last steps
   bool projects() const { return rows || modes; }  // velocities
+  bool weighs_joints() const { return weighs && bonds && rows; }
   bool closes() const { return rows || ends; }
   bool stiffens() const { return midpoint && (rows || bounded); }  // by tension
   bool pulls() const { return rattle && (rows || bounded); }       // a State has its joints' accelerations

@@ -11,7 +11,7 @@ constexpr const char* latch_begins = R"(
   static void latch(State& s) {{
     constexpr bool waits[bounded] = {{{0}}};
     T after[bounded], until[bounded];
-    distances($ss.q, s.time, s.v, after, until);
+    distances($ss.q, s.time, s.v, {3}after, until);
     const T near = T(single ? 1e-5 : 1e-10);
 {1}    for (int i = 0; i < bounded; ++i) {{
       T &began = s.events.began[i], &ended = s.events.ended[i];
@@ -45,7 +45,8 @@ std::string latch_of(const std::string& waits, const Contents& has) {
                                              : "",
                                  alone       ? notes_group
                                  : has.modes ? notes_any
-                                             : "");
+                                             : "",
+                                 has.forces ? "s.force, " : "");
   if (alone) text += forgets;
   if (has.modes) text += "    s.modes.known = select(some, T(0), s.modes.known);\n";
   if (has.exerts) text += restarts;

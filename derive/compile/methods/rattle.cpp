@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "derive/compile/methods/weights.hpp"
+
 namespace cdot::compile {
 namespace {
 
@@ -122,7 +124,7 @@ constexpr const char* end_changes = R"(      Mask passed[bounded];
       auto some = T(1) < T(0);
       for (int i = 0; i < bounded; ++i) passed[i] = goes_on && (magnitude(over[i]) > T(0) || magnitude(total[i]) > T(0)), some = some || passed[i];
       if (any(some)) {{
-        if (!reaches) reach($sat.q, at.time, {}reached);
+        if (!reaches) reach($sat.q, at.time, {0}reached);
         reaches = true;
         T along_ends[bounded], c[bounded], mu[bounded];
         along($sat.q, at.time, d, along_ends);
@@ -130,7 +132,7 @@ constexpr const char* end_changes = R"(      Mask passed[bounded];
         push(reached.S, passed, c, side, total, mu);
         for (int e = 0; e < bounded; ++e) {{
           for (int i = 0; i < bodies; ++i) d[i] = d[i] + mu[e] * reached.g[e][i];
-        }}
+{1}        }}
       }}
 )";
 
@@ -151,7 +153,7 @@ constexpr const char* round_ends =
       Velocity moves[bodies];
 {3}      const auto keep = fails && T(4) * weighed(s.q, moves) <= h * h * weighed(s.q, s.v);
       for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + select(keep, T(1) / h, T(0)) * moves[i];
-    }}
+{4}    }}
 )";
 
 // Forces of the second kick are those at the end's velocity, to second order: 2 v_half - v_start.
@@ -222,7 +224,7 @@ constexpr const char* start_begins = R"(
 constexpr const char* start_ends =
     R"(    for (int i = 0; i < bounded; ++i) s.hold[i] = select(begins[group_of_bound[i]], hold[i], s.hold[i]);
     for (int i = 0; i < bodies; ++i) s.pull[i] = choose(begins[group_of_body[i]], pull[i], s.pull[i]);
-{}    for (T& of_group : s.begins) of_group = T(0);
+{}{}    for (T& of_group : s.begins) of_group = T(0);
   }}
 )";
 constexpr const char* start_lambda =
@@ -316,10 +318,13 @@ std::string closing(double tolerance, const Contents& has) {
   if (has.foresees) text += drift_aims;
   text += has.rows ? fmt::format(joint_changes, has.foresees ? "* (T(1) / h)" : "/ h", has.foresees ? "B, aimed, " : "")
                    : no_changes;
-  if (has.ends) text += fmt::format(end_changes, has.rows ? "s.J, " : "");
-  if (has.foresees) text += notes_found;
+  if (has.ends) text += fmt::format(end_changes, has.rows ? "s.J, " : "", weighs_end_changes(has));
+  if (has.foresees || has.weighs_joints()) text += notes_found;
   return text + fmt::format(round_ends, tolerance, has.pulls() ? "(a[i] + s.pull[i])" : "a[i]", drifts(has, "at"),
-                            has.foresees ? closes_unforeseen : "      close(s, at, T(0.2), moves);\n");
+                            has.foresees
+                                ? closes_unforeseen
+                                : declares_gained(has) + "      close(s, at, T(0.2), moves" + gained(has) + ");\n",
+                            weighs_failures(has));
 }
 
 // The end's impulses of joints, effects and rows with bounds together.
@@ -332,6 +337,7 @@ std::string finishing(const Contents& has) {
                       has.bounded ? ", B" : "");
   if (has.bounded) {
     text += "    settle(B, s.hold, mu);\n";
+    text += weighs_bounds(has);
     text += fmt::format(sums_pulls, "next[i] = next[i] + mu[e] * B.g[e][i], ",
                         has.rows ? fmt::format(sums_lambda, "s.") : "", "s.");
   }
@@ -361,7 +367,7 @@ std::string pushes_of(const Contents& has) { return has.ends ? pushes : ""; }
 std::string start_of(const Contents& has) {
   return fmt::format(start_begins, has.rows ? "    T lambda[rows];\n" : "", has.rows ? "s.J, h, lambda, " : "h, ") +
          fmt::format(sums_pulls, "", has.rows ? fmt::format(sums_lambda, "") : "", "") +
-         fmt::format(start_ends, has.rows ? start_lambda : "");
+         fmt::format(start_ends, has.rows ? start_lambda : "", repeats_at_start(has));
 }
 
 std::string rattle(double tolerance, const Contents& has) {
@@ -369,6 +375,7 @@ std::string rattle(double tolerance, const Contents& has) {
   text += has.dampens ? dampens : notes_velocities;
   if (has.carries) text += notes_start;
   if (has.foresees) text += guesses;
+  text += weighs_first_half(has);
   text += fmt::format(first_kick, has.foresees ? "(a[i] + pull[i])" : has.pulls() ? "(a[i] + s.pull[i])" : "a[i]");
   text += has.closes() ? closing(tolerance, has) : drifts(has, "s") + "    s.time = s.time + h;\n";
   if (has.gyroscopes) text += follows;
@@ -377,6 +384,7 @@ std::string rattle(double tolerance, const Contents& has) {
   text += fmt::format(second_kick, has.looks ? looks : "", has.carries ? "    carry(start_q, s.q, before);\n" : "");
   text += has.finishes ? finishing(has) : has.rows ? joints_end : "";
   if (has.foresees) text += remembers;
+  text += rattle_weighs(has);
   if (has.events) text += "    latch(s);\n";
   return text + fmt::format("    return {};\n  }}\n", has.closes() ? "s.residual" : "T(0)");
 }

@@ -45,7 +45,7 @@ std::map<std::string, double> members_of(const std::vector<double>& pose) {
 void RowBlocks::note_start(Constants& constants) const {
   constants.at_start["T(64 * epsilon)"] = 64 * std::numeric_limits<double>::epsilon();  // as in pivot()
   for (int k = 0; k < mechanism_.breakable(); ++k)
-    constants.at_start[element("bonds.holds", static_cast<std::size_t>(k))] = 1;
+    constants.at_start[derive::element("bonds.holds", static_cast<std::size_t>(k))] = 1;
   for (std::size_t b = 0; b < mechanism_.bodies.size(); ++b) {
     const Body& body = mechanism_.bodies[b];
     const std::string& name = names_.bodies[b];

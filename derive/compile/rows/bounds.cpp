@@ -217,7 +217,10 @@ BoundWriter::Kick BoundWriter::while_it_acts(Kick kick) const {
 }
 
 int BoundWriter::distance(const std::optional<Program>& event) const {
-  return event ? law_.call(*event).at("D") : algebra_.value(boundless);
+  if (!event) return algebra_.value(boundless);
+  if (!effect_.by_own_force) return law_.call(*event).at("D");
+  const int load = algebra_.function(Fn::abs, {algebra_.input(element("force", number_))});
+  return law_.with_load(load).call(*event).at("D");
 }
 
 BoundWriter::Kick BoundWriter::kick_while_it_acts(int h) const {
@@ -353,10 +356,10 @@ BoundWriter::Kick BoundWriter::of_force(int h) const {
 
 // The part of C beyond the end.
 int BoundWriter::past() const {
-  const End end = nearest();
+  const End end = nearest_while_it_acts();
   const int zero = algebra_.value(0), low = law_.least(end.off, zero), high = law_.most(end.off, zero);
-  if (algebra_.is_zero(end.side)) return end.off;
-  return algebra_.function(Fn::select, {end.side, low, high});
+  const int past = algebra_.is_zero(end.side) ? end.off : algebra_.function(Fn::select, {end.side, low, high});
+  return may_rest() ? algebra_.function(Fn::select, {acts(), past, zero}) : past;
 }
 
 BoundWriter::End BoundWriter::nearest() const {

@@ -224,13 +224,15 @@ Program reach_of(const RowBlocks& blocks, const JointRows& joints, Constants& co
   bounded.answer(
       answers, joints.system().size(),
       [&](std::size_t b) { return blocks.mechanism().on_accelerations() || has_ends(blocks, b); },
-      blocks.mechanism().has_loads() || blocks.mechanism().keeps_momenta() ? BoundedSystem::Outputs::impulses
-                                                                           : BoundedSystem::Outputs::velocities);
+      blocks.mechanism().has_loads() || blocks.mechanism().keeps_momenta() || !blocks.mechanism().bonds.empty()
+          ? BoundedSystem::Outputs::impulses
+          : BoundedSystem::Outputs::velocities);
   bounded.output_S({});
   return algebra.finish();
 }
 
-Program displace_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants) {
+Program displace_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants,
+                    const std::function<bool(std::size_t bounded)>& takes_part) {
   Algebra algebra(constants);
   Forces forces;
   std::size_t row = 0;
@@ -241,7 +243,7 @@ Program displace_of(const RowBlocks& blocks, const JointRows& joints, Constants&
     blocks.add_forces(algebra, block, joints.inputs(algebra, k), lambda, forces);
   }
   for (std::size_t b = 0; b < blocks.mechanism().bounded.size(); ++b) {
-    if (!has_ends(blocks, b)) continue;
+    if (!takes_part(b)) continue;
     const BoundWriter end(blocks, algebra, b);
     blocks.add_forces(algebra, end.block(), end.inputs(), {algebra.input(element("mu", b))}, forces);
   }

@@ -38,8 +38,9 @@ Program exert_of(const RowBlocks& blocks, const JointRows& joints, Constants& co
 // projection.
 Program reach_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
 
-// q, time, J, lambda, mu -> d = M^-1 (J^T lambda + E^T mu), E the rows with bounds.
-Program displace_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
+// q, time, J, lambda, mu -> d = M^-1 (J^T lambda + E^T mu), E those rows with bounds.
+Program displace_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants,
+                    const std::function<bool(std::size_t bounded)>& takes_part);
 
 // q, time -> past: errors of rows with bounds; on accelerations, how far each is from its end.
 Program past_of(const RowBlocks& blocks, Constants& constants);

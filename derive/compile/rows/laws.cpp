@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "derive/kernel/factor.hpp"
+#include "derive/kernel/plan.hpp"
 #include "derive/program/print.hpp"
 
 namespace cdot::compile {
@@ -54,6 +55,12 @@ LawWriter LawWriter::with_masses(std::vector<int> K) const {
   return other;
 }
 
+LawWriter LawWriter::with_load(int load) const {
+  LawWriter other = *this;
+  other.load_ = load;
+  return other;
+}
+
 LawWriter LawWriter::at_rest() const { return at(C_, std::vector<int>(C_.size(), algebra_.value(0))); }
 
 // Leaves of a law are C, rates, its parameters and the time.
@@ -64,6 +71,7 @@ Values LawWriter::call(const Program& function) const {
     in[law.parameters[p]] = rows_.number(algebra_, effect_, p, number_name(block_, law.parameters[p]));
   in["pi"] = algebra_.value(std::numbers::pi);
   in["time"] = algebra_.input("time");
+  if (load_ >= 0) in[derive::bounded_load] = load_;
   for (const auto& [leaf, place] : law.leaves) {
     const std::vector<int>& of = place.starts_with("C") ? C_ : rate_;
     in[leaf] = of[static_cast<std::size_t>(std::stoi(place.substr(place.find('[') + 1)))];

@@ -24,6 +24,9 @@ class LawWriter {
   // The same law with these numbers of K = J M^-1 J^T of each row, by which springs by frequency are stiff.
   LawWriter with_masses(std::vector<int> K) const;
 
+  // The same law of a row that carries this load.
+  LawWriter with_load(int load) const;
+
   const std::vector<int>& C() const { return C_; }
 
   const std::vector<int>& drift() const { return drift_; }  // dC/dt
@@ -64,6 +67,7 @@ class LawWriter {
   const Values& in_;
   std::vector<int> C_, drift_, rate_;
   std::vector<int> K_;  // empty: those at the pose
+  int load_ = -1;       // unknown
 };
 
 }  // namespace cdot::compile

@@ -83,7 +83,8 @@ struct Effect {
   double size = 1;                          // Island::size of its mechanism [m]
   // Of a row whose bounds grow with a load: what carries it, among Mechanism::bounded or Mechanism::joints.
   int loaded_by_row = -1, loaded_by_joint = -1;
-  int holds = -1;  // of a joint that may break, on which it acts: as Joint::holds
+  int holds = -1;             // of a joint that may break, on which it acts: as Joint::holds
+  bool by_own_force = false;  // an event of the row depends on the force that it carries
   bool is_loaded() const { return loaded_by_row >= 0 || loaded_by_joint >= 0; }
 };
 
@@ -121,6 +122,11 @@ struct Mechanism {
   // True for a Runge-Kutta method; the others step velocities by impulses.
   bool on_accelerations() const { return method == Method::rk4 || method == Method::dop853; }
   int breakable() const { return bonds.empty() ? 0 : bonds.back().holds + 1; }  // joints that may break
+  bool has_events_by_force() const { return std::ranges::any_of(bounded, &Effect::by_own_force); }
+  // By these methods the impulses of corrections count as loads.
+  bool weighs() const {
+    return (!bonds.empty() || has_events_by_force()) && (method == Method::euler || method == Method::rattle);
+  }
   bool has_loads() const { return std::ranges::any_of(bounded, &Effect::is_loaded); }
   // True if the inertia of a body turns with it.
   bool has_gyroscopes() const { return std::ranges::any_of(bodies, &Body::inertia_turns); }

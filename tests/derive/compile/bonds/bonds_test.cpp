@@ -1,7 +1,15 @@
-// Joints that break: compiled scenes lose them in the step in which the World does.
+// Joints that break: compiled scenes lose them in the step in which the World does, and pins that shear.
 #include <gtest/gtest.h>
 
+#include "bonds_euler.hpp"
 #include "bonds_implicit.hpp"
+#include "bonds_in_space_euler.hpp"
+#include "bonds_in_space_implicit.hpp"
+#include "bonds_in_space_rattle.hpp"
+#include "bonds_rattle.hpp"
+#include "pins_euler.hpp"
+#include "pins_implicit.hpp"
+#include "pins_rattle.hpp"
 #include "tests/derive/compile/beside_world.hpp"
 
 namespace {
@@ -9,11 +17,51 @@ namespace {
 using cdot::Integrator;
 using namespace cdot::scenes;
 
-const std::string bonds = "tests/derive/compile/scenes/bonds.toml";
+const std::string scenes = "tests/derive/compile/bonds/";
+
+// Loads are those of whole steps, corrections among them. In long steps corrections are large.
+template <class Scene>
+void breaks_as_in_the_world(const std::string& file, Integrator integrator) {
+  cdot::runs_as_the_world<Scene>(scenes + file, integrator, 1e-10, 2);
+  cdot::runs_as_the_world<Scene>(scenes + file, integrator, 1e-10, 2, 1.0 / 60);
+}
 
 TEST(CompiledBonds, BreakAsInTheWorld) {
-  cdot::runs_as_the_world<bonds_implicit<double>>(bonds, Integrator::implicit, 1e-11, 2);
-  cdot::runs_as_the_world<bonds_implicit<double>>(bonds, Integrator::implicit, 1e-11, 2, 1.0 / 60);
+  breaks_as_in_the_world<bonds_euler<double>>("bonds.toml", Integrator::euler);
+  breaks_as_in_the_world<bonds_implicit<double>>("bonds.toml", Integrator::implicit);
+  breaks_as_in_the_world<bonds_rattle<double>>("bonds.toml", Integrator::rattle);
+}
+
+TEST(CompiledBonds, BreakInSpaceAsInTheWorld) {
+  breaks_as_in_the_world<bonds_in_space_euler<double>>("bonds_in_space.toml", Integrator::euler);
+  breaks_as_in_the_world<bonds_in_space_implicit<double>>("bonds_in_space.toml", Integrator::implicit);
+  breaks_as_in_the_world<bonds_in_space_rattle<double>>("bonds_in_space.toml", Integrator::rattle);
+}
+
+// By their own force.
+TEST(CompiledBonds, PinsShearAsInTheWorld) {
+  breaks_as_in_the_world<pins_euler<double>>("pins.toml", Integrator::euler);
+  breaks_as_in_the_world<pins_implicit<double>>("pins.toml", Integrator::implicit);
+  breaks_as_in_the_world<pins_rattle<double>>("pins.toml", Integrator::rattle);
+}
+
+template <class Scene>
+void pin_shears_late() {
+  typename Scene::State state;
+  Scene::reset(state);
+  for (int k = 0; k < 900; ++k) Scene::step(state, 0.001);
+  EXPECT_EQ(state.events.acts[Scene::elbow_angle_shear_pin], 1);
+  EXPECT_NEAR(state.q[Scene::fore].angle, state.q[Scene::arm].angle, 1e-12);
+  for (int k = 0; k < 600; ++k) Scene::step(state, 0.001);
+  EXPECT_EQ(state.events.acts[Scene::elbow_angle_shear_pin], 0);
+  EXPECT_GT(std::abs(state.q[Scene::fore].angle - state.q[Scene::arm].angle), 1e-3);
+  EXPECT_EQ(state.events.acts[Scene::bearing_angle_shear_pin], 1);
+}
+
+TEST(CompiledBonds, PinsShearInTheTest) {
+  pin_shears_late<pins_euler<double>>();
+  pin_shears_late<pins_implicit<double>>();
+  pin_shears_late<pins_rattle<double>>();
 }
 
 // The chain loses its last link first, the door leaves its frame with all that acts on its angle. Where two joints
@@ -53,10 +101,17 @@ TEST(CompiledBonds, TellTheirLoads) {
 }
 
 TEST(CompiledBonds, ASnapshotKeepsThem) {
+  cdot::snapshot_keeps<bonds_rattle<double>>(0.002);
   const auto kept = cdot::snapshot_keeps<bonds_implicit<double>>(0.002);
   EXPECT_EQ(kept.bonds.holds[0], 0);
 }
 
-TEST(CompiledBonds, LanesAreAsAlone) { cdot::lanes_are_as_alone<bonds_implicit>(); }
+TEST(CompiledBonds, LanesAreAsAlone) {
+  cdot::lanes_are_as_alone<bonds_euler>();
+  cdot::lanes_are_as_alone<bonds_implicit>();
+  cdot::lanes_are_as_alone<bonds_rattle, float>();
+  cdot::lanes_are_as_alone<bonds_in_space_rattle>();
+  cdot::lanes_are_as_alone<pins_rattle>();
+}
 
 }  // namespace

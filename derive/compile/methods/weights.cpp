@@ -1,0 +1,125 @@
+#include "derive/compile/methods/weights.hpp"
+
+#include <fmt/format.h>
+
+namespace cdot::compile {
+namespace {
+
+constexpr const char* weighs_rows =
+    "      for (int i = 0; i < rows; ++i) gained[i] = gained[i] - select(goes_on, lambda[i], T(0));\n";
+constexpr const char* weighs_ends = R"(      for (int e = 0; reached && e < bounded; ++e) {{
+        const T now = select(goes_on, mu[e], T(0));
+        gained_by_ends[e] = gained_by_ends[e] + now;
+{}      }}
+)";
+constexpr const char* weighs_rows_by_ends =
+    "        for (int i = 0; i < rows; ++i) gained[i] = gained[i] + now * B.l[e][i];\n";
+
+constexpr const char* project_weighs = R"(
+  static void project(State& s) {
+    T lambda[rows];
+    project(s, lambda);
+  }
+  static void project(State& s, T (&lambda)[rows]) {
+    T rate[rows];
+)";
+
+// The whole impulses are loads.
+constexpr const char* euler_weighs_rows = R"(    T carried[rows], projected[rows];
+    project(s, projected);
+    for (int i = 0; i < rows; ++i) carried[i] = (s.lambda[i] - projected[i] + select(keep, gained[i] / h, T(0))) / h;
+)";
+constexpr const char* euler_weighs_bounded = R"(    for (int i = 0; i < bounded; ++i) s.force[i] = mu[i] / h;
+)";
+constexpr const char* euler_weighs_ends =
+    R"(    for (int i = 0; i < bounded; ++i) s.force[i] = (mu[i] + select(keep, gained_by_ends[i] / h, T(0))) / h;
+)";
+
+// Loads of the first half: its forces, and the impulses of ends.
+constexpr const char* found_at_first = R"(    T found[rows];
+    for (int i = 0; i < rows; ++i) found[i] = s.lambda[i];
+)";
+constexpr const char* found_by_moves = R"(      for (int i = 0; i < rows; ++i)
+        found[i] = select(fails, select(keep, s.lambda[i] + gained[i] / (h * half), T(0)), found[i]);
+)";
+constexpr const char* ends_by_moves = R"(      for (int i = 0; i < bounded; ++i)
+        total[i] = select(fails, select(keep, gained_by_ends[i] / h, T(0)), total[i]);
+)";
+constexpr const char* sums_bounds = R"(    for (int e = 0; e < bounded; ++e) s.force[e] = ({0}{1}mu[e]) / h;
+)";
+constexpr const char* notes_repeats = R"(    for (int e = 0; e < bounded; ++e)
+      s.repeats[e] = is_rate[e] ? select(magnitude(B.low[e] * B.high[e]) > T(0), mu[e], T(0)) / half : T(0);
+)";
+constexpr const char* carries_rows = R"(    T carried[rows];
+    for (int i = 0; i < rows; ++i) carried[i] = T(0.5) * (found[i] + s.lambda[i]);
+)";
+
+constexpr const char* end_changes_of_rows =
+    "          for (int i = 0; i < rows; ++i) found[i] = found[i] + (T(1) / half) * mu[e] * reached.l[e][i];\n";
+
+constexpr const char* start_repeats = R"(    for (int e = 0; e < bounded; ++e) {
+      const T again = is_rate[e] ? select(magnitude(B.low[e] * B.high[e]) > T(0), mu[e], T(0)) : T(0);
+      s.repeats[e] = select(begins[group_of_bound[e]], again, s.repeats[e]);
+    }
+)";
+
+std::string snaps_with_loads(const Contents& has) {
+  if (!has.bonds) return {};
+  return std::string("    snap(s") + (has.rows ? ", carried" : "") + (has.bounded ? ", s.force" : "") + ");\n";
+}
+
+}  // namespace
+
+std::string gained(const Contents& has) {
+  if (!has.weighs) return {};
+  return std::string(has.weighs_joints() ? ", gained" : "") + (has.ends ? ", gained_by_ends" : "");
+}
+
+std::string parameters_of_gained(const Contents& has) {
+  if (!has.weighs) return {};
+  return std::string(has.weighs_joints() ? ", T (&gained)[rows]" : "") +
+         (has.ends ? ", T (&gained_by_ends)[bounded]" : "");
+}
+
+std::string declares_gained(const Contents& has) {
+  if (!has.weighs) return {};
+  return std::string(has.weighs_joints() ? "    T gained[rows];\n    for (T& of_row : gained) of_row = T(0);\n" : "") +
+         (has.ends ? "    T gained_by_ends[bounded];\n    for (T& of_row : gained_by_ends) of_row = T(0);\n" : "");
+}
+
+std::string gains_of_rows(const Contents& has) { return has.weighs_joints() ? weighs_rows : ""; }
+
+std::string gains_of_ends(const Contents& has) {
+  return has.weighs && has.ends ? fmt::format(weighs_ends, has.weighs_joints() ? weighs_rows_by_ends : "") : "";
+}
+
+std::string project_with_impulses() { return project_weighs; }
+
+std::string euler_weighs(const Contents& has) {
+  std::string text = has.weighs_joints() ? euler_weighs_rows : has.rows ? "    project(s);\n" : "";
+  if (has.bounded) text += has.ends ? euler_weighs_ends : euler_weighs_bounded;
+  return text + snaps_with_loads(has);
+}
+
+std::string weighs_first_half(const Contents& has) { return has.weighs_joints() ? found_at_first : ""; }
+
+std::string weighs_end_changes(const Contents& has) { return has.weighs_joints() ? end_changes_of_rows : ""; }
+
+std::string weighs_failures(const Contents& has) {
+  if (!has.weighs) return {};
+  return std::string(has.weighs_joints() ? found_by_moves : "") + (has.ends ? ends_by_moves : "");
+}
+
+std::string weighs_bounds(const Contents& has) {
+  if (!has.weighs) return {};
+  return fmt::format(sums_bounds, has.exerts ? "half * s.repeats[e] + " : "", has.ends ? "total[e] + " : "") +
+         (has.exerts ? notes_repeats : "");
+}
+
+std::string rattle_weighs(const Contents& has) {
+  return has.weighs ? (has.weighs_joints() ? carries_rows : "") + snaps_with_loads(has) : "";
+}
+
+std::string repeats_at_start(const Contents& has) { return has.weighs ? start_repeats : ""; }
+
+}  // namespace cdot::compile
