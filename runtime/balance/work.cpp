@@ -177,6 +177,14 @@ void work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S
   }
 }
 
+// Sweeps leave a spring at another rate than the one that gave its impulse: J v = -bias - softness lambda.
+template <class S>
+void find_rates_met(Batch<S>& batch, int begin, int end) {
+  for (int i = begin * batch.ops->rows; i < end * batch.ops->rows; ++i)
+    if (batch.lower[i] < batch.lambda[i] && batch.lambda[i] < batch.upper[i])
+      batch.impulse[i] = -batch.bias[i] - batch.softness[i] * batch.lambda[i];
+}
+
 // A duration in which no body moves by more than a small share of the mechanism's size, or of 1 rad: third derivatives
 // do not count in a difference over it, nor does round-off.
 template <class S>
@@ -300,6 +308,7 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
       world, island, mean.data(), [&](const Batch<S>& batch, int i) { return impulse_of(impulses, batch, i); },
       [&](Batch<S>& batch, int begin, int end) {
         batch.ops->velocity(batch, begin, end, acted, batch.impulse.data());
+        if (at_end && sweeps(world.settings.solver)) find_rates_met(batch, begin, end);
         return batch.impulse.data();
       },
       springs_of(impulses), impulses == Impulses::dampers, kick_of(impulses), island.evaluated_at, double(h), work);

@@ -49,6 +49,12 @@ typename S::Velocity rigid(const Bodies<S>& all, int i, const spatial::Vector<R>
   return velocity<S>(Twist<R>{moved, turns<S>(all.inverse_mass[i]) ? w : spatial::Vector<R>{}});
 }
 
+template <class R>
+struct RigidMotion {
+  spatial::Vector<R> centre, v, w, spin;
+  spatial::Symmetric<R> inertia;
+};
+
 }  // namespace
 
 // L = sum (x - X) x m (v - V) + I w, with the centre of mass X and its velocity V
@@ -80,6 +86,20 @@ MomentumOf<S> momentum_of(const WorldData<S>& world, const Island<S>& island) {
   return sum;
 }
 
+namespace {
+
+// The motion of a free island as one rigid body with its momentum. Others stand.
+template <class S>
+RigidMotion<ExactNumber<typename S::Scalar>> rigid_part(const WorldData<S>& world, const Island<S>& island) {
+  if (!island.floats) return {};
+  const MomentumOf<S> now = momentum_of(world, island);
+  using Vector = spatial::Vector<ExactNumber<typename S::Scalar>>;
+  const Vector w = island.spins_freely ? turn_of<S>(now.inertia, now.spin) : Vector{};
+  return {now.centre, inverse(now.mass) * now.linear, w, now.spin, now.inertia};
+}
+
+}  // namespace
+
 template <class S>
 void restore_momentum(WorldData<S>& world, const Island<S>& island, const MomentumOf<S>& start, typename S::Scalar h) {
   using R = ExactNumber<typename S::Scalar>;
@@ -100,29 +120,84 @@ void restore_momentum(WorldData<S>& world, const Island<S>& island, const Moment
     all.velocity[i] = S::sum(all.velocity[i], rigid<S>(all, i, now.centre, v, w), typename S::Scalar(1));
 }
 
+namespace {
+
+// The motion of bodies against each other into Bodies::increment; its energy.
 template <class S>
-void calm(WorldData<S>& world, const Island<S>& island, double energy) {
-  using T = typename S::Scalar;
-  using Vector = spatial::Vector<ExactNumber<T>>;
+double find_own_motion(WorldData<S>& world, const Island<S>& island) {
   Bodies<S>& all = world.bodies;
-  const MomentumOf<S> now = island.floats ? momentum_of(world, island) : MomentumOf<S>{};
-  const Vector v = inverse(now.mass) * now.linear,
-               w = island.spins_freely ? turn_of<S>(now.inertia, now.spin) : Vector{};
-  double own = 0;
+  const auto rigid_motion = rigid_part(world, island);
+  double energy = 0;
   for (int i : island.bodies) {
-    all.increment[i] = S::sum(all.velocity[i], rigid<S>(all, i, now.centre, v, w), T(-1));
-    own += 0.5 * S::dot(S::force(all.inverse_mass[i], all.increment[i]), all.increment[i]);
+    all.increment[i] =
+        S::sum(all.velocity[i], rigid<S>(all, i, rigid_motion.centre, rigid_motion.v, rigid_motion.w), -1);
+    energy += 0.5 * S::dot(S::force(all.inverse_mass[i], all.increment[i]), all.increment[i]);
   }
-  const double left = energy < own ? std::sqrt(1 - energy / own) : 0;
+  return energy;
+}
+
+template <class S>
+void keep_share(WorldData<S>& world, const Island<S>& island, double left) {
+  using T = typename S::Scalar;
+  Bodies<S>& all = world.bodies;
   for (int i : island.bodies) {
     all.velocity[i] = S::sum(all.velocity[i], all.increment[i], T(left - 1));
     all.increment[i] = {};
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                                  \
-  template MomentumOf<S> momentum_of(const WorldData<S>&, const Island<S>&); \
-  template void calm(WorldData<S>&, const Island<S>&, double);               \
+}  // namespace
+
+template <class S>
+void calm(WorldData<S>& world, const Island<S>& island, double energy) {
+  const double own = find_own_motion(world, island);
+  keep_share(world, island, energy < own ? std::sqrt(1 - energy / own) : 0);
+}
+
+template <class S>
+void slow_down(WorldData<S>& world, const Island<S>& island, double share) {
+  find_own_motion(world, island);
+  keep_share(world, island, share);
+}
+
+// exp(turn) with turn = h (w + w') / 2 and w' = I'^-1 L, where I' is turned and L stays.
+template <class S, class R>
+spatial::Vector<R> turn_of_rigid(const RigidMotion<R>& rigid, R h) {
+  constexpr int rounds = 4;
+  spatial::Vector<R> turn = h * rigid.w;
+  for (int round = 0; round < rounds; ++round) {
+    const auto axes = spatial::turned_by(spatial::oriented<R>(0, 0, 0, 1, 0, 0, 0), turn);
+    const auto end = spatial::to_world(axes, turn_of<S>(rigid.inertia, spatial::to_body(axes, rigid.spin)));
+    turn = R(0.5) * h * (rigid.w + end);
+  }
+  return turn;
+}
+
+template <class S>
+void move_in_own_axes(WorldData<S>& world, const Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  using R = ExactNumber<T>;
+  Bodies<S>& all = world.bodies;
+  const auto moves = rigid_part(world, island);
+  const auto turn = island.spins_freely ? turn_of_rigid<S>(moves, R(h)) : spatial::Vector<R>{};
+  const auto axes = spatial::turned_by(spatial::oriented<R>(0, 0, 0, 1, 0, 0, 0), turn);
+  for (int i : island.bodies) {
+    const auto own = S::sum(all.velocity[i], rigid<S>(all, i, moves.centre, moves.v, moves.w), T(-1));
+    all.pose[i] = S::moved(all.pose[i], S::sum({}, own, h));
+    const auto r = position<R>(all.pose[i]) - moves.centre, way = R(h) * moves.v + spatial::to_world(axes, r) - r;
+    const auto turns_too = turns<S>(all.inverse_mass[i]) ? turn : spatial::Vector<R>{};
+    all.pose[i] = S::moved(all.pose[i], velocity<S>(Twist<R>{way, turns_too}));
+    const Twist<R> of = twist<R>(own), turned{spatial::to_world(axes, of.linear), spatial::to_world(axes, of.angular)};
+    all.velocity[i] =
+        S::sum(velocity<S>(turned), rigid<S>(all, i, moves.centre + R(h) * moves.v, moves.v, moves.w), T(1));
+  }
+}
+
+#define CDOT_INSTANTIATE(S)                                                   \
+  template MomentumOf<S> momentum_of(const WorldData<S>&, const Island<S>&);  \
+  template void calm(WorldData<S>&, const Island<S>&, double);                \
+  template void slow_down(WorldData<S>&, const Island<S>&, double);           \
+  template void move_in_own_axes(WorldData<S>&, const Island<S>&, S::Scalar); \
   template void restore_momentum(WorldData<S>&, const Island<S>&, const MomentumOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -33,5 +33,12 @@ void restore_momentum(WorldData<S>& world, const Island<S>& island, const Moment
 // where nothing holds the island.
 template <class S>
 void calm(WorldData<S>& world, const Island<S>& island, double energy);
+// Leaves this share of that motion.
+template <class S>
+void slow_down(WorldData<S>& world, const Island<S>& island, double share);
+// Moves the bodies over h: against each other by q += h v, in axes that move with the island as one rigid body. That
+// motion is of second order and changes no distances, so fast turning loads no springs.
+template <class S>
+void move_in_own_axes(WorldData<S>& world, const Island<S>& island, typename S::Scalar h);
 
 }  // namespace cdot

@@ -59,7 +59,9 @@ void step_euler(WorldData<S>& world, Island<S>& island, typename S::Scalar h, do
 
 template <class S>
 void prepare_euler(Island<S>& island) {
-  if (island.stiffened) island.flow.velocity.resize(island.bodies.size());
+  island.flow.pose.resize(island.bodies.size());
+  island.flow.velocity.resize(island.bodies.size());
+  prepare_turns(island);
 }
 
 #define CDOT_INSTANTIATE(S)                                               \

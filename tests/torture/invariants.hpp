@@ -2,7 +2,9 @@
 // bounds.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "runtime/tool/scene/scene.hpp"
@@ -41,6 +43,9 @@ struct Asked {
   bool forces = false;   // a force on each body that is a function of time
   bool hurry = false;    // ends a run that rescued_in_vain()
   int refinements = 4;   // how often a step is divided by four after a violation
+  // Nothing else is judged: runs by sweeps with Drift::soft, of numbers of sweeps and substeps and of steps that this
+  // seed draws, up to 30 times the scene's. No energy may appear.
+  std::optional<std::uint64_t> soft = {};
   Sabotage sabotage;
 };
 

@@ -4,7 +4,11 @@
 #include <cdot/methods.hpp>
 
 #include "tests/methods.hpp"
+#include "tests/runtime/tool/soft_rise.hpp"
+#include "tests/torture/draw/random.hpp"
 #include "tests/torture/laws.hpp"
+#include "tests/torture/motion.hpp"
+#include "tests/torture/springs.hpp"
 #include "tests/torture/trial.hpp"
 
 namespace cdot::torture {
@@ -19,9 +23,58 @@ bool may_be_the_step(const Verdict& v) {
          judged_by_order(v.what);
 }
 
+// True if an effect's force grows so much as bodies approach that no step resolves it from the start on, or if it moves
+// them within the round-off of their poses.
+bool unresolved(const Scene& scene, double step) {
+  constexpr double rounded = 1e-13;
+  bool found = false;
+  in_space_of<double>(scene, [&](auto space) {
+    auto world = build_world_in<decltype(space)>(scene);
+    const Motion motion = motion_of(world);
+    double farthest = 0;
+    for (const BodyMotion& body : motion.bodies) farthest = std::max(farthest, norm(body.x));
+    for (const SpringRow& row : spring_rows(world))
+      found |= step * std::sqrt(std::max(0.0, -row.stiffness * row.mass)) > 2 ||
+               std::abs(row.force) * rounded * farthest > motion.kinetic;
+  });
+  return found;
+}
+
+test::SoftWay drawn_way(const Scene& scene, std::uint64_t seed) {
+  constexpr std::uint64_t other_than_the_scene = 0x50f7;
+  Random random(seed ^ other_than_the_scene);
+  test::SoftWay way;
+  way.sweeps = random.of<int>({1, 1, 1, 2, 4, 10, 30}), way.substeps = random.of<int>({1, 1, 2, 4, 8});
+  way.jitter = random.chance(0.5) ? test::Jitter{1, 1} : test::Jitter{random.log_between(0.1, 1), 1};
+  way.unit = scene.step * random.log_between(0.3, 30), way.duration = 60 * way.unit;
+  return way;
+}
+
+Verdict judge_soft(const Scene& scene, std::uint64_t seed) {
+  const test::SoftWay way = drawn_way(scene, seed);
+  const test::SoftRise seen = test::soft_rise(scene, way);
+  const auto limited = [](const char* why) {
+    return verdict(Outcome::limited, fmt::format("soft steps: {}", why), "");
+  };
+  if (!seen.starts) return limited("the start is off its joints or beyond an end");
+  if (seen.fails) return limited("the World says that one failed");
+  if (seen.holds()) return {};
+  if (!std::isfinite(seen.bound + seen.risen))
+    return limited("an effect has no energy at a pose, which cdot-run tells");
+  if (unresolved(scene, way.unit / way.substeps)) return limited("no step resolves the force of an effect");
+  const std::string words = fmt::format("{} sweeps, {} substeps, steps of {:.3g} to {:.3g} s", way.sweeps, way.substeps,
+                                        way.jitter.shortest * way.unit, way.unit);
+  return verdict(Outcome::broken, "energy of soft steps", words, seen.risen, seen.bound);
+}
+
 }  // namespace
 
 Verdict judge(const Scene& scene, const Asked& asked) {
+  try {
+    if (asked.soft) return judge_soft(scene, *asked.soft);
+  } catch (const Error& error) {
+    return verdict(Outcome::refused, error.what(), "");
+  }
   const Verdict seen = judge_once(scene, asked);
   if (!seen.broken() || !may_be_the_step(seen) || asked.refinements == 0) return seen;
   Scene finer = scene;

@@ -24,6 +24,7 @@ struct Options {
   std::uint64_t seed = 1;
   int count = 1000, every = 0;
   double seconds = 0;
+  std::optional<std::uint64_t> soft;
   Wish wish;
   std::string method, keep, scene;
   int dimension = 0;
@@ -33,6 +34,7 @@ struct Options {
   Asked asked() const {
     Asked asked;
     asked.bits = !no_bits, asked.varying = varying, asked.changes = changes, asked.forces = forces, asked.hurry = hurry;
+    asked.soft = soft;
     return asked;
   }
 };
@@ -64,11 +66,10 @@ void keep(const Options& options, const std::string& name, const std::string& te
 }
 
 // Prints the broken invariant, the shrunk scene and the command that repeats it.
-void report(const Options& options, std::uint64_t seed, const Scene& scene, const Verdict& verdict) {
+void report(const Options& options, std::uint64_t seed, const Scene& scene, const Verdict& verdict, Asked asked) {
   fmt::print("\nBROKEN {}\n  seed {:#x}, {}\n", told(verdict), seed, way_of(scene));
   std::fflush(stdout);  // shrinking may take a while
   if (options.no_shrink || options.advice || options.misfit) return;
-  Asked asked = options.asked();
   asked.bits = verdict.what.starts_with("bits");
   Shrunk small = shrink(scene, verdict, asked);
   small.scene.title = fmt::format("seed {:#x}: {}", seed, small.verdict.what);
@@ -76,9 +77,9 @@ void report(const Options& options, std::uint64_t seed, const Scene& scene, cons
   fmt::print("  shrunk in {} tries: {} bodies, {} joints, {} steps: {}\n", small.tries, small.scene.bodies.size(),
              small.scene.joints.size(), steps_of(small.scene), told(small.verdict));
   fmt::print(
-      "  again: torture --seed {:#x} --count 1 --steps {}; the small one: torture --scene {}; cdot-run simulate "
+      "  again: torture --seed {:#x} --count 1 --steps {}; the small one: torture --scene {}{}; cdot-run simulate "
       "{}\n\n{}\n",
-      seed, options.wish.steps, name, name, text);
+      seed, options.wish.steps, name, asked.soft ? fmt::format(" --soft {:#x}", *asked.soft) : "", name, text);
   if (!options.keep.empty()) keep(options, name, text);
 }
 
@@ -109,12 +110,19 @@ int torture(const Options& options) {
     const Mechanism mechanism = options.misfit ? nearly_misfitting(seed, options.wish) : generate(seed, options.wish);
     if (options.print) fmt::print("{}\n", text_of(mechanism.scene));
     const std::clock_t began = std::clock();
-    const Verdict verdict = judged(options, mechanism.scene);
+    Verdict verdict = judged(options, mechanism.scene);
+    Asked asked = options.asked();
+    if (verdict.outcome != Outcome::refused && !verdict.broken() && !options.misfit && !options.advice) {
+      asked.soft = seed;
+      const Verdict soft = judge(mechanism.scene, asked);
+      if (soft.broken()) verdict = soft;
+      else asked.soft.reset();
+    }
     const double took = double(std::clock() - began) / CLOCKS_PER_SEC;
     if (took > slow)
       fmt::print("slow: seed {:#x} took {:.1f} s of CPU time, {}\n", seed, took, way_of(mechanism.scene));
     tally.add(mechanism, verdict);
-    if (verdict.broken()) report(options, seed, mechanism.scene, verdict);
+    if (verdict.broken()) report(options, seed, mechanism.scene, verdict, asked);
     else if (options.count == 1) say(verdict);
     if (k % 100 == 99) fmt::print(stderr, "\r{} mechanisms, {} broken", k + 1, tally.count(Outcome::broken));
     if (options.every > 0 && (k + 1) % options.every == 0) {  // a long run may be stopped at any time
@@ -145,6 +153,8 @@ int main(int count, char** arguments) {
                  "solver, integrator, drift correction, precision: any of them, as in \"direct float\"");
   app.add_option("--keep", options.keep, "a folder for the scenes in which something breaks");
   app.add_option("--scene", options.scene, "judge this scene and no other");
+  app.add_option("--soft", options.soft,
+                 "judge soft steps alone, drawn by this seed; each run has one beside the rest");
   app.add_flag("--varying", options.varying, "the lengths of the steps vary");
   app.add_flag("--changes", options.changes, "impulses, forces and the loss of a joint, while running");
   app.add_flag("--forces", options.forces, "a force on each body that is a function of time");

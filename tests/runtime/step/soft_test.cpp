@@ -93,6 +93,34 @@ TEST(Soft, EnergyNeverRises) {
   expect_no_rise<Spatial<double>>("in space", [](SpatialWorld<double>& world) { test::add_free_mechanism(world); });
 }
 
+// One sweep leaves a damper at another rate than the one that gave its impulse, which is what it took.
+TEST(Soft, DampersTakeWhatTheirImpulsesTake) {
+  Settings s = settings(Solver::iterative, Drift::none, 0);
+  s.iterations = 1;
+  World<double> world(s);
+  const int body = world.add_body({.vx = 1, .vy = 0.5, .mass = 1, .inertia = 1});
+  for (const auto& [x, y] : {std::pair{2., 0.}, {2., 2.}}) {
+    const int end = world.add_body({.x = x, .y = y, .is_static = true});
+    world.add_spring(
+        {.body_a = end, .body_b = body, .stiffness = 1e-3, .rest_length = std::hypot(x, y), .damping = 1e3});
+  }
+  ASSERT_TRUE(world.step(0.01));
+  EXPECT_GT(world.balance().taken, 0.3);
+  EXPECT_NEAR(world.balance().method(), 0, 1e-6);
+}
+
+// A mechanism at rest whose start is apart closes, and lifts its load as it does.
+TEST(Soft, GapsOfAStartClose) {
+  for (int sweeps : {1, 4}) {
+    World<double> world(soft(sweeps, 4));
+    const int rod = world.add_body({.y = -0.6, .mass = 1, .inertia = 0.1});
+    revolute(world, world.ground(), rod, 0, 0, 0, 0.5);
+    EXPECT_NEAR(world.worst_position_error().value, 0.1, 1e-12);
+    for (int k = 0; k < 60; ++k) ASSERT_TRUE(world.step(1.0 / 60));
+    EXPECT_LT(world.worst_position_error().value, 1e-4) << sweeps;
+  }
+}
+
 // --- gaps, beside Box2D v3 (commit 617d32ab): one sweep, four substeps of 1/60 s, its default softness ---
 
 double largest_gap(World<double>& world, int steps) {

@@ -7,7 +7,7 @@
 
 namespace cdot::test {
 
-// The shortest and the longest step of a run, in units of 1/60 s.
+// The shortest and the longest step of a run, in units of SoftWay::unit.
 struct Jitter {
   double shortest, longest;
   // The length of step k: between both, in no order.
@@ -19,17 +19,18 @@ struct Jitter {
 struct SoftWay {
   int sweeps, substeps;
   Jitter jitter;
+  double unit = 1. / 60, duration = 3;  // [s]
 };
 
 struct SoftRise {
-  bool starts = false;         // on its joints: closing the gaps of a start may lift bodies
+  bool starts = false;         // on its joints and within its ends: closing the gaps of a start may lift bodies
   bool fails = false;          // a step, and says so
   double risen = 0, time = 0;  // BalanceWatch::risen, as a share, and when [s]
-  double bound = 0;            // of risen: symplectic Euler itself is off by h/2 F v
+  double bound = 0;  // of risen: symplectic Euler itself is off by h/2 F v at both ends, of all forces on bodies
   bool holds() const { return risen < bound; }
 };
 
-// Of a run of 3 s by Euler's steps.
+// Of a run by Euler's steps.
 SoftRise soft_rise(Scene scene, const SoftWay& way);
 
 }  // namespace cdot::test
