@@ -52,7 +52,7 @@ class EquationWriter {
     if (mechanism_.angles > 0) out_.angles = angles_of(blocks_, out_.constants);
     write_bounded();
     if (!mechanism_.bonds.empty()) write_bonds();
-    if (mechanism_.method == Method::rattle && !mechanism_.bounded.empty()) list_groups();
+    if (mechanism_.method == Method::rattle && (out_.exerts || !mechanism_.bounded.empty())) list_groups();
     // Ends that a guess passes are other ones than those that the step passes. By RATTLE forces that change with rates
     // pull beside the joints.
     if (system().size() > 0 && foresees()) write_foreseen();
@@ -104,13 +104,14 @@ class EquationWriter {
     if (out_.finishes) out_.finish = dampers.finish(joints_);
     for (std::size_t b = 0; b < mechanism_.bounded.size() && mechanism_.method == Method::rattle; ++b)
       out_.exerts |= prescribes_rate(blocks_, b);
+    out_.exerts |= mechanism_.method == Method::rattle && mechanism_.has_rates();
     if (out_.exerts) out_.exert = exert_of(blocks_, joints_, out_.constants);
   }
 
   bool foresees() const {
     const Method method = mechanism_.method;
     return mechanism_.foresees && mechanism_.bonds.empty() && (method == Method::euler || method == Method::rattle) &&
-           !out_.has_ends && !out_.finishes;
+           !out_.has_ends && !out_.finishes && !out_.exerts;
   }
 
   void write_middle() {

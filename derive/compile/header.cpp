@@ -12,6 +12,7 @@
 #include "derive/compile/methods/bonds.hpp"
 #include "derive/compile/methods/events.hpp"
 #include "derive/compile/methods/modes.hpp"
+#include "derive/compile/methods/rates.hpp"
 #include "derive/compile/methods/rattle.hpp"
 #include "derive/compile/methods/state.hpp"
 #include "derive/compile/methods/tables.hpp"
@@ -87,7 +88,6 @@ class HeaderWriter {
   }
   bool has_effects() const { return has().effects || has().bounded; }
   bool has_inputs() const { return !equations_.constants.inputs.empty(); }
-
   std::string with_arguments(std::string text) const {
     return compile::with_arguments(std::move(text), {has_inputs(), has().angles, has().events, has().bonds,
                                                      has().gyroscopes, pose_argument(mechanism_)});
@@ -153,9 +153,7 @@ class HeaderWriter {
     if (has().foresees) line("  struct Multipliers {\n    T of[rows];\n  };");
     if (has().events) {
       line("  // Of rows with bounds: 1 if they have begun, if they have ended, if they act.");
-      line("  struct Events {");
-      line("    T began[bounded], ended[bounded], acts[bounded];");
-      line("  };");
+      line("  struct Events {\n    T began[bounded], ended[bounded], acts[bounded];\n  };");
     }
     if (has().bonds) text_ += bonds_type(mechanism_);
     text_ += state_of(mechanism_, has(), has_inputs());
@@ -187,10 +185,11 @@ class HeaderWriter {
     write_using(program);
     const std::vector<std::string> lines = derive::print_statements(program, printing);
     for (const std::string& statement : lines) line(statement);
-    if (has_inputs() && head.find("$d") != std::string::npos) line("    (void)p;");
-    if (has().angles && head.find("$d") != std::string::npos) line("    (void)angles;");
-    if (has().events && head.find("$d") != std::string::npos) line("    (void)events;");
-    if (has().bonds && head.find("$d") != std::string::npos) line("    (void)bonds;");
+    const bool declares = head.find("$d") != std::string::npos;
+    if (declares && has_inputs()) line("    (void)p;");
+    if (declares && has().angles) line("    (void)angles;");
+    if (declares && has().events) line("    (void)events;");
+    if (declares && has().bonds) line("    (void)bonds;");
     for (const std::string argument :
          {"q", "v",     "a",     "time", "J",      "B", "b", "h",  "lambda", "force",  "C",    "rate",
           "K", "guess", "given", "end",  "before", "W", "g", "mu", "mean",   "missed", "side", "load"})

@@ -23,7 +23,7 @@ std::set<std::string> taken_names() {
       "has_one_end is_equation is_endless of_value of_rate of_force latch events Events distances after until "
       "go rescue improve stiffen weigh_effects farthest moved_energy hardly_moves drag "
       "advance pass tension stiffened inverse_of positive_part effect_rows Inertia W power before middle mean "
-      "mean_of find_mean_spins missed side given end guess load from bonds Bonds snap strain");
+      "mean_of find_mean_spins missed side given end guess load from bonds Bonds snap strain choose_once latches");
   std::set<std::string> names;
   for (std::string word; words >> word;) names.insert(word);
   return names;

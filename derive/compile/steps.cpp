@@ -5,6 +5,7 @@
 #include "derive/compile/foresight/foresight.hpp"
 #include "derive/compile/methods/modes.hpp"
 #include "derive/compile/methods/rattle.hpp"
+#include "derive/compile/methods/strides.hpp"
 #include "derive/compile/methods/weights.hpp"
 #include "derive/compile/midpoint/implicit.hpp"
 #include "derive/compile/types.hpp"
@@ -261,7 +262,7 @@ long state_bytes_of(const Mechanism& mechanism, const Equations& equations, cons
                        2 * mechanism.breakable() + (has.events ? 3 * long(mechanism.bounded.size()) : 0);
   return long{sizeof(double)} * (1 + of_bodies + of_rows + long(mechanism.bounded.size()) +
                                  (has.midpoint || has.weighs ? long(mechanism.bounded.size()) : 0) +
-                                 (has.exerts && has.weighs ? long(mechanism.bounded.size()) : 0) +
+                                 (has.repeats() ? long(mechanism.bounded.size()) : 0) +
                                  long(equations.constants.inputs.size()) + 2 * mechanism.angles);
 }
 
@@ -273,10 +274,11 @@ std::string begin_of(Method method, const Contents& has) {
   if (has.gyroscopes) text += accelerates ? "$W" : "    wind(s);\n";
   text += "$C";
   if (has.bounded && (has.midpoint || has.weighs)) text += "    for (T& of_row : s.force) of_row = T(0);\n";
+  if (has.modes) text += "    s.modes = {};\n";
   if (has.events) text += "    latch(s);\n";
   if (has.rows) text += "    for (int i = 0; i < rows; ++i) s.lambda[i] = T(0);\n";
-  if (has.exerts && has.weighs) text += "    for (T& of_row : s.repeats) of_row = T(0);\n";
-  if (has.modes) text += "    s.modes = {};\n    hold_passed_ends(s);\n";
+  if (has.repeats()) text += "    for (T& of_row : s.repeats) of_row = T(0);\n";
+  if (has.modes) text += "    hold_passed_ends(s);\n";
   if (has.closes()) text += "    s.residual = T(1e30);\n";
   if (has.rows) text += evaluates;
   if (has.closes())

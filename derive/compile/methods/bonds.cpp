@@ -56,13 +56,13 @@ std::string load_of(const Bond& bond, const std::vector<std::size_t>& rows) {
 // By RATTLE the next step begins with the pull of those that are left.
 std::string pulls_anew(const Mechanism& mechanism, const Contents& has) {
   std::string text;
-  for (std::size_t b = 0; has.exerts && b < mechanism.bounded.size(); ++b)
+  for (std::size_t b = 0; has.repeats() && b < mechanism.bounded.size(); ++b)
     if (const int holds = mechanism.bounded[b].holds; holds >= 0)
       text += fmt::format("    s.repeats[{0}] = select(now[{1}], T(0), s.repeats[{0}]);\n", b, holds);
   return text + fmt::format(
                     "    Velocity pull[bodies];\n    draw($ss.q, s.time, {}{}pull);\n"
                     "    for (int i = 0; i < bodies; ++i) s.pull[i] = choose(some, pull[i], s.pull[i]);\n",
-                    has.rows ? "s.J, s.lambda, " : "", has.exerts ? "s.repeats, " : "");
+                    has.rows ? "s.J, s.lambda, " : "", has.repeats() ? "s.repeats, " : "");
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ std::string arguments_of_strain(const Mechanism& mechanism) {
 
 std::string arguments_of_draw(const Contents& has) {
   return std::string(has.rows ? ", const Jacobian& J, const T (&lambda)[rows]" : "") +
-         (has.exerts ? ", const T (&mu)[bounded]" : "") + ", Velocity (&d)[bodies])";
+         (has.repeats() ? ", const T (&mu)[bounded]" : "") + ", Velocity (&d)[bodies])";
 }
 
 std::string snap_of(const Mechanism& mechanism, const std::vector<std::size_t>& rows, const Contents& has) {

@@ -22,7 +22,8 @@ struct Contents {
   bool weighs = false;    // by Euler's steps or RATTLE: the impulses of corrections count as loads
   bool drags = false;     // some body has drag
   bool foresees = false;  // the multipliers of the next projection, by those of the last steps
-  bool projects() const { return rows || modes; }  // velocities
+  bool projects() const { return rows || modes; }               // velocities
+  bool repeats() const { return weighs && exerts && bounded; }  // forces of rows that prescribe a rate
   bool weighs_joints() const { return weighs && bonds && rows; }
   bool closes() const { return rows || ends; }
   bool stiffens() const { return midpoint && (rows || bounded); }  // by tension

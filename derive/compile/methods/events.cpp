@@ -46,7 +46,9 @@ std::string latch_of(const std::string& waits, const Contents& has) {
                                  alone       ? notes_group
                                  : has.modes ? notes_any
                                              : "",
-                                 has.forces ? "s.force, " : "");
+                                 !has.forces ? ""
+                                 : has.modes ? "s.modes.force, "
+                                             : "s.force, ");
   if (alone) text += forgets;
   if (has.modes) text += "    s.modes.known = select(some, T(0), s.modes.known);\n";
   if (has.exerts) text += restarts;

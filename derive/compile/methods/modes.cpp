@@ -162,7 +162,7 @@ constexpr const char* margins_begin = R"(
 // Where a time is unlimited the distance is no number: no event.
 constexpr const char* margins_of_events = R"(    constexpr bool waits[bounded] = {{{0}}};
     T after[bounded], until[bounded];
-    distances($ss.q, s.time, s.v, after, until);
+    distances($ss.q, s.time, s.v, {1}after, until);
     for (int i = 0; i < bounded; ++i) {{
       const T near = T(single ? 1e-5 : 1e-10);
       m.margin[i] = select(s.events.began[i] < T(waits[i] ? 1 : 0), smaller(m.margin[i], after[i] / near), m.margin[i]);
@@ -172,7 +172,7 @@ constexpr const char* margins_of_events = R"(    constexpr bool waits[bounded] =
 
 constexpr const char* chooses = R"(
   // The modes from now on, for steps of about h.
-  static void choose_modes(State& s, const T& h) {{
+  static void {2}(State& s, const T& h) {{
 {1}    for (T& of_row : s.modes.of_rate) of_row = T(0);
     for (T& of_row : s.modes.of_force) of_row = T(0);
     Velocity a[bodies];
@@ -188,6 +188,28 @@ constexpr const char* chooses = R"(
     for (int i = 0; i < bounded; ++i) s.modes.chosen[i] = s.modes.margin[i];
     s.modes.known = T(1);
   }}
+)";
+
+// Forces may make events happen, as of a pin that is too weak: then the modes are others.
+constexpr const char* chooses_again = R"(
+  // True in lanes where an event happens.
+  static Mask latches(State& s) {
+    const Events before = s.events;
+    latch(s);
+    Mask some = T(1) < T(0);
+    for (int i = 0; i < bounded; ++i)
+      some = some || s.events.began[i] > before.began[i] || s.events.ended[i] > before.ended[i];
+    return some;
+  }
+  static void choose_modes(State& s, const T& h) {
+    choose_once(s, h);
+    for (Mask again = latches(s); any(again);) {
+      State next = s;
+      choose_once(next, h);
+      replace(s, next, again);
+      again = latches(s);
+    }
+  }
 )";
 
 constexpr const char* types =
@@ -291,94 +313,11 @@ std::string modes_of(const Contents& has, const std::string& waits) {
   const std::string_view growing = "    grow(G, m);\n";
   if (!has.loads) margins.erase(margins.find(growing), growing.size());
   text += margins;
-  if (has.events) text += fmt::format(margins_of_events, waits);
-  return text + "  }\n" + fmt::format(chooses, arguments_of_pull(has), has.events ? "    latch(s);\n" : "");
-}
-
-namespace {
-
-// As the World does it: runtime/step/step_runge_kutta.cpp and between.cpp.
-constexpr const char* steps = R"(
-  // The margin of the row that is furthest beyond its event, beside that at the choice of the modes.
-  static T furthest(const Modes& m) {
-    T worst = T(0);
-    for (int i = 0; i < bounded; ++i) worst = smaller(worst, m.margin[i] - smaller(m.chosen[i], T(0)));
-    return worst;
-  }
-
-  // Where the first row has just passed its event, between 0 and 1, by linear interpolation.
-  static T first_event(const T (&chosen)[bounded], const T (&before)[bounded], const T (&after)[bounded]) {
-    T first = T(1);
-    for (int i = 0; i < bounded; ++i) {
-      const T aim = smaller(chosen[i], T(0)) - T(2), low = before[i] - aim, high = after[i] - aim;
-      first = select(high < T(0) && low > high, smaller(first, low / (low - high)), first);
-    }
-    return first;
-  }
-
-  // Ends the stride from s to `next` where the first row has just passed its event, in the lanes of `busy`. Every third
-  // round bisects, in case linear interpolation stalls.
-  static void go_to_event(const State& s, State& next, T& length, Mask busy, T& residual) {
-    T low = T(0), high = length, before[bounded], after[bounded];
-    for (int i = 0; i < bounded; ++i) before[i] = s.modes.margin[i], after[i] = next.modes.margin[i];
-    Mask stalls = T(1) < T(0);
-    for (int search = 0; search < 61 && any(busy || stalls); ++search) {
-      const T share = larger(T(0.001), smaller(T(0.999), first_event(s.modes.chosen, before, after)));
-      T at = low + (search % 3 == 2 ? T(0.5) : share) * (high - low);
-      stalls = stalls || (busy && !(at > low && at < high));
-      if (search == 60) stalls = stalls || busy;
-      at = select(stalls, high, at);
-      State there = s;
-      const T error = stride(there, at), furthest_there = furthest(there.modes);
-      const Mask passed = furthest_there < T(-1), ends = stalls || (busy && passed && furthest_there >= T(-3));
-      replace(next, there, ends);
-      length = select(ends, at, length), residual = select(ends, error, residual);
-      busy = busy && !ends, stalls = stalls && !ends;
-      high = select(passed, at, high), low = select(passed, low, at);
-      for (int i = 0; i < bounded; ++i) {
-        after[i] = select(passed, there.modes.margin[i], after[i]);
-        before[i] = select(passed, before[i], there.modes.margin[i]);
-      }
-    }
-  }
-
-  // In strides that end at events; after 32 of them the rest of the step goes on without looking for more. A lane that is
-  // done waits for the others unchanged.
-  static T step(State& s, T h = T(default_step)) {
-    const T start = s.time;
-    T done = T(0), residual = T(0), events = T(0);
-    for (Mask goes_on = T(0) < T(1); any(goes_on);) {
-      const Mask unknown = goes_on && s.modes.known < T(0.5);
-      if (any(unknown)) {
-        State chosen = s;
-        choose_modes(chosen, h);
-        replace(s, chosen, unknown);
-      }
-      State next = s;
-      T length = h - done, error = stride(next, length);
-      const Mask passed = goes_on && furthest(next.modes) < T(-1), meets = passed && events < T(33);
-      if (any(meets)) go_to_event(s, next, length, meets, error);
-      next.modes.known = select(passed, T(0), T(1));
-      forget_jammed(next.modes);
-      done = select(meets, done + length, h);
-      next.time = start + done;
-      replace(s, next, goes_on);
-      residual = select(goes_on, error, residual);
-      events = events + T(1);
-      goes_on = meets && done < h;
-    }
-    return residual;
-  }
-)";
-
-constexpr std::string_view forgets_jams = "      forget_jammed(next.modes);\n";
-
-}  // namespace
-
-std::string step_by_events(const Contents& has) {
-  std::string text = steps;
-  if (!has.loads) text.erase(text.find(forgets_jams), forgets_jams.size());
-  return text;
+  if (has.events) text += fmt::format(margins_of_events, waits, has.forces ? "m.force, " : "");
+  return text + "  }\n" +
+         fmt::format(chooses, arguments_of_pull(has), has.events ? "    latch(s);\n" : "",
+                     has.forces ? "choose_once" : "choose_modes") +
+         (has.forces ? chooses_again : "");
 }
 
 }  // namespace cdot::compile

@@ -1,5 +1,4 @@
-// Rows with bounds by Runge-Kutta methods, as text: between two events each has a mode; a step that passes an event
-// ends there, and goes on with other modes.
+// Rows with bounds by Runge-Kutta methods, as text: between two events each has a mode.
 #pragma once
 
 #include <string>
@@ -14,7 +13,5 @@ std::string modes_types(const Contents& has);
 std::string modes_of(const Contents& has, const std::string& waits);
 // Those of pull(), after the pose, the time and the velocities of a State.
 std::string arguments_of_pull(const Contents& has);
-// step(), which ends strides at events.
-std::string step_by_events(const Contents& has);
 
 }  // namespace cdot::compile

@@ -1,8 +1,7 @@
-// step() of RATTLE as text, and what its effects need.
+// step() of RATTLE as text, with its start and its ends.
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "derive/compile/methods/contents.hpp"
 
@@ -14,8 +13,5 @@ std::string rattle(double tolerance, const Contents& has);
 std::string pushes_of(const Contents& has);
 // start(), if `exerts`.
 std::string start_of(const Contents& has);
-// The numbers of rows, and find_rates(); effect_of: the effect of each row.
-std::string damping_of(std::size_t rows, int effects, std::size_t triangle);
-std::string find_rates_of(const std::vector<int>& effect_of);
 
 }  // namespace cdot::compile

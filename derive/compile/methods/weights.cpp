@@ -112,14 +112,14 @@ std::string weighs_failures(const Contents& has) {
 
 std::string weighs_bounds(const Contents& has) {
   if (!has.weighs) return {};
-  return fmt::format(sums_bounds, has.exerts ? "half * s.repeats[e] + " : "", has.ends ? "total[e] + " : "") +
-         (has.exerts ? notes_repeats : "");
+  return fmt::format(sums_bounds, has.repeats() ? "half * s.repeats[e] + " : "", has.ends ? "total[e] + " : "") +
+         (has.repeats() ? notes_repeats : "");
 }
 
 std::string rattle_weighs(const Contents& has) {
   return has.weighs ? (has.weighs_joints() ? carries_rows : "") + snaps_with_loads(has) : "";
 }
 
-std::string repeats_at_start(const Contents& has) { return has.weighs ? start_repeats : ""; }
+std::string repeats_at_start(const Contents& has) { return has.repeats() ? start_repeats : ""; }
 
 }  // namespace cdot::compile

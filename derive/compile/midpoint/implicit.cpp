@@ -144,7 +144,7 @@ constexpr const char* rescue_begins = R"(
     T power;
     for (int i = 0; i < bodies; ++i) before[i] = s.v[i];
 )";
-constexpr const char* notes_start = R"(    Evaluated at;
+constexpr const char* rescue_notes_start = R"(    Evaluated at;
     at.time = s.time;
     for (int i = 0; i < bodies; ++i) at.q[i] = s.q[i];
 )";
@@ -281,7 +281,7 @@ std::string declares(const Contents& has) {
 std::string rescue(const Contents& has) {
   std::string text = rescue_begins;
   text += declares(has);
-  if (has.closes()) text += notes_start;
+  if (has.closes()) text += rescue_notes_start;
   if (has.rows) text += rescues_rows;
   if (has.bounded) text += rescues_bounded;
   text += stiffens(has, "s.q", "twice");

@@ -207,6 +207,7 @@ Program exert_of(const RowBlocks& blocks, const JointRows& joints, Constants& co
   each_component(blocks, [&](const Component& component, double, double) {
     algebra.output(component.in("pull"), accelerated.end.by_joints.at(component.name));
   });
+  if (blocks.mechanism().bounded.empty()) return algebra.finish();
   BoundedSystem bounded(blocks, algebra);
   bounded.answer(
       accelerated.answers, joints.system().size(), [&](std::size_t b) { return prescribes_rate(blocks, b); },

@@ -30,8 +30,8 @@ Program kick_of(const RowBlocks& blocks, const JointRows& joints, Constants& con
 // step.
 Program finish_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants, const KickPlan& plan);
 
-// q, v, time, J, h -> lambda, pull and B at the start of a run by RATTLE: forces by which rows that prescribe a rate
-// reach it in h/2.
+// q, v, time, J, h -> lambda, pull and B at the start of a run by RATTLE: forces by which rows with bounds that
+// prescribe a rate reach it in h/2.
 Program exert_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
 
 // q, time, J -> B.g and B.S for rows with ends, on accelerations for all rows, without effects: their part in a

@@ -8,11 +8,9 @@ namespace cdot::compile {
 
 namespace {
 
-// Steps at velocities keep the angular momentum instead.
 int gyroscopic_rate(const RowBlocks& blocks, Algebra& algebra, const Component& component) {
   const Mechanism& all = blocks.mechanism();
-  if (component.column < all.linear() || !all.on_accelerations() ||
-      !all.bodies[static_cast<std::size_t>(component.body)].inertia_turns)
+  if (component.column < all.linear() || !all.bodies[static_cast<std::size_t>(component.body)].inertia_turns)
     return algebra.value(0);
   return blocks.gyroscopic_rates(algebra, component.body)[component.column - all.linear()];
 }
@@ -32,8 +30,9 @@ Values free_accelerations(const RowBlocks& blocks, Algebra& algebra, bool at_res
   each_component(blocks, [&](const Component& component, double a, double drag) {
     const int slowed = algebra.times(algebra.value(drag), algebra.input(component.in("v")));
     const int change = change_of(blocks, algebra, component, forces);
-    accelerations[component.name] =
-        algebra.sum({{algebra.value(a), slowed, change, gyroscopic_rate(blocks, algebra, component)}, {1, -1, 1, 1}});
+    accelerations[component.name] = algebra.sum(
+        {{algebra.value(a), slowed, change, at_rest ? algebra.value(0) : gyroscopic_rate(blocks, algebra, component)},
+         {1, -1, 1, 1}});
   });
   return accelerations;
 }

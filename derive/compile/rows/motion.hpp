@@ -5,7 +5,8 @@
 
 namespace cdot::compile {
 
-// Accelerations without joints, by the names of components. `at_rest`: of effects the forces at rates of 0.
+// Accelerations without joints, by the names of components. `at_rest`: of effects the forces at rates of 0; and no
+// gyroscopic torques, for a step that keeps angular momenta.
 Values free_accelerations(const RowBlocks& blocks, Algebra& algebra, bool at_rest = false);
 
 // q, v, time -> a: these. Steps of RATTLE take effects at rest; their dampers act at its ends.

@@ -114,8 +114,6 @@ class EffectReader {
       refuse_(source, fmt::format("{}: bounds that grow with a load by {}", effect.name, mechanism_.method_name));
     else if (law.by_load && !effect.is_loaded())
       refuse_(source, fmt::format("{}: bounds that grow with the load of a joint that is soft", effect.name));
-    else if (law.distance && by_own_force(place) && mechanism_.on_accelerations())
-      refuse_(source, fmt::format("{}: events by a force by {}", effect.name, mechanism_.method_name));
     else if (law.error && !effect.in_time.empty())
       refuse_(source, fmt::format("{}: ends that follow functions of time", effect.name));
     else if (mechanism_.method != Method::euler && effect.law == Effect::bound && !law.error && !effect.in_time.empty())

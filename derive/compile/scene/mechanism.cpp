@@ -52,8 +52,6 @@ void refuse_joint(const SceneJoint& joint, const Scene& scene, Refusals& refusal
   const auto has = [&](RowKind kind) {
     return type && std::ranges::find(type->row_kinds, kind) != type->row_kinds.end();
   };
-  if (has(RowKind::velocity) && !type->is_effect && scene.settings.integrator == Integrator::rattle)
-    refuse(fmt::format("rows of velocities by rattle, as {} has", type->name));
   if (has(RowKind::inequality) && !is_rope(*type))
     refuse(fmt::format("inequality beside other rows, as {} has", type->name));
 }
@@ -214,6 +212,20 @@ void refuse_counters(const Scene& scene, BasicWorld<S>& world) {
   refusals.throw_any();
 }
 
+// There the first half of a step finds the forces of the other rows alone.
+void refuse_rates_beside_bounds(const Scene& scene, const Mechanism& mechanism) {
+  if (mechanism.method != Method::rattle || mechanism.bounded.empty()) return;
+  Refusals refusals(scene);
+  for (const Joint& joint : mechanism.joints)
+    if (std::ranges::count(joint.is_rate, true) > 0)
+      refusals.add(
+          std::ranges::find(scene.joints, joint.name, &SceneJoint::name)->where,
+          fmt::format("{}: cdot compile knows no rows of velocities beside rows with bounds by rattle, as {} has",
+                      joint.name, joint.type),
+          "leave it to cdot-run");
+  refusals.throw_any();
+}
+
 void note_own_specs(Mechanism& mechanism) {
   const auto note = [&](const std::string& type) {
     if (const std::string file = file_of_own_type(type); !file.empty()) mechanism.own_specs[type] = file;
@@ -241,6 +253,7 @@ void add_parts(const Scene& scene, Mechanism& mechanism) {
       add_joint(scene, world, i, mechanism);
   add_effects(scene, world, mechanism);
   read_bonds(scene, world, mechanism);
+  refuse_rates_beside_bounds(scene, mechanism);
   note_own_specs(mechanism);
 }
 

@@ -122,6 +122,9 @@ struct Mechanism {
   // True for a Runge-Kutta method; the others step velocities by impulses.
   bool on_accelerations() const { return method == Method::rk4 || method == Method::dop853; }
   int breakable() const { return bonds.empty() ? 0 : bonds.back().holds + 1; }  // joints that may break
+  bool has_rates() const {
+    return std::ranges::any_of(joints, [](const Joint& joint) { return std::ranges::count(joint.is_rate, true) > 0; });
+  }
   bool has_events_by_force() const { return std::ranges::any_of(bounded, &Effect::by_own_force); }
   // By these methods the impulses of corrections count as loads.
   bool weighs() const {

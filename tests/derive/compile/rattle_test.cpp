@@ -5,6 +5,7 @@
 #include "cantilever_rattle.hpp"
 #include "chain_10_rattle.hpp"
 #include "chain_10_space_rattle.hpp"
+#include "coin_rattle.hpp"
 #include "compound_pendulum_rattle.hpp"
 #include "crank_rocker_rattle.hpp"
 #include "double_pendulum_rattle.hpp"
@@ -14,6 +15,7 @@
 #include "gyroscope_space_rattle.hpp"
 #include "pulley_ratio1_rattle.hpp"
 #include "pulley_ratio2_rattle.hpp"
+#include "rolling_rattle.hpp"
 #include "simple_pendulum_rattle.hpp"
 #include "slider_crank_rattle.hpp"
 #include "slider_crank_space_rattle.hpp"
@@ -43,7 +45,16 @@ TEST(CompiledRattle, MovesInSpaceAsTheWorld){
         CDOT_IN_SPACE_BY_RATTLE(gyroscope) CDOT_IN_SPACE_BY_RATTLE(slider_crank) CDOT_IN_SPACE_BY_RATTLE(three_bodies)
             CDOT_IN_SPACE_BY_RATTLE(torque_free_body)}
 
+// Rows of velocities repeat their forces in the first half of a step; a run starts with those at its start.
+TEST(CompiledRattle, RollsAsTheWorld) {
+  const std::string coin = "specs/scenes/gallery/coin.toml";
+  cdot::runs_as_the_world<coin_rattle<double>>(coin, Integrator::rattle, 1e-11, 2);
+  cdot::runs_as_the_world<coin_rattle<double>>(coin, Integrator::rattle, 1e-11, 2, 1.0 / 60);
+  cdot::runs_as_the_world<rolling_rattle<double>>("tests/derive/compile/scenes/rolling.toml", Integrator::rattle);
+}
+
 TEST(CompiledRattle, LanesAreAsAlone) {
+  cdot::lanes_are_as_alone<coin_rattle>();
   cdot::lanes_are_as_alone<slider_crank_rattle>();
   cdot::lanes_are_as_alone<chain_10_rattle, float>();
   cdot::lanes_are_as_alone<gyroscope_space_rattle>();

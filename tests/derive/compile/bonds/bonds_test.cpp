@@ -7,9 +7,11 @@
 #include "bonds_in_space_implicit.hpp"
 #include "bonds_in_space_rattle.hpp"
 #include "bonds_rattle.hpp"
+#include "pins_dop853.hpp"
 #include "pins_euler.hpp"
 #include "pins_implicit.hpp"
 #include "pins_rattle.hpp"
+#include "pins_rk4.hpp"
 #include "tests/derive/compile/beside_world.hpp"
 
 namespace {
@@ -45,6 +47,12 @@ TEST(CompiledBonds, PinsShearAsInTheWorld) {
   breaks_as_in_the_world<pins_rattle<double>>("pins.toml", Integrator::rattle);
 }
 
+// The time at which a pin shears is located.
+TEST(CompiledBonds, PinsShearInTimeAsInTheWorld) {
+  cdot::runs_as_the_world<pins_rk4<double>>(scenes + "pins.toml", Integrator::rk4, 1e-9, 2);
+  cdot::runs_as_the_world<pins_dop853<double>>(scenes + "pins.toml", Integrator::dop853, 1e-9, 2, 1.0 / 60);
+}
+
 template <class Scene>
 void pin_shears_late() {
   typename Scene::State state;
@@ -55,13 +63,15 @@ void pin_shears_late() {
   for (int k = 0; k < 600; ++k) Scene::step(state, 0.001);
   EXPECT_EQ(state.events.acts[Scene::elbow_angle_shear_pin], 0);
   EXPECT_GT(std::abs(state.q[Scene::fore].angle - state.q[Scene::arm].angle), 1e-3);
-  EXPECT_EQ(state.events.acts[Scene::bearing_angle_shear_pin], 1);
+  EXPECT_EQ(state.events.acts[Scene::bearing_angle_shear_pin], 0);
+  EXPECT_EQ(state.events.acts[Scene::knee_angle_shear_pin], 1);
 }
 
 TEST(CompiledBonds, PinsShearInTheTest) {
   pin_shears_late<pins_euler<double>>();
   pin_shears_late<pins_implicit<double>>();
   pin_shears_late<pins_rattle<double>>();
+  pin_shears_late<pins_rk4<double>>();
 }
 
 // The chain loses its last link first, the door leaves its frame with all that acts on its angle. Where two joints
@@ -112,6 +122,7 @@ TEST(CompiledBonds, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<bonds_rattle, float>();
   cdot::lanes_are_as_alone<bonds_in_space_rattle>();
   cdot::lanes_are_as_alone<pins_rattle>();
+  cdot::lanes_are_as_alone<pins_rk4>();
 }
 
 }  // namespace
