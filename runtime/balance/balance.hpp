@@ -26,9 +26,9 @@ template <class S>
 double small_energy(const WorldData<S>& world);
 template <class S>
 double kinetic_energy(const WorldData<S>& world, const Island<S>& island);
-// Of the rows of one joint that are springs.
+// Of the rows of one joint that are springs, at the present poses and at `time` [s].
 template <class S>
-double potential_of(const WorldData<S>& world, const JointRecord& joint, Batch<S>& one_slot);
+double potential_of(const WorldData<S>& world, const JointRecord& joint, double time, Batch<S>& one_slot);
 // Where, and along which motion, a rate of change is found by the difference over 2 `epsilon` seconds.
 template <class S>
 struct Along {

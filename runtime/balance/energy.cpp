@@ -11,10 +11,10 @@ namespace cdot {
 namespace {
 
 template <class S>
-double potential_of(const WorldData<S>& world, const Batch<S>& batch, int slot, Batch<S>& one_slot) {
+double potential_of(const WorldData<S>& world, const Batch<S>& batch, int slot, double time, Batch<S>& one_slot) {
   if (!batch.law || !batch.law->energy) return 0;
   copy_slot(batch, slot, one_slot);
-  batch.ops->evaluate(one_slot, 0, 1, world.bodies, typename S::Scalar(world.time));
+  batch.ops->evaluate(one_slot, 0, 1, world.bodies, typename S::Scalar(time));
   batch.ops->effective_mass(one_slot, 0, 1, world.bodies);
   return batch.law->energy(one_slot, 0);
 }
@@ -74,10 +74,10 @@ void reserve(const WorldData<S>& world, Batch<S>& one_slot) {
 }
 
 template <class S>
-double potential_of(const WorldData<S>& world, const JointRecord& joint, Batch<S>& one_slot) {
+double potential_of(const WorldData<S>& world, const JointRecord& joint, double time, Batch<S>& one_slot) {
   double energy = 0;
   for (const Place& place : joint.places)
-    energy += potential_of(world, *world.batches[place.batch], slot_of(world, place), one_slot);
+    energy += potential_of(world, *world.batches[place.batch], slot_of(world, place), time, one_slot);
   return energy;
 }
 
@@ -115,7 +115,8 @@ Energy energy_of(const WorldData<S>& world, Batch<S>& one_slot) {
   for (const auto& batch : world.batches) {
     if (!batch->law || !batch->law->energy) continue;
     for (int slot = 0; slot < batch->count(); ++slot)
-      if (!world.joints[batch->joint[slot]].broken) energy.potential += potential_of(world, *batch, slot, one_slot);
+      if (!world.joints[batch->joint[slot]].broken)
+        energy.potential += potential_of(world, *batch, slot, world.time, one_slot);
   }
   for (int i = 0; i < all.count(); ++i) {
     if (all.immovable(i)) continue;
@@ -135,7 +136,7 @@ Energy energy_of(const WorldData<S>& world, Batch<S>& one_slot) {
   template double power_of_stiffness(const WorldData<S>&, const Batch<S>&, int, const Along<S>&, Batch<S>&, \
                                      Bodies<S>&);                                                           \
   template void reserve(const WorldData<S>&, Batch<S>&);                                                    \
-  template double potential_of(const WorldData<S>&, const JointRecord&, Batch<S>&);                         \
+  template double potential_of(const WorldData<S>&, const JointRecord&, double, Batch<S>&);                 \
   template double small_energy(const WorldData<S>&);                                                        \
   template double kinetic_energy(const WorldData<S>&, const Island<S>&);                                    \
   template Energy energy_of(const WorldData<S>&, Batch<S>&);

@@ -24,7 +24,7 @@ void break_overloaded(WorldData<S>& world, typename S::Scalar h) {
     island.solver->share(world, island);
     const int joint = overloaded_joint(world, island, time, double(h));
     if (joint < 0) continue;
-    break_joint(world, island, joint);
+    break_joint(world, island, joint, time);
     compute_again(world, island);
   }
 }

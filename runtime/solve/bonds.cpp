@@ -80,16 +80,16 @@ bool break_by_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   if (island.bonds.empty() || !island.solver->exact) return false;
   const int joint = nearest(world, island, double(time), double(at_event<typename S::Scalar>), force_on<S>);
   if (joint < 0) return false;
-  break_joint(world, island, joint);
+  break_joint(world, island, joint, double(time));
   evaluate_anew(world, island, time);
   return true;
 }
 
 // Swaps every slot of the joint with the last one of its segment, and shortens the segment.
 template <class S>
-void break_joint(WorldData<S>& world, Island<S>& island, int joint) {
+void break_joint(WorldData<S>& world, Island<S>& island, int joint, double time) {
   JointRecord& record = world.joints[joint];
-  take(world, Source::breaking, potential_of(world, record, world.one_slot));
+  take(world, Source::breaking, potential_of(world, record, time, world.one_slot));
   record.broken = true;
   for (const Place& place : record.places) {
     Batch<S>& batch = *world.batches[place.batch];
@@ -135,7 +135,7 @@ void measure_margins_of_bonds(const WorldData<S>& world, Island<S>& island, doub
 #define CDOT_INSTANTIATE(S)                                                             \
   template int overloaded_joint(const WorldData<S>&, const Island<S>&, double, double); \
   template bool break_by_forces(WorldData<S>&, Island<S>&, S::Scalar);                  \
-  template void break_joint(WorldData<S>&, Island<S>&, int);                            \
+  template void break_joint(WorldData<S>&, Island<S>&, int, double);                    \
   template void find_rows(WorldData<S>&, Island<S>&);                                   \
   template void measure_margins_of_bonds(const WorldData<S>&, Island<S>&, double);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)

@@ -12,7 +12,7 @@ int overloaded_joint(const WorldData<S>& world, const Island<S>& island, double 
 
 // Takes the rows of the joint out of its island. It does not allocate. Evaluate anew afterwards.
 template <class S>
-void break_joint(WorldData<S>& world, Island<S>& island, int joint);
+void break_joint(WorldData<S>& world, Island<S>& island, int joint, double time);
 
 // Breaks the joint that carries most beyond its strength, by its present forces, which Batch::lambda holds at
 // acceleration level, and evaluates the others. False if none breaks.

@@ -1,4 +1,6 @@
 // A verdict, and whether shorter steps change it.
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 #include <cdot/methods.hpp>
@@ -40,6 +42,14 @@ bool unresolved(const Scene& scene, double step) {
   return found;
 }
 
+// Its work has no potential, and a step of first order knows it to first order only.
+bool has_torques_in_space(const Scene& scene) {
+  return std::ranges::any_of(scene.bodies, [](const SceneBody& body) {
+    const SpatialBodyDefinition& of = body.spatial;
+    return of.torque_x != 0 || of.torque_y != 0 || of.torque_z != 0;
+  });
+}
+
 test::SoftWay drawn_way(const Scene& scene, std::uint64_t seed) {
   constexpr std::uint64_t other_than_the_scene = 0x50f7;
   Random random(seed ^ other_than_the_scene);
@@ -61,6 +71,7 @@ Verdict judge_soft(const Scene& scene, std::uint64_t seed) {
   if (seen.holds()) return {};
   if (!std::isfinite(seen.bound + seen.risen))
     return limited("an effect has no energy at a pose, which cdot-run tells");
+  if (has_torques_in_space(scene)) return limited("torques in space put in work of first order");
   if (unresolved(scene, way.unit / way.substeps)) return limited("no step resolves the force of an effect");
   const std::string words = fmt::format("{} sweeps, {} substeps, steps of {:.3g} to {:.3g} s", way.sweeps, way.substeps,
                                         way.jitter.shortest * way.unit, way.unit);

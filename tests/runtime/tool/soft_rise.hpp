@@ -26,7 +26,9 @@ struct SoftRise {
   bool starts = false;         // on its joints and within its ends: closing the gaps of a start may lift bodies
   bool fails = false;          // a step, and says so
   double risen = 0, time = 0;  // BalanceWatch::risen, as a share, and when [s]
-  double bound = 0;  // of risen: symplectic Euler itself is off by h/2 F v at both ends, of all forces on bodies
+  // Of risen. Symplectic Euler itself is off by h/2 F v at both ends, of all forces on bodies, by the turning of
+  // tensors, and by the round-off of poses.
+  double bound = 0;
   bool holds() const { return risen < bound; }
 };
 
