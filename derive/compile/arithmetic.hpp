@@ -68,17 +68,16 @@ inline void sin_cos(const T& angle, T& s, T& c) {
   c = select(m > T(0.5) || m < T(-1.5), -c_0, c_0);
 }
 
-// s and c of to.angle, from those of an angle beside it: their sum formulas, with series up to a quarter of a radian,
-// and with two terms up to the move of a correction.
-template <class Pose>
-inline void sin_cos_beside(const Pose& from, Pose& to) {
-  using T = decltype(to.angle + to.angle);
-  const T d = to.angle - from.angle, z = d * d;
-  constexpr double slight = sizeof(typename NumberOf<T>::type) == 4 ? 1e-6 : 1e-10;  // d^3 / 6 is round-off
-  const auto is_near = z < T(0.0625), is_slight = z < T(slight);
-  const T half = T(0.5) * z, s_2 = from.s + (from.c * d - from.s * half), c_2 = from.c - (from.s * d + from.c * half);
-  if (!any(!is_slight)) {
-    to.s = s_2, to.c = c_2;
+// s and c of an angle from s_0 and c_0 of one less by d: their sum formulas, with series up to a quarter of a radian,
+// where most are `slight` with two terms up to the move of a correction.
+template <bool slight, class T>
+inline void sin_cos_beside(const T& s_0, const T& c_0, const T& d, const T& angle, T& s, T& c) {
+  const T z = d * d;
+  constexpr double least = sizeof(typename NumberOf<T>::type) == 4 ? 1e-6 : 1e-10;  // d^3 / 6 is round-off
+  const auto is_near = z < T(0.0625), is_slight = z < T(least);
+  const T half = T(0.5) * z, s_2 = s_0 + (c_0 * d - s_0 * half), c_2 = c_0 - (s_0 * d + c_0 * half);
+  if (slight && !any(!is_slight)) {
+    s = s_2, c = c_2;
     return;
   }
   const T sine =
@@ -89,12 +88,20 @@ inline void sin_cos_beside(const Pose& from, Pose& to) {
       z * (T(0.5) -
            z * (T(1.0 / 24) -
                 z * (T(1.0 / 720) - z * (T(1.0 / 40320) - z * (T(1.0 / 3628800) - z * T(1.0 / 479001600))))));
-  const T s_8 = from.s + (from.c * sine - from.s * versine), c_8 = from.c - (from.s * sine + from.c * versine);
-  to.s = select(is_slight, s_2, s_8), to.c = select(is_slight, c_2, c_8);
+  s = s_0 + (c_0 * sine - s_0 * versine), c = c_0 - (s_0 * sine + c_0 * versine);
+  if (slight) s = select(is_slight, s_2, s), c = select(is_slight, c_2, c);
   if (!any(!is_near)) return;
-  T s, c;
-  sin_cos(to.angle, s, c);
-  to.s = select(is_near, to.s, s), to.c = select(is_near, to.c, c);
+  T far_s, far_c;
+  sin_cos(angle, far_s, far_c);
+  s = select(is_near, s, far_s), c = select(is_near, c, far_c);
+}
+// A pose moved by a displacement, number by number: wide copies would wait for numbers just stored.
+template <class Pose, class Displacement>
+inline void shift(Pose& q, const Displacement& d) {
+  using T = decltype(q.angle + q.angle);
+  const T s_0 = q.s, c_0 = q.c, angle = q.angle + d.w, turn = angle - q.angle;
+  q.x = q.x + d.x, q.y = q.y + d.y, q.angle = angle;
+  sin_cos_beside<true>(s_0, c_0, turn, angle, q.s, q.c);
 }
 
 }  // namespace cdot::scenes

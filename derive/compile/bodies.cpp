@@ -53,9 +53,18 @@ std::string BodyTexts::turn_beside(const std::set<std::string>& turning) const {
   std::string text =
       "  // Those of poses beside others.\n  static void turn(Pose (&q)[bodies], const Pose (&from)[bodies]) {\n";
   each([&](const Body&, const std::string& name) {
-    if (turning.contains(name)) text += fmt::format("    sin_cos_beside(from[{0}], q[{0}]);\n", name);
+    if (turning.contains(name))
+      text += fmt::format(
+          "    sin_cos_beside<{1}>(from[{0}].s, from[{0}].c, q[{0}].angle - from[{0}].angle, q[{0}].angle, q[{0}].s, "
+          "q[{0}].c);\n",
+          name, mechanism.method == Method::rattle);
   });
-  return text + "    (void)q, (void)from;\n  }\n";
+  text += "    (void)q, (void)from;\n  }\n  static void shift(Pose (&q)[bodies], const Velocity (&d)[bodies]) {\n";
+  each([&](const Body&, const std::string& name) {
+    if (turning.contains(name)) text += fmt::format("    scenes::shift(q[{0}], d[{0}]);\n", name);
+    else text += fmt::format("    move(q[{0}], q[{0}], d[{0}]);\n", name);
+  });
+  return text + "  }\n";
 }
 
 std::string BodyTexts::push() const {

@@ -10,19 +10,21 @@ namespace {
 
 std::string when(bool condition, const char* text) { return condition ? text : ""; }
 
-// Four maxima, side by side in the processor.
+// Four maxima and minima, side by side in the processor.
 constexpr const char* largest_row = R"(
   static T larger(const T& a, const T& b) { return select(a > b, a, b); }
+  static T lower(const T& a, const T& b) { return select(a < b, a, b); }
+  // The largest size.
   template <int n>
-  static T largest(const T (&of_rows)[n]) {
-    T a = T(0), b = T(0), c = T(0), d = T(0);
+  static T largest(const T (&x)[n]) {
+    T a = T(0), b = a, c = a, d = a, e = a, f = a, g = a, h = a;
     int i = 0;
     for (; i + 4 <= n; i += 4) {
-      a = larger(magnitude(of_rows[i]), a), b = larger(magnitude(of_rows[i + 1]), b);
-      c = larger(magnitude(of_rows[i + 2]), c), d = larger(magnitude(of_rows[i + 3]), d);
+      a = larger(x[i], a), b = larger(x[i + 1], b), c = larger(x[i + 2], c), d = larger(x[i + 3], d);
+      e = lower(x[i], e), f = lower(x[i + 1], f), g = lower(x[i + 2], g), h = lower(x[i + 3], h);
     }
-    for (; i < n; ++i) a = larger(magnitude(of_rows[i]), a);
-    return larger(larger(a, b), larger(c, d));
+    for (; i < n; ++i) a = larger(x[i], a), e = lower(x[i], e);
+    return larger(-lower(lower(e, f), lower(g, h)), larger(larger(a, b), larger(c, d)));
   }
 )";
 
@@ -41,7 +43,7 @@ constexpr const char* errors_of_rows = R"(      T C[rows];
       const T of_joints = largest(C);
 )";
 
-// Ends that are passed take part from then on.
+// Ends that are passed take part from then on. A step brings rows to their ends to round-off only.
 constexpr const char* errors_of_ends = R"(      T over[bounded];
       past($ss.q, s.time, over);
 {}      const T worst = select(largest(over) > of_joints, largest(over), of_joints);
@@ -52,7 +54,7 @@ constexpr const char* leaves_out_free_rows =
 
 constexpr const char* ends_join = R"(      auto more = T(1) < T(0);
       for (int i = 0; i < bounded; ++i) {
-        const auto joins = goes_on && magnitude(over[i]) > T(0) && !active[i];
+        const auto joins = goes_on && magnitude(over[i]) > T(8 * epsilon) && !active[i];
         if (!first) more = more || joins;
         active[i] = active[i] || joins;
       }
@@ -83,8 +85,9 @@ constexpr const char* renews = R"(      const auto is_slow = goes_on && {0}worst
 constexpr const char* moves_of_rows = R"(      T lambda[rows];
       Velocity d[bodies];
       solve({}s.J, {}C, lambda, d);
-      for (int i = 0; i < bodies; ++i) d[i] = -d[i];
 )";
+
+constexpr const char* takes_back_errors = "      for (int i = 0; i < bodies; ++i) d[i] = -d[i];\n";
 
 constexpr const char* no_moves = R"(      Velocity d[bodies];
       for (int i = 0; i < bodies; ++i) d[i] = still();
@@ -127,16 +130,10 @@ std::string ends_of(const Contents& has) {
   return fmt::format(moves_of_ends, has.rows ? "s.J, " : "", keeps ? "" : adds_moves_of_ends, keeps ? by_all : "");
 }
 
-constexpr const char* moves_bodies = R"(      for (int i = 0; i < bodies; ++i) d[i] = choose(goes_on, d[i], still());
-      for (int i = 0; i < bodies; ++i) moves[i] = moves[i] + d[i];
+constexpr const char* moves_bodies =
+    R"(      for (int i = 0; i < bodies; ++i) d[i] = choose(goes_on, {}d[i], still()), moves[i] = moves[i] + d[i];
 {}    }}
   }}
-)";
-
-constexpr const char* moves_poses = R"(      Pose last[bodies];
-      for (int i = 0; i < bodies; ++i) last[i] = s.q[i];
-      for (int i = 0; i < bodies; ++i) move(s.q[i], last[i], d[i]);
-      turn(s.q, last);
 )";
 
 // Turning a pose by nothing would change its bits, in a lane that waits.
@@ -359,8 +356,9 @@ std::string corrections_of(double tolerance, const Contents& has, const std::str
     text += when(has.foresees,
                  "      for (int i = 0; i < rows; ++i) total[i] = total[i] - select(goes_on, lambda[i], T(0));\n");
     text += gains_of_rows(has);
-    if (has.ends) text += ends_of(has) + gains_of_ends(has);
-    text += fmt::format(moves_bodies, has.spatial ? moves_poses_in_space : moves_poses);
+    if (has.ends) text += (has.rows ? takes_back_errors : "") + ends_of(has) + gains_of_ends(has);
+    text +=
+        fmt::format(moves_bodies, has.ends ? "" : "-", has.spatial ? moves_poses_in_space : "      shift(s.q, d);\n");
   }
   if (has.weighs_joints()) text += project_with_impulses();
   else if (has.projects()) text += project_begins + when(has.rows, "    T rate[rows], lambda[rows];\n");

@@ -73,7 +73,7 @@ class EquationWriter {
       for (std::size_t r = 0; r < joint.rows->count(); ++r)
         algebra.output(element("C", system().first_row(k) + r), joint.motor ? algebra.value(0) : C.at(element("C", r)));
     }
-    out_.errors = algebra.finish();
+    out_.errors = algebra.finish_as_kernels();
   }
 
   void write_rates() {

@@ -73,15 +73,12 @@ constexpr const char* mean_functions = R"(
 )";
 
 constexpr const char* momentum_functions = R"(
-  // Keeps I w of a body that moved, in the lanes of `now`.
+  // Keeps I w of a body that moved.
   template <class Moments>
-  static void follow(Pose& q, Velocity& v, Gyroscope& g, const Moments& I, const Moments& inverse, const Mask& now) {
-    const Vector<T> w = {v.wx, v.wy, v.wz}, L = g.momentum + g.I * (w - g.spin);
-    const Tensor<T> W = turned<T>(q, inverse);
-    const Vector<T> spin = W * L;
-    q.I = scenes::choose(now, W, q.I), g.I = scenes::choose(now, turned<T>(q, I), g.I);
-    g.momentum = scenes::choose(now, L, g.momentum), g.spin = scenes::choose(now, spin, g.spin);
-    v.wx = select(now, spin.x, v.wx), v.wy = select(now, spin.y, v.wy), v.wz = select(now, spin.z, v.wz);
+  static void follow(Pose& q, Velocity& v, Gyroscope& g, const Moments& I, const Moments& inverse) {
+    g.momentum = g.momentum + g.I * (Vector<T>{v.wx, v.wy, v.wz} - g.spin);
+    q.I = turned<T>(q, inverse), g.I = turned<T>(q, I), g.spin = q.I * g.momentum;
+    v.wx = g.spin.x, v.wy = g.spin.y, v.wz = g.spin.z;
   }
   static void carry(const Pose& q, Velocity& v, const Tensor<T>& I) {
     const Vector<T> w = q.I * (I * Vector<T>{v.wx, v.wy, v.wz});
@@ -98,13 +95,29 @@ constexpr const char* momentum_functions = R"(
     const Vector<T> W = to_body(q, Vector<T>{v.wx, v.wy, v.wz});
     T c;
     const Vector<T> half = free_turn(e, across, W, times(I, W), h, c);
-    turn_by(to, q, c, to_world(q, half));
+    turn_within(to, q, c, half);
     to.x = q.x + h * v.x, to.y = q.y + h * v.y, to.z = q.z + h * v.z;
   }
   template <class Moments>
   static void spin(Pose& to, const Pose& q, const Velocity& v, const Moments& I, const Moments& inverse, const T& h) {
-    const Vector<T> w = to_world(q, mean_spin(I, inverse, to_body(q, Vector<T>{v.wx, v.wy, v.wz}), h));
-    move(to, q, {h * v.x, h * v.y, h * v.z, h * w.x, h * w.y, h * w.z});
+    T c;
+    const Vector<T> half = half_turn(h * mean_spin(I, inverse, to_body(q, Vector<T>{v.wx, v.wy, v.wz}), h), c);
+    turn_within(to, q, c, half);
+    to.x = q.x + h * v.x, to.y = q.y + h * v.y, to.z = q.z + h * v.z;
+  }
+)";
+
+constexpr const char* follows_in_lanes = R"(  }
+  static void follow(State& s, const Mask& now) {
+    const State before = s;
+    follow(s);
+    for (int i = 0; i < bodies; ++i) s.q[i].I = scenes::choose(now, s.q[i].I, before.q[i].I);
+    for (int i = 0; i < bodies; ++i) s.v[i] = choose(now, s.v[i], before.v[i]);
+    for (unsigned i = 0; i < sizeof s.g / sizeof s.g[0]; ++i) {
+      s.g[i].I = scenes::choose(now, s.g[i].I, before.g[i].I);
+      s.g[i].momentum = scenes::choose(now, s.g[i].momentum, before.g[i].momentum);
+      s.g[i].spin = scenes::choose(now, s.g[i].spin, before.g[i].spin);
+    }
   }
 )";
 
@@ -132,15 +145,15 @@ std::string gyroscopes_of(const Mechanism& mechanism, const std::vector<std::str
     weigh += fmt::format("    q[{0}].I = scenes::choose(now, turned<T>(q[{0}], {1}), q[{0}].I);\n", names[b], inverse);
     wind += fmt::format("    wind(s.q[{0}], s.v[{0}], s.g[{1}], {2}, {3});\n", names[b], count, I, inverse);
     carry += fmt::format("    carry(to[{0}], v[{0}], turned<T>(from[{0}], {1}));\n", names[b], I);
-    follow += fmt::format("    follow(s.q[{0}], s.v[{0}], s.g[{1}], {2}, {3}, now);\n", names[b], count++, I, inverse);
+    follow += fmt::format("    follow(s.q[{0}], s.v[{0}], s.g[{1}], {2}, {3});\n", names[b], count++, I, inverse);
   }
   if (mechanism.on_accelerations())
     return "\n  // Inverse inertias at the poses, in the lanes of `now`.\n"
            "  static void weigh(Pose (&q)[bodies], const Mask& now) {\n" +
            weigh + "  }\n";
   return momentum_functions + ("  static void wind(State& s) {\n" + wind + "  }\n") +
-         "  static void follow(State& s, const Mask& now) {\n" + follow +
-         "  }\n  // Velocities at one pose as those of the same angular momentum at another.\n"
+         "  static void follow(State& s) {\n" + follow + follows_in_lanes +
+         "  // Velocities at one pose as those of the same angular momentum at another.\n"
          "  static void carry(const Pose (&from)[bodies], const Pose (&to)[bodies], Velocity (&v)[bodies]) {\n" +
          carry + "  }\n  static void drift(State& s, const Pose (&q)[bodies], const T& h) {\n" + drift +
          "    turn(s.q);\n  }\n";

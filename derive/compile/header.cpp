@@ -55,9 +55,8 @@ class HeaderWriter {
     write_step();
     const auto moving = static_cast<std::size_t>(std::ranges::count_if(mechanism_.bodies, &Body::moves));
     text_ += "};\n\n}  // namespace cdot::scenes\n";
-    return {unrolled(with_arguments(std::move(text_)),
-                     {moving, equations_.rows.size(), moving * (mechanism_.spatial() ? 13 : 6)}),
-            name_, operations_of(equations_, calls_of(mechanism_.method, has())),
+    return {unrolled(with_arguments(std::move(text_)), {moving, equations_.rows.size(), mechanism_.rates()}), name_,
+            operations_of(equations_, calls_of(mechanism_.method, has())),
             state_bytes_of(mechanism_, equations_, has())};
   }
 

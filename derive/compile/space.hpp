@@ -132,6 +132,14 @@ inline void turn_by(Pose& to, const Pose& q, const T& c, const Vector<T>& v) {
   to.e0 = e0, to.e1 = e1, to.e2 = e2, to.e3 = e3;
 }
 
+// The same, by a rotation in its own axes.
+template <class Pose, class T>
+inline void turn_within(Pose& to, const Pose& q, const T& c, const Vector<T>& v) {
+  const T e0 = c * q.e0 - v.x * q.e1 - v.y * q.e2 - v.z * q.e3, e1 = c * q.e1 + v.x * q.e0 - v.y * q.e3 + v.z * q.e2;
+  const T e2 = c * q.e2 + v.y * q.e0 - v.z * q.e1 + v.x * q.e3, e3 = c * q.e3 + v.z * q.e0 - v.x * q.e2 + v.y * q.e1;
+  to.e0 = e0, to.e1 = e1, to.e2 = e2, to.e3 = e3;
+}
+
 // 1 / sqrt(x). Near 1 a step of Newton from 1 is exact to round-off: 1 - d / 2 of x = 1 + d, 3 d^2 / 8 apart.
 template <class T>
 inline T inverse_root(const T& x) {
@@ -166,31 +174,42 @@ inline Vector<T> free_turn(const Vector<T>& e, const T& I, const Vector<T>& W, c
   return b0 * a + a0 * b + cross(a, b);
 }
 
-// The solution d of (I - b x T) d = I r, T = E - versine theta x + (theta x)^2 (1 - sinc) / a^2.
+// Rows of a matrix and a tensor.
 template <class T>
-inline Vector<T> newton_step(const Tensor<T>& I, const Vector<T>& b, const Vector<T>& theta, const T& sinc,
+inline void add(Vector<T>& x, Vector<T>& y, Vector<T>& z, const Vector<T>& moments) {
+  x.x = x.x + moments.x, y.y = y.y + moments.y, z.z = z.z + moments.z;
+}
+template <class T>
+inline void add(Vector<T>& x, Vector<T>& y, Vector<T>& z, const Tensor<T>& S) {
+  x = x + Vector<T>{S.xx, S.xy, S.xz}, y = y + Vector<T>{S.xy, S.yy, S.yz}, z = z + Vector<T>{S.xz, S.yz, S.zz};
+}
+
+// The solution d of (I - b x T) d = I r, T = E - versine theta x + (theta x)^2 (1 - sinc) / a^2.
+template <class Moments, class T>
+inline Vector<T> newton_step(const Moments& I, const Vector<T>& b, const Vector<T>& theta, const T& sinc,
                              const T& versine, const Vector<T>& r) {
   const T square = dot(theta, theta), along = dot(b, theta);
   const auto slight = square < T(0.25);
-  const T last = select(slight, T(0.16666666666666666667) - square * T(0.00833333333333333333),
-                        (T(1) - sinc) / select(slight, T(1), square));
+  T last = T(0.16666666666666666667) - square * T(0.00833333333333333333);
+  if (any(!slight)) last = select(slight, last, (T(1) - sinc) / select(slight, T(1), square));
   const Vector<T> v = b - (last * along) * theta, u = versine * b - last * cross(b, theta);
   const T diagonal = versine * along;
-  const Vector<T> first = Vector<T>{I.xx - diagonal, I.xy - v.z, I.xz + v.y} + u.x * theta;
-  const Vector<T> second = Vector<T>{I.xy + v.z, I.yy - diagonal, I.yz - v.x} + u.y * theta;
-  const Vector<T> third = Vector<T>{I.xz - v.y, I.yz + v.x, I.zz - diagonal} + u.z * theta, right = I * r;
-  const Vector<T> across = cross(second, third);
+  Vector<T> first = u.x * theta - Vector<T>{diagonal, v.z, -v.y};
+  Vector<T> second = u.y * theta - Vector<T>{-v.z, diagonal, v.x};
+  Vector<T> third = u.z * theta - Vector<T>{v.y, -v.x, diagonal};
+  add(first, second, third, I);
+  const Vector<T> right = times(I, r), across = cross(second, third);
   return (T(1) / dot(first, across)) *
          Vector<T>{dot(right, across), dot(right, cross(third, first)), dot(right, cross(first, second))};
 }
 
 template <class T>
-inline Tensor<T> whole(const Vector<T>& moments) {
-  return {moments.x, moments.y, moments.z, T(0), T(0), T(0)};
+inline T trace(const Vector<T>& moments) {
+  return moments.x + moments.y + moments.z;
 }
 template <class T>
-inline Tensor<T> whole(const Tensor<T>& S) {
-  return S;
+inline T trace(const Tensor<T>& S) {
+  return S.xx + S.yy + S.zz;
 }
 
 // The mean spin of any free body during h, in its own axes: theta = h (W + W') / 2 with I W' = exp(-theta) I W, by
@@ -200,9 +219,8 @@ inline Vector<T> mean_spin(const Moments& I, const Moments& inverse, const Vecto
   constexpr double epsilon = sizeof(typename NumberOf<T>::type) == 4 ? 1.1920929e-07 : 2.220446049250313e-16;
   const Vector<T> L = times(I, W), rate = times(inverse, cross(L, W));
   const Vector<T> bend = times(inverse, cross(times(I, rate), W) + cross(L, rate));
-  const Tensor<T> across = whole(inverse);
   const T spin = dot(W, W), fine = T(epsilon * epsilon) * spin;
-  const T bent = T(0.125) * h * h * (across.xx + across.yy + across.zz), curvature = bent * bent * dot(L, L);
+  const T bent = T(0.125) * h * h * trace(inverse), curvature = bent * bent * dot(L, L);
   Vector<T> after = choose(h * h * spin < T(0.25), W + h * (rate + (T(0.5) * h) * bend), W), best = W;
   T smallest = T(1e30);
   auto busy = T(0) < T(1);
@@ -217,7 +235,7 @@ inline Vector<T> mean_spin(const Moments& I, const Moments& inverse, const Vecto
     const auto better = busy && size < smallest, converges = size < T(0.25) * smallest;
     best = choose(better, mean, best), smallest = select(better, size, smallest);
     busy = busy && converges && size > fine;
-    const Vector<T> step = newton_step(whole(I), (T(0.5) * h) * turned, theta, sinc, versine, residual);
+    const Vector<T> step = newton_step(I, (T(0.5) * h) * turned, theta, sinc, versine, residual);
     after = choose(busy, after - step, after);
     const T length = dot(step, step);
     const auto last = busy && curvature * length * length <= fine;

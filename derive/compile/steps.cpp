@@ -8,6 +8,7 @@
 #include "derive/compile/methods/strides.hpp"
 #include "derive/compile/methods/weights.hpp"
 #include "derive/compile/midpoint/implicit.hpp"
+#include "derive/compile/texts.hpp"
 #include "derive/compile/types.hpp"
 #include "runtime/step/runge_kutta_tables.hpp"
 
@@ -17,7 +18,7 @@ namespace {
 std::string closes(const Contents& has) {
   return declares_gained(has) + "    Velocity moves[bodies];\n    close(s, at, T(0.2), moves" + gained(has) + ");\n";
 }
-constexpr const char* begins_series = R"(    s.known = T(0);
+constexpr const char* begins_series = R"(    s.known = T(0), s.share = T(0);
     for (Multipliers& numbers : s.past)
       for (T& of_row : numbers.of) of_row = T(0);
     Velocity moves[bodies];
@@ -83,7 +84,9 @@ constexpr const char* foresees_small_turns = R"(    T most = T(0);
 constexpr const char* euler_corrects_as_foreseen =
     R"(    const T error = close(s, at, T(0.2), is_foreseen, moves, total);
     const auto fits = s.residual <= T(single ? 1e7 * {0} : {0});
-    for (int i = 0; i < rows; ++i) total[i] = select(fits, total[i], T(0));
+    if (any(!fits)) {{
+      for (int i = 0; i < rows; ++i) total[i] = select(fits, total[i], T(0));
+    }}
     remember(s, fits, h * h, total, foreseen);
     // A displacement beyond the motion of the step, or of an error older than it, would add energy.
     const auto keep = (is_foreseen || left <= T(0.1) * error) && T(4) * weighed(s.q, moves) <= h * h * weighed(s.q, s.v);
@@ -107,8 +110,7 @@ constexpr const char* stages_begin = R"(
     for (int i = 0; i < bodies; ++i) k[0].set(i, rate_of(s.q[i], s.v[i]), s.a[i]);
 )";
 
-constexpr const char* stages_end = R"(    for (int i = 0; i < Slope::size; ++i) now.of[i] = {0};
-    for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], h * now.rate(i));
+constexpr const char* stages_end = R"({0}    for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], h * now.rate(i));
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + h * now.acceleration(i);
 {2}    turn(s.q);
     s.time = s.time + h;
@@ -135,26 +137,32 @@ constexpr const char* ends_freely = R"($W$C    fall($ss.q, s.time, s.v, s.a);
     return T(0);
 )";
 
+// Of few numbers, the last slope joins number by number: wide loads would wait for what has just been stored.
 template <class Method>
-std::string combined(const Method& method, int stage) {
-  std::string sum;
+std::string combined(const Method& method, int stage, bool few) {
+  std::string sum, last;
+  int count = 0;
   for (int j = 0; j < std::min(stage, method.stages); ++j) {
     const double weight = method.a[stage][j];
     if (weight == 0) continue;
-    const char* sign = sum.empty() ? (weight < 0 ? "-" : "") : weight < 0 ? " - " : " + ";
-    sum += fmt::format("{}T({}) * k[{}].of[i]", sign, std::abs(weight), j);
+    if (count++ > 0) sum += last;
+    const char* sign = count == 1 ? (weight < 0 ? "-" : "") : weight < 0 ? " - " : " + ";
+    last = fmt::format("{}T({}) * k[{}].of[i]", sign, std::abs(weight), j);
   }
-  return sum;
+  const char* const all = "    for (int i = 0; i < Slope::size; ++i) now.of[i] = {};\n";
+  if (count < 3 || !few) return fmt::format(fmt::runtime(all), sum + last);
+  return fmt::format("    for (int i = 0; i != Slope::size; ++i) now.of[i] = {};\n", sum) +
+         fmt::format(fmt::runtime(all), "now.of[i]" + last);
 }
 
 template <class Method>
-std::string runge_kutta(const Method& method, const char* title, const Contents& has) {
+std::string runge_kutta(const Method& method, const char* title, const Contents& has, bool few) {
   const bool rows = has.rows;
   std::string text = fmt::format(stages_begin, title, method.stages, rows ? "; then C = 0 and J v = -dC/dt" : "",
                                  rows ? "    T forces[rows];\n" : "");
   const char* const held = !has.modes ? "" : has.loads ? "s.hold, s.modes.load, " : "s.hold, ";
   for (int stage = 1; stage < method.stages; ++stage) {
-    text += fmt::format("    for (int i = 0; i < Slope::size; ++i) now.of[i] = {};\n", combined(method, stage));
+    text += combined(method, stage, few);
     text += "    for (int i = 0; i < bodies; ++i) move(at.q[i], s.q[i], h * now.rate(i));\n";
     text += "    for (int i = 0; i < bodies; ++i) v[i] = s.v[i] + h * now.acceleration(i);\n";
     text += fmt::format("    at.time = s.time + T({}) * h;\n", double(method.c[stage]));
@@ -166,7 +174,7 @@ std::string runge_kutta(const Method& method, const char* title, const Contents&
                                     : ends_freely;
   if (has.modes) text.replace(text.find(step_head), step_head.size(), "stride(State& s, const T& h)");
   return text +
-         fmt::format(stages_end, combined(method, method.stages), end,
+         fmt::format(stages_end, combined(method, method.stages, few), end,
                      has.gyroscopes
                          ? "    for (int i = 0; i < bodies; ++i) s.q[i].I = at.q[i].I;  // as J, of the last stage\n"
                          : "") +
@@ -256,7 +264,7 @@ long state_bytes_of(const Mechanism& mechanism, const Equations& equations, cons
   long of_bodies = 0;
   for (const Body& body : mechanism.bodies) of_bodies += numbers_of(mechanism, body, has.pulls());
   const long of_rows = long{has.foresees ? 1 + foreseen_by(has.rattle) : 1} * long(equations.rows.size()) +
-                       long(equations.stored.size()) + (has.closes() ? 1 : 0) + (has.foresees ? 1 : 0) +
+                       long(equations.stored.size()) + (has.closes() ? 1 : 0) + (has.foresees ? 2 : 0) +
                        (has.exerts ? equations.groups : 0) +
                        (has.modes ? 1 + (has.loads ? 7 : 6) * long(mechanism.bounded.size()) : 0) +
                        2 * mechanism.breakable() + (has.events ? 3 * long(mechanism.bounded.size()) : 0);
@@ -303,8 +311,9 @@ std::string step_of(const Mechanism& mechanism, const Contents& has) {
   if (mechanism.method == Method::euler) return euler(mechanism.tolerance, has);
   if (mechanism.method == Method::rattle) return rattle(mechanism.tolerance, has);
   if (mechanism.method == Method::implicit) return implicit(mechanism, has);
-  if (mechanism.method == Method::rk4) return runge_kutta(rk4<double>, "The Runge-Kutta method of order 4", has);
-  return runge_kutta(dop853<double>, "Dormand and Prince's method of order 8", has);
+  const bool few = mechanism.rates() <= few_rates;
+  if (mechanism.method == Method::rk4) return runge_kutta(rk4<double>, "The Runge-Kutta method of order 4", has, few);
+  return runge_kutta(dop853<double>, "Dormand and Prince's method of order 8", has, few);
 }
 
 }  // namespace cdot::compile

@@ -14,6 +14,8 @@ std::string head_of(const Mechanism& mechanism, const std::string& command, bool
 struct Counts {
   std::size_t bodies, rows, rates;  // rates: of all bodies that move, their poses and velocities
 };
+// Loops over the numbers of a slope of a Runge-Kutta method are lines up to so many.
+constexpr std::size_t few_rates = 24;
 // The text with a line for each body, row or rate in place of a line "for (int i = 0; i < bodies; ++i) …;", where there
 // are few. The wide loads of a compiler's vector loop would wait for the stores of single numbers before them.
 std::string unrolled(const std::string& text, const Counts& counts);

@@ -19,52 +19,84 @@ constexpr const char* solves_either = R"(
   }
 )";
 
-// Loops: no numbers that were stored just before wait for them.
+// Loops that compilers make wide: their numbers are read as wide as the last step stored them.
 constexpr const char* foresees = R"(
-  // Multipliers that continue the last ones as a polynomial, in units.
+  // Multipliers that continue the last ones as a polynomial, in units: the sum of their differences.
   static void foresee(const State& s, const T& unit, T (&lambda)[rows]) {{
-    T weight[{0}];
-    weight[0] = s.known;
-{1}    for (int i = 0; i < rows; ++i) lambda[i] = unit * ({2});
+    T sum[rows];
+    const T in_units = unit;
+    if (any(s.known < T({0}.5))) {{
+      for (int i = 0; i < rows; ++i) sum[i] = {1};
+    }} else {{
+      for (int i = 0; i < rows; ++i) sum[i] = {2};
+    }}
+    for (int i = 0; i < rows; ++i) lambda[i] = in_units * sum[i];
+  }}
+  static void append(const T& d_0{4}) {{
+    const T {5};
+    {6};
   }}
   // The ones found instead. Where they were not much better foreseen than by the last ones, a series begins.
   static void remember(State& s, const Mask& fits, const T& unit, const T (&found)[rows], const T (&foreseen)[rows]) {{
-    Multipliers misses, changes, last;
+    T now[rows], misses[rows], changes[rows];
     const T rate = T(1) / unit;
-    for (int i = 0; i < rows; ++i) last.of[i] = rate * found[i];
-    for (int i = 0; i < rows; ++i) misses.of[i] = last.of[i] - rate * foreseen[i];
-    for (int i = 0; i < rows; ++i) changes.of[i] = last.of[i] - s.past[0].of[i];
-    for (int k = {3}; k > 0; --k) s.past[k] = s.past[k - 1];
-    s.past[0] = last;
-    const auto goes_on = fits && (s.known < T(1.5) || T(2) * largest(misses.of) < largest(changes.of));
-    s.known = select(goes_on, select(s.known < T({3}.5), s.known + T(1), s.known), T(1));
+    for (int i = 0; i < rows; ++i) now[i] = rate * found[i];
+    for (int i = 0; i < rows; ++i) misses[i] = now[i] - rate * foreseen[i];
+    for (int i = 0; i < rows; ++i) changes[i] = now[i] - s.past[0].of[i];
+    for (int i = 0; i < rows; ++i) append(now[i]{3});
+    const auto goes_on = fits && (s.known < T(1.5) || T(2) * largest(misses) < largest(changes));
+    s.known = select(goes_on, select(s.known < T({0}.5), s.known + T(1), s.known), T(1));
   }}
 )";
 
 // Rounds on K leave a share of the error, by which J has turned since the start of the step. Where two more of them
-// would leave worst (worst / before)^2 > goal, J' M^-1 J^T with J' of the pose is exact to the size of the move.
-constexpr const char* aiming = R"(      if (round == 1) {{
-        aimed = goes_on && !is_slow &&{} worst * worst * worst > goal * before * before;
-        if (any(aimed)) aim($ss.q, s.time, s.J, B);
+// would leave {2} (worst / {2})^2 > {1}, J' M^-1 J^T with J' of the pose is exact to the size of the move. The first
+// round tells the share; where the last step told that three rounds would not do, it aims.
+constexpr const char* aiming = R"(      if (round < 2) {{
+        const Mask newly = round == 0 ? goes_on && {0} && worst * s.share * s.share * s.share > {1}
+                                      : goes_on && !aimed{3} && worst * worst * worst > {1} * {2} * {2};
+        if (round == 1) s.share = select(goes_on && !aimed, worst / {2}, s.share);
+        if (any(newly) && !any(aimed)) {{
+          aim($ss.q, s.time, s.J, B);
+        }} else if (any(newly)) {{
+          Aim now;
+          aim($ss.q, s.time, s.J, now);
+          T* const numbers = reinterpret_cast<T*>(&B);
+          const T* const others = reinterpret_cast<const T*>(&now);
+          for (unsigned i = 0; i < sizeof B / sizeof(T); ++i) numbers[i] = select(newly, others[i], numbers[i]);
+        }}
+        aimed = aimed || newly;
       }}
-      aimed = aimed && !renews;
 )";
 
 }  // namespace
 
-// As long as the step is the same, multipliers are a smooth series. The binomial coefficients extrapolate its last k
-// numbers by a polynomial: sum over j of (-1)^j (k over j + 1) past[j].
+// As long as the step is the same, multipliers are a smooth series. Its next number, by a polynomial through the last k
+// ones, is the sum of their backward differences of the orders 0 to k - 1.
 std::string foresight(bool rattle) {
   const int count = foreseen_by(rattle);
-  std::string weights, sum = "weight[0] * s.past[0].of[i]";
-  for (int j = 1; j < count; ++j) {
-    weights += fmt::format("    weight[{0}] = T(-1.0 / {2}) * (s.known - T({0})) * weight[{1}];\n", j, j - 1, j + 1);
-    sum += fmt::format(" + weight[{0}] * s.past[{0}].of[i]", j);
+  std::string known, all, differences, stores;
+  for (int k = count; k-- > 0;) {
+    const std::string d = fmt::format("s.past[{}].of[i]", k),
+                      known_d = fmt::format("select(s.known > T({}.5), {}, T(0))", k, d);
+    all = all.empty() ? d : fmt::format("{} + ({})", d, all);
+    known = known.empty() ? known_d : fmt::format("{} + ({})", known_d, known);
   }
-  return solves_either + fmt::format(foresees, count, weights, sum, count - 1);
+  std::string numbers, members;
+  for (int k = 0; k < count; ++k) {
+    numbers += fmt::format(", s.past[{}].of[i]", k), members += fmt::format(", T& past_{}", k);
+    stores += fmt::format("{0}past_{1} = d_{1}", k == 0 ? "" : ", ", k);
+    if (k > 0) differences += fmt::format("{0}d_{1} = d_{2} - past_{2}", k == 1 ? "" : ", ", k, k - 1);
+  }
+  return solves_either + fmt::format(foresees, count - 1, known, all, numbers, members, differences, stores);
 }
 
 // In space the way of the rounds counts for large angles, which are not foreseen: they take those of the World.
-std::string aims(bool spatial) { return fmt::format(aiming, spatial ? " foreseen &&" : ""); }
+std::string aims(bool spatial) {
+  return fmt::format(aiming, "foreseen", "goal", "before", spatial ? " && !is_slow && foreseen" : " && !is_slow") +
+         "      aimed = aimed && !renews;\n";
+}
+
+std::string drift_aims() { return fmt::format(aiming, "by_series", "fine", "last", "") + "      last = worst;\n"; }
 
 }  // namespace cdot::compile

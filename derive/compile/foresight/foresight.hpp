@@ -18,7 +18,7 @@ std::string foresight(bool rattle);
 // Moves the poses as foreseen.
 inline constexpr const char* moves_as_foreseen = R"(    Pose free[bodies];
     for (int i = 0; i < bodies; ++i) free[i] = s.q[i];
-    for (int i = 0; i < bodies; ++i) move(s.q[i], free[i], moves[i]);
+    for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], moves[i]);
     turn(s.q);
     Aim B{};
     Mask aimed = T(1) < T(0);
@@ -32,7 +32,7 @@ inline constexpr const char* takes_back = R"(      const auto astray = goes_on &
         for (int i = 0; i < rows; ++i) total[i] = select(astray, T(0), total[i]);
         turn(s.q);
         before = select(astray, T(1e30), before);
-        foreseen = foreseen && !astray;
+        foreseen = foreseen && !astray, aimed = aimed && !astray;
         --round;
         continue;
       }
@@ -40,5 +40,7 @@ inline constexpr const char* takes_back = R"(      const auto astray = goes_on &
 
 // Aims, where rounds on K would be many.
 std::string aims(bool spatial);
+// The same in the rounds of RATTLE.
+std::string drift_aims();
 
 }  // namespace cdot::compile

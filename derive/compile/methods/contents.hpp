@@ -31,7 +31,7 @@ struct Contents {
 };
 
 inline constexpr const char* evaluates = "    evaluate($ss.q, s.time, s.J);\n";
-inline constexpr const char* follows = "    follow(s, T(0) < T(1));\n";
+inline constexpr const char* follows = "    follow(s);\n";
 
 // The numbers of another State in the lanes of `now`.
 inline constexpr const char* replaces = R"(

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "derive/compile/foresight/foresight.hpp"
 #include "derive/compile/methods/weights.hpp"
 
 namespace cdot::compile {
@@ -93,18 +94,11 @@ constexpr const char* leaves_series =
       if (any(strays)) {
         for (int i = 0; i < rows; ++i) found[i] = select(strays, s.lambda[i], found[i]);
         for (int i = 0; i < bodies; ++i) s.v[i] = choose(strays, before[i] + half * (a[i] + s.pull[i]), s.v[i]);
-        by_series = by_series && !strays, least = select(strays, T(1e30), least), last = select(strays, T(1e30), last);
+        by_series = by_series && !strays, aimed = aimed && !strays;
+        least = select(strays, T(1e30), least), last = select(strays, T(1e30), last);
         --round;
         continue;
       }
-)";
-
-// As in close().
-constexpr const char* drift_aims = R"(      if (round == 1) {
-        aimed = goes_on && worst * worst * worst > fine * last * last;
-        if (any(aimed)) aim($ss.q, s.time, s.J, B);
-      }
-      last = worst;
 )";
 
 constexpr const char* joint_changes =
@@ -246,7 +240,7 @@ std::string closing(double tolerance, const Contents& has) {
   text += has.rows ? "      T worst = largest(C);\n" : "      T worst = largest(over);\n";
   if (has.rows && has.ends) text += "      worst = select(largest(over) > worst, largest(over), worst);\n";
   text += fmt::format(judges, tolerance, has.foresees ? leaves_series : "");
-  if (has.foresees) text += drift_aims;
+  if (has.foresees) text += drift_aims();
   text += has.rows ? fmt::format(joint_changes, has.foresees ? "* (T(1) / h)" : "/ h", has.foresees ? "B, aimed, " : "")
                    : no_changes;
   if (has.ends) text += fmt::format(end_changes, has.rows ? "s.J, " : "", weighs_end_changes(has));

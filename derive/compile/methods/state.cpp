@@ -39,10 +39,13 @@ std::string of_rows(const Mechanism& mechanism, const Contents& has) {
     text += fmt::format("    T lambda[rows];  // {} of the joints\n",
                         mechanism.method == Method::euler ? "impulses before the correction" : "forces");
   if (has.foresees)
-    text += fmt::format("    Multipliers past[{}];  // the last {}\n    T known;  // so many of them form a series\n",
-                        foreseen_by(mechanism.method == Method::rattle),
-                        mechanism.method == Method::rattle ? "forces of first halves"
-                                                           : "corrections' multipliers by the step's square");
+    text += fmt::format(
+        "    Multipliers past[{}];  // the last {}, and their differences\n    T known;  // so many of them form a "
+        "series\n"
+        "    T share;  // of the error, which the first round of Newton's method left last\n",
+        foreseen_by(mechanism.method == Method::rattle),
+        mechanism.method == Method::rattle ? "forces of first halves"
+                                           : "corrections' multipliers by the step's square");
   if (has.bounded)
     text += "    T hold[bounded];  // of the rows with bounds: -1 at the lower one, 1 at the upper one, 0 between\n";
   if (has.bounded && (has.midpoint || has.weighs)) text += "    T force[bounded];  // of these\n";

@@ -2,11 +2,15 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
+
+#include "derive/program/effort.hpp"
 
 namespace cdot::compile {
 namespace {
 
-constexpr int finest = 64, largest = 4096;  // exact numbers: multiples of 1/64 up to 4096
+constexpr int finest = 64, largest = 4096;       // exact numbers: multiples of 1/64 up to 4096
+constexpr std::int64_t most_effort = 4'000'000;  // of a program: a chain of ten links takes 0.3 to 7 million
 
 }  // namespace
 
@@ -17,6 +21,18 @@ int Algebra::value(double number, const std::string& name) {
     return input("p." + name);
   }
   return fixed(number, name);
+}
+
+int Algebra::shared(double number, const std::string& name) {
+  constants_.known.insert(name);
+  if (constants_.inputs.contains(name)) return value(number, name);
+  const double size = std::abs(number), slight = 8 * std::numeric_limits<double>::epsilon() * size;
+  auto first = constants_.sizes.lower_bound(size - slight);
+  if (first == constants_.sizes.end() || first->first > size + slight)
+    first = constants_.sizes.emplace(size, std::pair(name, number)).first;
+  const auto& [of_first, as_first] = first->second;
+  const int op = fixed(as_first, of_first);
+  return (number < 0) == (as_first < 0) ? op : sum({{op}, {-1}});
 }
 
 int Algebra::fixed(double number, const std::string& name) {
@@ -45,6 +61,35 @@ std::optional<double> Algebra::constant(int op) const {
   if (o.kind != OpKind::sum || o.args.size() != 1) return std::nullopt;
   const std::optional<double> inner = constant(o.args[0]);
   return inner ? std::optional(o.coefs[0].value() * *inner) : std::nullopt;
+}
+
+std::pair<int, Rational> Algebra::without_factor(int op) const {
+  const Operation& o = builder_.at(op);
+  const bool is_multiple = o.kind == OpKind::sum && o.args.size() == 1;
+  return is_multiple ? std::pair(o.args[0], o.coefs[0]) : std::pair(op, Rational(1));
+}
+
+std::optional<std::map<std::string, double>> Algebra::linear(int op) const {
+  std::map<std::string, double> coefficients;
+  return add_linear(op, 1, coefficients) ? std::optional(std::move(coefficients)) : std::nullopt;
+}
+
+bool Algebra::add_linear(int op, double factor, std::map<std::string, double>& coefficients) const {
+  const Operation& o = builder_.at(op);
+  if (const std::optional<double> known = constant(op)) return *known == 0;
+  if (o.kind == OpKind::input) return coefficients[o.input] += factor, true;
+  if (o.kind == OpKind::sum) {
+    for (std::size_t i = 0; i < o.args.size(); ++i)
+      if (!add_linear(o.args[i], factor * o.coefs[i].value(), coefficients)) return false;
+    return true;
+  }
+  int varies = -1;
+  for (std::size_t i = 0; o.kind == OpKind::product && i < o.args.size(); ++i) {
+    if (const std::optional<double> known = constant(o.args[i])) factor *= std::pow(*known, o.exponents[i]);
+    else if (varies >= 0 || o.exponents[i] != 1) return false;
+    else varies = o.args[i];
+  }
+  return varies >= 0 && add_linear(varies, factor, coefficients);
 }
 
 double Algebra::at_start(int op) {
@@ -145,8 +190,9 @@ int Algebra::sum(const Summands& terms, const std::string& name) {
     }
   }
   if (reals == 1 && whole.is_zero()) rest.add(last_coef, last);
-  else if (reals > 0) rest.add(1, value(real + whole.value()));
-  else if (!whole.is_zero()) rest.add(1, builder_.number(whole));
+  else if (reals > 0) {
+    if (const double sum = real + whole.value(); sum != 0) rest.add(1, value(sum));
+  } else if (!whole.is_zero()) rest.add(1, builder_.number(whole));
   return builder_.sum(std::move(rest), name);
 }
 
@@ -214,6 +260,16 @@ std::map<std::string, int> Algebra::inlined(const Program& program, const std::f
   std::map<std::string, int> outputs;
   for (const derive::Output& o : program.outputs) outputs[o.name] = to[static_cast<std::size_t>(o.op)];
   return outputs;
+}
+
+Program Algebra::finish() {
+  Program program = builder_.finish();
+  try {
+    derive::Effort effort{most_effort};
+    return derive::simplify(program, effort);
+  } catch (const derive::NumberTooLarge&) {  // of exact numbers that came together
+    return program;
+  }
 }
 
 }  // namespace cdot::compile

@@ -150,6 +150,17 @@ int RowBlocks::momentum(Algebra& algebra, int index, std::size_t column,
   return algebra.sum(terms);
 }
 
+double RowBlocks::weighed(int index, const std::array<double, 3>& x, const std::array<double, 3>& y) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) sum += x[i] * number_of(body(index).inverse_inertia, i, j) * y[j];
+  return sum;
+}
+
+std::string RowBlocks::rotation_name(int index, std::size_t i, std::size_t j) const {
+  return fmt::format("q[{}].{}{}", body_name(index), axes[i], axes[j]);
+}
+
 std::string RowBlocks::stiffened_name(int index, std::size_t i, std::size_t j) const {
   return "W[" + body_name(index) + "]" + (mechanism_.spatial() ? "." + entry_of(i, j) : "");
 }
@@ -169,9 +180,7 @@ RowBlocks RowBlocks::stiffened(Constants& constants) const {
 std::array<int, 3> RowBlocks::gyroscopic_rates(Algebra& algebra, int index) const {
   const Body& b = body(index);
   const std::string& name = body_name(index);
-  const auto A = [&](std::size_t i, std::size_t j) {
-    return algebra.input(fmt::format("q[{}].{}{}", name, axes[i], axes[j]));
-  };
+  const auto A = [&](std::size_t i, std::size_t j) { return algebra.input(rotation_name(index, i, j)); };
   const auto times = [&](const Tensor& tensor, const std::string& letter, const std::array<int, 3>& v) {
     std::array<int, 3> product{};
     for (std::size_t i = 0; i < 3; ++i) {

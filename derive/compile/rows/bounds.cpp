@@ -42,7 +42,7 @@ Program distances_of(const RowBlocks& blocks, Constants& constants) {
     algebra.output(element("after", b), row.distance(of_spec ? blocks.law(effect).bounded[effect.row].after : none));
     algebra.output(element("until", b), row.distance(of_spec ? blocks.law(effect).bounded[effect.row].until : none));
   }
-  return algebra.finish();
+  return algebra.finish_as_kernels();
 }
 
 Program strain_of(const RowBlocks& blocks, Constants& constants) {
@@ -78,7 +78,7 @@ Program guard_of(const RowBlocks& blocks, Constants& constants) {
     algebra.output("B." + element("high", b), guard.high);
     if (blocks.mechanism().has_loads()) row.output_by_load();
   }
-  return algebra.finish();
+  return algebra.finish_as_kernels();
 }
 
 Program resolve_of(const RowBlocks& blocks, Constants& constants) {

@@ -17,18 +17,22 @@ JointRows::JointRows(const RowBlocks& blocks)
     : blocks_(blocks), system_(blocks, joints_of(blocks)), J_(system_.blocks().size()) {}
 
 int JointRows::read(Algebra& algebra, const Stored& stored) {
-  return stored.constant ? algebra.value(*stored.constant) : algebra.input("J." + stored.member);
+  if (stored.constant) return algebra.value(*stored.constant);
+  return algebra.sum({{algebra.input("J." + stored.member)}, {stored.sign}});
 }
 
 Program JointRows::evaluate(Constants& constants, std::vector<std::string>& stored) {
   Algebra algebra(constants);
+  std::map<std::pair<int, double>, Stored> known;  // by operations without their signs
   const auto store = [&](const std::string& member, int op) {
-    const std::optional<double> constant = algebra.constant(op);
-    if (!constant) {
-      algebra.output("J." + member, op), stored.push_back(member);
-      constants.at_start["J." + member] = algebra.at_start(op);
-    }
-    return Stored{constant, member};
+    if (const std::optional<double> constant = algebra.constant(op)) return Stored{constant, {}};
+    const auto [base, factor] = algebra.without_factor(op);
+    const int sign = factor.sign();
+    const auto [same, is_new] = known.try_emplace({base, derive::abs(factor).value()}, Stored{{}, member, sign});
+    if (!is_new) return Stored{{}, same->second.member, sign * same->second.sign};
+    algebra.output("J." + member, op), stored.push_back(member);
+    constants.at_start["J." + member] = algebra.at_start(op);
+    return Stored{{}, member};
   };
   for (std::size_t k = 0; k < J_.size(); ++k) {
     const RowBlock& joint = system_.blocks()[k];

@@ -30,10 +30,11 @@ class JointRows {
   int factor(Algebra& algebra, const std::string& name) const { return read(algebra, factor_.at(name)); }
 
  private:
-  // A number: a constant, or a member of the header's Jacobian.
+  // A number: a constant, or a member of the header's Jacobian, or its negative.
   struct Stored {
     std::optional<double> constant;
     std::string member;
+    int sign = 1;
   };
   static int read(Algebra& algebra, const Stored& stored);
   static int held(Algebra& algebra, const Values& in, int number);

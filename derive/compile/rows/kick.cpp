@@ -260,7 +260,7 @@ Program past_of(const RowBlocks& blocks, Constants& constants) {
     const BoundWriter row(blocks, algebra, b);
     algebra.output(element("past", b), blocks.mechanism().on_accelerations() ? row.guard().off : row.past());
   }
-  return algebra.finish();
+  return algebra.finish_as_kernels();
 }
 
 Program nearest_of(const RowBlocks& blocks, Constants& constants) {
@@ -270,7 +270,7 @@ Program nearest_of(const RowBlocks& blocks, Constants& constants) {
     algebra.output(element("off", b), end.off);
     algebra.output(element("side", b), end.side);
   }
-  return algebra.finish();
+  return algebra.finish_as_kernels();
 }
 
 Program along_of(const RowBlocks& blocks, Constants& constants) {

@@ -1,8 +1,10 @@
 #include "derive/compile/rows/row_blocks.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -159,6 +161,21 @@ int RowBlocks::speed_rate(Algebra& algebra, const RowBlock& block) const {
   return motor.speed_in_time ? in_time(algebra, *motor.speed_in_time, "rate", block.name + "_speed") : algebra.value(0);
 }
 
+// A number of a vector without the round-off by which the scene's poses came to the body's axes.
+double RowBlocks::rounded(const RowBlock& block, std::size_t p) {
+  constexpr double slight = 8 * std::numeric_limits<double>::epsilon(), unit = 1.0 / 64;
+  const auto stem = [&](std::size_t k) {
+    const std::string& field = block.spec->parameters[k];
+    return field.substr(0, field.rfind('_'));
+  };
+  const double number = (*block.parameters)[p], near = unit * std::round(number / unit);
+  double most = 0;
+  for (std::size_t k = 0; k < block.spec->parameters.size(); ++k)
+    if (block.spec->parameters[k].starts_with("p.") && stem(k) == stem(p))
+      most = std::max(most, std::abs((*block.parameters)[k]));
+  return std::abs(number - near) <= slight * most ? near : number;
+}
+
 Values RowBlocks::inputs(Algebra& algebra, const RowBlock& block) const {
   Values in;
   const SpecPrograms& spec = *block.spec;
@@ -168,7 +185,7 @@ Values RowBlocks::inputs(Algebra& algebra, const RowBlock& block) const {
     const std::string name = constant_name(block, field);
     const bool follows = block.in_time && block.in_time->contains(p);
     in[field] =
-        follows ? in_time(algebra, block.in_time->at(p), "value", name) : algebra.value((*block.parameters)[p], name);
+        follows ? in_time(algebra, block.in_time->at(p), "value", name) : algebra.shared(rounded(block, p), name);
   }
   in["pi"] = algebra.value(3.14159265358979323846);
   in["time"] = algebra.input("time");

@@ -78,6 +78,12 @@ class RowBlocks {
   int momentum(Algebra& algebra, int body, std::size_t column, const std::function<int(std::size_t column)>& a) const;
   // An entry of I^-1 in the world's axes; in the plane, of the axis 0.
   int inverse_inertia(Algebra& algebra, int body, std::size_t i, std::size_t j) const;
+  // Its I^-1 is that of the body, turned as the body is.
+  bool turns_inertia(int index) const { return body(index).moves && body(index).inertia_turns && !is_stiffened_; }
+  // x^T I^-1 y, both in its axes.
+  double weighed(int body, const std::array<double, 3>& x, const std::array<double, 3>& y) const;
+  // "q[rod].xy", of the rotation from its axes to the world's.
+  std::string rotation_name(int body, std::size_t i, std::size_t j) const;
   // The same rows on bodies with other inverse inertias, the inputs W.
   RowBlocks stiffened(Constants& constants) const;
   // "W[rod]" or "W[rod].xy"
@@ -98,6 +104,7 @@ class RowBlocks {
   std::string law_of(const Effect& effect) const;
   std::string bond_of(const Bond& bond) const;
   Values call_held(Algebra& algebra, const RowBlock& block, const std::string& function, const Values& in) const;
+  static double rounded(const RowBlock& block, std::size_t parameter);
   void note_coordinate_laws(const derive::SpecsFolder& specs);
   // Of rows whose parameters follow functions of time: dC/dt and gamma, from C and J v at this time.
   Values call_in_time(Algebra& algebra, const RowBlock& block, const std::string& function, Values in) const;

@@ -1,6 +1,7 @@
 #include "derive/compile/rows/row_system.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 #include "derive/compile/rows/components.hpp"
@@ -51,9 +52,76 @@ void RowSystem::add_block(Algebra& algebra, std::size_t block, const Values& in)
   const RowBlock& rows = blocks_[block];
   const std::size_t first = first_[block];
   const Values K = rows_.call(algebra, rows, "effective_mass", in);
-  for (std::size_t r = 0; r < rows.rows->count(); ++r)
-    for (std::size_t c = 0; c <= r; ++c) K_[first + r][first + c] = K.at(triangle_element("K", r, c));
   dense_[block] = rows_.call(algebra, rows, "dense", in);
+  note_pulls(algebra, block);
+  for (std::size_t r = 0; r < rows.rows->count(); ++r)
+    for (std::size_t c = 0; c <= r; ++c)
+      K_[first + r][first + c] = has_pulls(block, r) && has_pulls(block, c) ? entry(algebra, block, r, block, c)
+                                                                            : K.at(triangle_element("K", r, c));
+}
+
+void RowSystem::note_pulls(const Algebra& algebra, std::size_t block) {
+  for (std::size_t row = 0; row < blocks_[block].rows->count(); ++row)
+    for (std::size_t a = 0; a < blocks_[block].bodies->size(); ++a)
+      if (rows_.turns_inertia((*blocks_[block].bodies)[a]))
+        if (const std::optional<Pull> pull = pull_of(algebra, block, row, a)) pulls_[{block, row, a}] = *pull;
+}
+
+// r x u in the world's axes has the numbers sum of e_cik r_i u_k, with r_i = sum of A_ij p_j.
+std::optional<RowSystem::Pull> RowSystem::pull_of(const Algebra& algebra, std::size_t block, std::size_t row,
+                                                  std::size_t body) const {
+  Pull pull{{}, {}, 1};
+  double turns[3][3][3];
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::optional<double> u = algebra.constant(dense_[block].at(element(element("D", row), 6 * body + c)));
+    if (!u || !of_rotation(algebra, block, row, body, c, turns[c])) return std::nullopt;
+    pull.along[c] = *u;
+  }
+  const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const auto most = std::ranges::max_element(pull.along, smaller);
+  if (*most == 0) return std::nullopt;
+  const auto k = static_cast<std::size_t>(most - pull.along.begin());
+  for (std::size_t j = 0; j < 3; ++j) pull.point[j] = turns[(k + 1) % 3][(k + 2) % 3][j] / *most;
+  const double slight = 1e-14 * std::abs(*most * *std::ranges::max_element(pull.point, smaller));
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) {
+        const double side = c == i ? 0 : (i == (c + 1) % 3 ? 1 : -1) * pull.along[3 - c - i];
+        if (std::abs(turns[c][i][j] - side * pull.point[j]) > slight) return std::nullopt;
+      }
+  for (std::array<double, 3>* v : {&pull.point, &pull.along}) {
+    const auto first = std::ranges::find_if(*v, [](double x) { return x != 0; });
+    if (first == v->end() || *first > 0) continue;
+    for (double& x : *v) x = -x;
+    pull.sign = -pull.sign;
+  }
+  return pull;
+}
+
+// A number of D as the sum of m_ij A_ij of that body; false if it is none.
+bool RowSystem::of_rotation(const Algebra& algebra, std::size_t block, std::size_t row, std::size_t body,
+                            std::size_t axis, double (&m)[3][3]) const {
+  const auto sum = algebra.linear(dense_[block].at(element(element("D", row), 6 * body + 3 + axis)));
+  if (!sum) return false;
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      const auto of_A = sum->find(rows_.rotation_name((*blocks_[block].bodies)[body], i, j));
+      m[i][j] = of_A == sum->end() ? 0 : of_A->second;
+      found += of_A != sum->end();
+    }
+  return found == sum->size();
+}
+
+// In every body of the block whose inertia turns, if there is one.
+bool RowSystem::has_pulls(std::size_t block, std::size_t row) const {
+  bool some = false;
+  for (std::size_t a = 0; a < blocks_[block].bodies->size(); ++a) {
+    if (!rows_.turns_inertia((*blocks_[block].bodies)[a])) continue;
+    if (!pulls_.contains({block, row, a})) return false;
+    some = true;
+  }
+  return some;
 }
 
 void RowSystem::couple(Algebra& algebra) {
@@ -62,26 +130,57 @@ void RowSystem::couple(Algebra& algebra) {
       if (share_a_body(i, k)) couple(algebra, i, k);
 }
 
-// K_ik = sum over columns of J_i M^-1 J_k.
 void RowSystem::couple(Algebra& algebra, std::size_t i, std::size_t k) {
+  for (std::size_t r = 0; r < blocks_[i].rows->count(); ++r)
+    for (std::size_t s = 0; s < blocks_[k].rows->count(); ++s)
+      if (const int K = entry(algebra, i, r, k, s); !algebra.is_zero(K)) K_[first_[i] + r][first_[k] + s] = K;
+}
+
+// K_ik = sum over columns of J_i M^-1 J_k.
+int RowSystem::entry(Algebra& algebra, std::size_t i, std::size_t r, std::size_t k, std::size_t s) const {
   const std::vector<int>&of_i = *blocks_[i].bodies, &of_k = *blocks_[k].bodies;
   const std::size_t columns = rows_.mechanism().columns();
-  for (std::size_t r = 0; r < blocks_[i].rows->count(); ++r) {
-    for (std::size_t s = 0; s < blocks_[k].rows->count(); ++s) {
-      Summands terms;
-      for (std::size_t a = 0; a < of_i.size(); ++a)
-        for (std::size_t b = 0; b < of_k.size(); ++b)
-          for (std::size_t c = 0; of_i[a] == of_k[b] && c < columns; ++c) {
-            const auto y = [&](std::size_t column) {
-              return dense_[k].at(element(element("D", s), columns * b + column));
-            };
-            const int x = dense_[i].at(element(element("D", r), columns * a + c));
-            terms.add(1, algebra.times(x, rows_.weighted(algebra, of_i[a], c, y)));
-          }
-      const int K = algebra.sum(terms);
-      if (!algebra.is_zero(K)) K_[first_[i] + r][first_[k] + s] = K;
+  Summands terms;
+  for (std::size_t a = 0; a < of_i.size(); ++a)
+    for (std::size_t b = 0; b < of_k.size(); ++b) {
+      if (of_i[a] != of_k[b]) continue;
+      const auto x = pulls_.find({i, r, a}), y = pulls_.find({k, s, b});
+      const bool by_pulls = x != pulls_.end() && y != pulls_.end();
+      if (by_pulls) terms.add(x->second.sign * y->second.sign, turning(algebra, of_i[a], x->second, y->second));
+      for (std::size_t c = 0; c < (by_pulls ? rows_.mechanism().linear() : columns); ++c) {
+        const auto of_y = [&](std::size_t column) {
+          return dense_[k].at(element(element("D", s), columns * b + column));
+        };
+        const int of_x = dense_[i].at(element(element("D", r), columns * a + c));
+        terms.add(1, algebra.times(of_x, rows_.weighted(algebra, of_i[a], c, of_y)));
+      }
     }
+  return algebra.sum(terms);
+}
+
+// u^T A G A^T u', G = [p x]^T I^-1 [p' x] of the body, which does not turn.
+int RowSystem::turning(Algebra& algebra, int body, const Pull& x, const Pull& y) const {
+  if (x.point == y.point && x.along < y.along) return turning(algebra, body, y, x);  // the same bits
+  const auto along = [&](const Pull& pull, std::size_t k) {
+    Summands terms;
+    for (std::size_t i = 0; i < 3; ++i)
+      terms.add(1, algebra.times(algebra.value(pull.along[i]), algebra.input(rows_.rotation_name(body, i, k))));
+    return algebra.sum(terms);
+  };
+  // p x e_k
+  const auto side = [](const Pull& pull, std::size_t k) {
+    std::array<double, 3> v{};
+    v[(k + 1) % 3] = pull.point[(k + 2) % 3], v[(k + 2) % 3] = -pull.point[(k + 1) % 3];
+    return v;
+  };
+  Summands sum;
+  for (std::size_t k = 0; k < 3; ++k) {
+    Summands of_k;
+    for (std::size_t l = 0; l < 3; ++l)
+      of_k.add(1, algebra.times(algebra.value(rows_.weighed(body, side(x, k), side(y, l))), along(y, l)));
+    sum.add(1, algebra.times(along(x, k), algebra.sum(of_k)));
   }
+  return algebra.sum(sum);
 }
 
 void RowSystem::soften(Algebra& algebra, std::size_t row, int by) {

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,8 +53,22 @@ class RowSystem {
   bool has_redundant_rows() const { return std::ranges::find(redundant_, true) != redundant_.end(); }
 
  private:
+  // A row that pulls along the constant u at a point p of a body: +-A (p x A^T u) is its part that turns, with p in the
+  // axes of the body. The first numbers of p and u are positive.
+  struct Pull {
+    std::array<double, 3> point, along;
+    int sign;
+  };
+
   void order_rows();
   bool share_a_body(std::size_t i, std::size_t k) const;
+  void note_pulls(const Algebra& algebra, std::size_t block);
+  std::optional<Pull> pull_of(const Algebra& algebra, std::size_t block, std::size_t row, std::size_t body) const;
+  bool of_rotation(const Algebra& algebra, std::size_t block, std::size_t row, std::size_t body, std::size_t axis,
+                   double (&m)[3][3]) const;
+  bool has_pulls(std::size_t block, std::size_t row) const;
+  int turning(Algebra& algebra, int body, const Pull& x, const Pull& y) const;
+  int entry(Algebra& algebra, std::size_t i, std::size_t r, std::size_t k, std::size_t s) const;
   void couple(Algebra& algebra, std::size_t i, std::size_t k);
   int inverse_second_pivot(Algebra& algebra, std::size_t j, int d, int U, int S) const;
   int K(std::size_t i, std::size_t j) const { return K_[std::max(i, j)][std::min(i, j)]; }
@@ -60,11 +77,12 @@ class RowSystem {
   std::vector<RowBlock> blocks_;
   std::vector<std::size_t> first_;
   std::vector<std::string> names_;
-  std::vector<std::size_t> order_;    // of elimination
-  std::vector<Values> dense_;         // by block
-  std::vector<std::vector<int>> K_;   // lower triangle; -1: zero
-  std::vector<std::vector<bool>> L_;  // which entries are not zero
-  std::vector<bool> redundant_;       // at the start, by places in the order
+  std::vector<std::size_t> order_;                    // of elimination
+  std::vector<Values> dense_;                         // by block
+  std::map<std::array<std::size_t, 3>, Pull> pulls_;  // by block, row and body of the block
+  std::vector<std::vector<int>> K_;                   // lower triangle; -1: zero
+  std::vector<std::vector<bool>> L_;                  // which entries are not zero
+  std::vector<bool> redundant_;                       // at the start, by places in the order
 };
 
 }  // namespace cdot::compile

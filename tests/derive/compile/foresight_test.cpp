@@ -1,5 +1,6 @@
 // The corrections of compiled steps are foreseen by those before: fewer rounds, where the step is steady and where it
 // is not the same trajectory.
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include "chain_10_euler.hpp"
@@ -51,6 +52,33 @@ TEST(Foresight, StepsTakeFewRounds) {
   EXPECT_LT(products<chain_10_euler>(), 1900);
   EXPECT_LT(products<chain_10_rattle>(), 1930);
   EXPECT_LT(products<chain_10_space_rattle>(), 10500);
+}
+
+// Multipliers that are polynomials of degree 4 in the number of the step, in units that change.
+double polynomial(int row, int step) {
+  const double t = 0.3 * step - 1;
+  return 1 + row + t * (2 - t * (0.5 * row + t * (1 - 0.25 * t)));
+}
+
+TEST(Foresight, ContinuesPolynomials) {
+  using Chain = chain_10_euler<double>;
+  Chain::State state;
+  Chain::reset(state);
+  state.known = 0;
+  double found[Chain::rows], foreseen[Chain::rows];
+  for (int step = 0; step < 12; ++step) {
+    const double unit = step < 9 ? 0.5 : 0.25;
+    Chain::foresee(state, unit, foreseen);
+    for (int row = 0; row < Chain::rows; ++row) {
+      found[row] = unit * polynomial(row, step);
+      const double now = unit * polynomial(row, step), last = unit * polynomial(row, step - 1);
+      const double by_order[] = {0, last, 2 * last - unit * polynomial(row, step - 2)};
+      if (step == 3 || step == 4) continue;
+      EXPECT_NEAR(foreseen[row], step < 3 ? by_order[step] : now, 2e-13) << "step " << step;
+    }
+    Chain::remember(state, true, unit, found, foreseen);
+    EXPECT_EQ(state.known, std::min(step + 1, 5));
+  }
 }
 
 // Steps of other lengths begin other series.

@@ -76,18 +76,28 @@ TEST(CompiledLanes, OfFloatsAreAsAlone) {
   lanes_are_as_alone<slider_crank_rk4, float, 4>();
 }
 
-// Of an angle in both halves of the turn, from one beside it and from one too far for the series.
+// Of an angle in both halves of the turn, from one beside it and from one too far for the series. A pose that is
+// shifted by that much has the same.
 TEST(CompiledArithmetic, TurnsBesideAnotherAngle) {
   struct Pose {
-    double angle, c, s;
+    double x, y, angle, c, s;
+  };
+  struct Move {
+    double x, y, w;
   };
   for (int k = -400; k < 400; ++k) {
     const double from = 0.37 * k, to = from + 0.001 * k;
-    const Pose start{from, std::cos(from), std::sin(from)};
-    Pose end{to, 0, 0};
-    sin_cos_beside(start, end);
-    EXPECT_NEAR(end.s, std::sin(to), 4e-16) << from << ", " << to;
-    EXPECT_NEAR(end.c, std::cos(to), 4e-16) << from << ", " << to;
+    double s = 0, c = 0;
+    sin_cos_beside<false>(std::sin(from), std::cos(from), to - from, to, s, c);
+    EXPECT_NEAR(s, std::sin(to), 4e-16) << from << ", " << to;
+    EXPECT_NEAR(c, std::cos(to), 4e-16) << from << ", " << to;
+    sin_cos_beside<true>(std::sin(from), std::cos(from), to - from, to, s, c);
+    EXPECT_NEAR(s, std::sin(to), 4e-16) << from << ", " << to;
+    EXPECT_NEAR(c, std::cos(to), 4e-16) << from << ", " << to;
+    Pose pose{1, 2, from, std::cos(from), std::sin(from)};
+    shift(pose, Move{0.5, 0.25, to - from});
+    EXPECT_TRUE(pose.x == 1.5 && pose.y == 2.25 && pose.s == s && pose.c == c) << from << ", " << to;
+    EXPECT_DOUBLE_EQ(pose.angle, to);
   }
 }
 

@@ -118,4 +118,25 @@ TEST(CompiledSpace, RotationsAreExactToRoundOff) {
       EXPECT_NEAR(cdot::scenes::inverse_root(length) * std::sqrt(length), 1, 4e-16) << length;
 }
 
+// With d = M^-1 J^T K^-1 b, J d = b, whatever the way to K.
+template <class Compiled>
+void solves_for_its_rows(double within) {
+  typename Compiled::State state;
+  Compiled::reset(state);
+  for (int k = 0; k < 150; ++k) Compiled::step(state);
+  double b[Compiled::rows], lambda[Compiled::rows], rate[Compiled::rows];
+  for (int row = 0; row < Compiled::rows; ++row) b[row] = 0.2 + 0.1 * ((7 * row) % 11);
+  typename Compiled::Velocity d[Compiled::bodies];
+  Compiled::solve(state.q, state.J, b, lambda, d);
+  Compiled::rates(state.J, d, rate);
+  for (int row = 0; row < Compiled::rows; ++row) EXPECT_NEAR(rate[row], b[row], within) << "row " << row;
+}
+
+TEST(CompiledSpace, SolvesForItsRows) {
+  solves_for_its_rows<cdot::scenes::chain_10_space_euler<double>>(1e-12);
+  solves_for_its_rows<cdot::scenes::chain_10_space_rk4<double>>(1e-12);
+  solves_for_its_rows<cdot::scenes::double_pendulum_space_euler<double>>(1e-13);
+  solves_for_its_rows<cdot::scenes::three_bodies_space_rk4<double>>(1e-13);
+}
+
 }  // namespace
