@@ -110,8 +110,8 @@ class EquationWriter {
 
   bool foresees() const {
     const Method method = mechanism_.method;
-    return mechanism_.foresees && mechanism_.bonds.empty() && (method == Method::euler || method == Method::rattle) &&
-           !out_.has_ends && !out_.finishes && !out_.exerts;
+    return mechanism_.foresees && mechanism_.bonds.empty() && !mechanism_.has_loads() &&
+           (method == Method::euler || method == Method::rattle) && !out_.has_ends && !out_.finishes && !out_.exerts;
   }
 
   void write_middle() {
@@ -195,8 +195,8 @@ class EquationWriter {
     if (mechanism_.on_accelerations() && !mechanism_.bounded.empty()) {
       out_.has_ends = true;  // held rows, whose ends and rates a projection keeps
       out_.guard = guard_of(blocks_, out_.constants), out_.resolve = resolve_of(blocks_, out_.constants);
-      if (mechanism_.has_loads()) out_.carry = carry_of(blocks_, joints_, out_.constants);
     }
+    if (mechanism_.has_loads()) out_.carry = carry_of(blocks_, joints_, out_.constants);
     if (!out_.has_ends) return;
     out_.reach = reach_of(blocks_, joints_, out_.constants);
     out_.past = past_of(blocks_, out_.constants);

@@ -11,6 +11,7 @@
 #include "derive/compile/identifiers.hpp"
 #include "derive/compile/methods/bonds.hpp"
 #include "derive/compile/methods/events.hpp"
+#include "derive/compile/methods/loads.hpp"
 #include "derive/compile/methods/modes.hpp"
 #include "derive/compile/methods/rates.hpp"
 #include "derive/compile/methods/rattle.hpp"
@@ -159,8 +160,7 @@ class HeaderWriter {
   }
 
   void write_start() {
-    line();
-    line("  // The start of the scene.");
+    line("\n  // The start of the scene.");
     line("  static void reset(State& s) {");
     line("    s.time = T(0);");
     text_ += BodyTexts{mechanism_, names_.bodies}.start();
@@ -227,6 +227,7 @@ class HeaderWriter {
                          ", const T& h, Velocity (&next)[bodies]" + (has().rows ? ", T (&lambda)[rows]" : "") +
                          (has().bounded ? ", Bounded& B)" : ")"),
                      equations_.kick);
+    if (has().loads && has().weighs) write_carry(at), text_ += settle_loads_of(has());
     if (has().ends) write_ends(at, moving);
     if (has().events) {
       write_function("Distances from the events of rows with bounds",
@@ -346,6 +347,10 @@ class HeaderWriter {
     else text_ += slope;
   }
 
+  void write_carry(const std::string& at) {
+    write_function("The forces with which bounds grow", "carry(" + at + arguments_of_carry(has()), equations_.carry);
+  }
+
   void write_modes(const std::string& at, const std::string& moving) {
     write_function("Ends, rates and bounds of rows with bounds", "guard(" + at + ", " + moving + ", Guards& B)",
                    equations_.guard);
@@ -355,11 +360,7 @@ class HeaderWriter {
             ", const Velocity (&a)[bodies], const T (&force)[bounded], const T& h, T (&of_value)[bounded], T "
             "(&of_rate)[bounded], T (&of_force)[bounded])",
         equations_.resolve);
-    if (has().loads)
-      write_function("The forces with which bounds grow",
-                     "carry(" + at + (has().rows ? ", const Jacobian& J, const T (&lambda)[rows]" : "") +
-                         ", const T (&force)[bounded], T (&load)[bounded])",
-                     equations_.carry);
+    if (has().loads) write_carry(at);
     text_ += modes_of(has(), equations_.waits);
   }
 

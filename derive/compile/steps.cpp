@@ -51,8 +51,7 @@ constexpr const char* euler_by_kick = R"(    Velocity next[bodies];
 constexpr const char* kick_with_bounds = R"(    Bounded B;
     T mu[bounded];
     kick({0}, B);
-    settle(B, s.hold, mu);
-    for (int e = 0; e < bounded; ++e) {{
+{2}    for (int e = 0; e < bounded; ++e) {{
       for (int i = 0; i < bodies; ++i) next[i] = next[i] + mu[e] * B.g[e][i];
     }}
 {1})";
@@ -186,9 +185,9 @@ std::string euler(double tolerance, const Contents& has) {
   if (has.effects || has.bounded) {
     const std::string arguments =
         has.rows ? "$ss.q, s.time, s.v, s.J, h, next, s.lambda" : "$ss.q, s.time, s.v, h, next";
-    text +=
-        fmt::format(euler_by_kick, has.bounded ? fmt::format(kick_with_bounds, arguments, has.rows ? adds_impulses : "")
-                                               : fmt::format("    kick({});\n", arguments));
+    text += fmt::format(euler_by_kick, has.bounded ? fmt::format(kick_with_bounds, arguments,
+                                                                 has.rows ? adds_impulses : "", settles_impulses(has))
+                                                   : fmt::format("    kick({});\n", arguments));
   } else {
     text += has.rows ? euler_by_joints : "    push($qs.v, h);\n";
   }
@@ -268,10 +267,12 @@ long state_bytes_of(const Mechanism& mechanism, const Equations& equations, cons
                        (has.exerts ? equations.groups : 0) +
                        (has.modes ? 1 + (has.loads ? 7 : 6) * long(mechanism.bounded.size()) : 0) +
                        2 * mechanism.breakable() + (has.events ? 3 * long(mechanism.bounded.size()) : 0);
-  return long{sizeof(double)} * (1 + of_bodies + of_rows + long(mechanism.bounded.size()) +
-                                 (has.midpoint || has.weighs ? long(mechanism.bounded.size()) : 0) +
-                                 (has.repeats() ? long(mechanism.bounded.size()) : 0) +
-                                 long(equations.constants.inputs.size()) + 2 * mechanism.angles);
+  return long{sizeof(double)} *
+         (1 + of_bodies + of_rows + long(mechanism.bounded.size()) +
+          (has.midpoint || has.weighs ? long(mechanism.bounded.size()) : 0) +
+          (has.weighs && has.loads ? 2 * long(mechanism.bounded.size()) + long(equations.rows.size()) : 0) +
+          (has.repeats() ? long(mechanism.bounded.size()) : 0) + long(equations.constants.inputs.size()) +
+          2 * mechanism.angles);
 }
 
 std::string begin_of(Method method, const Contents& has) {
@@ -285,6 +286,10 @@ std::string begin_of(Method method, const Contents& has) {
   if (has.modes) text += "    s.modes = {};\n";
   if (has.events) text += "    latch(s);\n";
   if (has.rows) text += "    for (int i = 0; i < rows; ++i) s.lambda[i] = T(0);\n";
+  if (has.weighs && has.loads) {
+    text += "    for (T& of_row : s.load) of_row = T(0);\n    for (T& of_row : s.before) of_row = T(0);\n";
+    if (has.rows) text += "    for (T& of_row : s.drawn) of_row = T(0);\n";
+  }
   if (has.repeats()) text += "    for (T& of_row : s.repeats) of_row = T(0);\n";
   if (has.modes) text += "    hold_passed_ends(s);\n";
   if (has.closes()) text += "    s.residual = T(1e30);\n";

@@ -24,7 +24,7 @@ struct Contents {
   bool foresees = false;  // the multipliers of the next projection, by those of the last steps
   bool projects() const { return rows || modes; }               // velocities
   bool repeats() const { return weighs && exerts && bounded; }  // forces of rows that prescribe a rate
-  bool weighs_joints() const { return weighs && bonds && rows; }
+  bool weighs_joints() const { return weighs && (bonds || loads) && rows; }
   bool closes() const { return rows || ends; }
   bool stiffens() const { return midpoint && (rows || bounded); }  // by tension
   bool pulls() const { return rattle && (rows || bounded); }       // a State has its joints' accelerations

@@ -46,7 +46,7 @@ constexpr const char* settles = R"(
   // yields. The bounds are then those of these loads. lambda: of the joints without these forces. True in lanes that
   // jam: no finite force lets the rows slip on.
   template <class Solve>
-  static Mask settle_loads($dconst Pose (&q)[bodies], const T& time, {0}Bounded& B, T (&force)[bounded],
+  static Mask settle_loads($dconst Pose (&q)[bodies], const T& time, {0}{2}Bounded& B, T (&force)[bounded],
                            T (&load)[bounded], const Solve& solve) {{
     const Bounded plain = B;
     Search search;
@@ -69,19 +69,34 @@ constexpr const char* settles = R"(
   }}
 )";
 
+// With the corrections of the last step, which turn the velocities: `before`, and of joints `drawn`.
+constexpr const char* carries_with_corrections = R"(      T whole[bounded];
+      for (int i = 0; i < bounded; ++i) whole[i] = force[i] + before[i];
+)";
+
 constexpr const char* carries_of_joints = R"(      T all[rows];
-      for (int i = 0; i < rows; ++i) all[i] = lambda[i];
-      for (int e = 0; e < bounded; ++e) {
+      for (int i = 0; i < rows; ++i) all[i] = lambda[i]{0};
+      for (int e = 0; e < bounded; ++e) {{
         for (int i = 0; i < rows; ++i) all[i] = all[i] + force[e] * B.l[e][i];
-      }
-      carry($pq, time, J, all, force, found);
+      }}
+      carry($pq, time, J, all, {1}, found);
 )";
 
 }  // namespace
 
+std::string arguments_of_carry(const Contents& has) {
+  return std::string(has.rows ? ", const Jacobian& J, const T (&lambda)[rows]" : "") +
+         ", const T (&force)[bounded], T (&load)[bounded])";
+}
+
 std::string settle_loads_of(const Contents& has) {
+  const std::string force = has.weighs ? "whole" : "force";
+  const std::string carries = has.rows ? fmt::format(carries_of_joints, has.weighs ? " + drawn[i]" : "", force)
+                                       : fmt::format("      carry($pq, time, {}, found);\n", force);
+  const std::string corrections =
+      std::string(has.rows ? "const T (&drawn)[rows], " : "") + "const T (&before)[bounded], ";
   return fmt::format(settles, has.rows ? "const Jacobian& J, const T (&lambda)[rows], " : "",
-                     has.rows ? carries_of_joints : "      carry($pq, time, force, found);\n");
+                     (has.weighs ? carries_with_corrections : "") + carries, has.weighs ? corrections : "");
 }
 
 }  // namespace cdot::compile

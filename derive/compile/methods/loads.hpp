@@ -7,6 +7,8 @@
 
 namespace cdot::compile {
 
+// Of carry(), after its poses.
+std::string arguments_of_carry(const Contents& has);
 std::string settle_loads_of(const Contents& has);
 
 }  // namespace cdot::compile

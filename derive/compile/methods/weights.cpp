@@ -25,8 +25,10 @@ constexpr const char* project_weighs = R"(
 )";
 
 // The whole impulses are loads.
-constexpr const char* euler_weighs_rows = R"(    T carried[rows], projected[rows];
+constexpr const char* euler_projects = R"(    T projected[rows];
     project(s, projected);
+)";
+constexpr const char* euler_weighs_rows = R"(    T carried[rows];
     for (int i = 0; i < rows; ++i) carried[i] = (s.lambda[i] - projected[i] + select(keep, gained[i] / h, T(0))) / h;
 )";
 constexpr const char* euler_weighs_bounded = R"(    for (int i = 0; i < bounded; ++i) s.force[i] = mu[i] / h;
@@ -63,6 +65,19 @@ constexpr const char* start_repeats = R"(    for (int e = 0; e < bounded; ++e) {
     }
 )";
 
+// Corrections turn the velocities, so they count in the loads of the next step.
+constexpr const char* keeps_before = "    for (int i = 0; i < bounded; ++i) s.before[i] = {};\n";
+constexpr const char* keeps_drawn =
+    "    for (int i = 0; i < rows; ++i) s.drawn[i] = (select(keep, gained[i] / h, T(0)) - projected[i]) / h;\n";
+
+constexpr const char* settles_euler = R"(    T before[bounded];
+    for (int i = 0; i < bounded; ++i) before[i] = h * s.before[i];
+{0}    settle_loads($ss.q, s.time, {1}before, B, mu, s.load, [&](T (&now)[bounded]) {{ settle(B, s.hold, now); }});
+)";
+constexpr const char* settles_euler_joints = R"(    T drawn[rows];
+    for (int i = 0; i < rows; ++i) drawn[i] = h * s.drawn[i];
+)";
+
 std::string snaps_with_loads(const Contents& has) {
   if (!has.bonds) return {};
   return std::string("    snap(s") + (has.rows ? ", carried" : "") + (has.bounded ? ", s.force" : "") + ");\n";
@@ -95,9 +110,19 @@ std::string gains_of_ends(const Contents& has) {
 
 std::string project_with_impulses() { return project_weighs; }
 
+std::string settles_impulses(const Contents& has) {
+  if (!has.loads) return "    settle(B, s.hold, mu);\n";
+  return fmt::format(settles_euler, has.rows ? settles_euler_joints : "", has.rows ? "s.J, s.lambda, drawn, " : "");
+}
+
 std::string euler_weighs(const Contents& has) {
-  std::string text = has.weighs_joints() ? euler_weighs_rows : has.rows ? "    project(s);\n" : "";
+  std::string text = has.weighs_joints() ? euler_projects : has.rows ? "    project(s);\n" : "";
+  if (has.rows && has.bonds) text += euler_weighs_rows;
   if (has.bounded) text += has.ends ? euler_weighs_ends : euler_weighs_bounded;
+  if (has.loads) {
+    text += fmt::format(keeps_before, has.ends ? "select(keep, gained_by_ends[i] / h, T(0)) / h" : "T(0)");
+    if (has.rows) text += keeps_drawn;
+  }
   return text + snaps_with_loads(has);
 }
 

@@ -18,7 +18,8 @@ std::string gains_of_ends(const Contents& has);
 // The head of project(), which tells the impulses.
 std::string project_with_impulses();
 
-// The end of Euler's step.
+// The impulses of rows with bounds in Euler's step, and its end.
+std::string settles_impulses(const Contents& has);
 std::string euler_weighs(const Contents& has);
 
 // By RATTLE: the first half, its ends, those of a half that fails, rows with bounds at the end, the end of a step, and

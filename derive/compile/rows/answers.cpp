@@ -85,6 +85,7 @@ void BoundedSystem::output_bounds(const Values& next, int h, bool halved) {
     softness.push_back(kick.softness);
     output_row(b, algebra_.sum({{rows_[b].along(next), rows_[b].drift(), kick.bias}, {-1, -1, -1}}),
                halved && prescribes_rate(blocks_, b) ? half_of(kick) : kick);
+    if (blocks_.mechanism().has_loads()) rows_[b].output_by_load();
   }
   output_S(softness);
 }

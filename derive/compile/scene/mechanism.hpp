@@ -132,7 +132,8 @@ struct Mechanism {
   bool has_events_by_force() const { return std::ranges::any_of(bounded, &Effect::by_own_force); }
   // By these methods the impulses of corrections count as loads.
   bool weighs() const {
-    return (!bonds.empty() || has_events_by_force()) && (method == Method::euler || method == Method::rattle);
+    return (!bonds.empty() || has_events_by_force() || has_loads()) &&
+           (method == Method::euler || method == Method::rattle);
   }
   bool has_loads() const { return std::ranges::any_of(bounded, &Effect::is_loaded); }
   // True if the inertia of a body turns with it.

@@ -69,9 +69,9 @@ TEST(CompiledLoads, LanesAreAsAlone) {
 }
 
 TEST(CompiledLoads, OtherMethodsRefuseThem) {
-  const cdot::ShellResult refused = cdot::compile(scenes + "rough_ball.toml --integrator euler");
+  const cdot::ShellResult refused = cdot::compile(scenes + "rough_ball.toml --integrator rattle");
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.text.find("error: floor: cdot compile does not know floor: bounds that grow with a load by euler"),
+  EXPECT_NE(refused.text.find("error: floor: cdot compile does not know floor: bounds that grow with a load by rattle"),
             std::string::npos)
       << refused.text;
 }

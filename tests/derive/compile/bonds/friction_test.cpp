@@ -1,0 +1,50 @@
+// Friction that grows with what a contact or a joint carries, by Euler's steps: compiled scenes move as the World does.
+#include <gtest/gtest.h>
+
+#include "dry_arm_euler.hpp"
+#include "hanger_euler.hpp"
+#include "jamming_rod_euler.hpp"
+#include "rough_ball_euler.hpp"
+#include "rough_pins_euler.hpp"
+#include "rough_rail_euler.hpp"
+#include "sledge_euler.hpp"
+#include "tests/derive/compile/beside_world.hpp"
+
+namespace {
+
+using cdot::Integrator;
+using namespace cdot::scenes;
+
+template <class Scene>
+void runs(const std::string& file, double step = 0.001) {
+  cdot::runs_as_the_world<Scene>(file, Integrator::euler, 1e-11, 1, step);
+}
+
+const std::string scenes = "tests/derive/compile/scenes/";
+
+// Corrections of a step count in the loads of the next one: in long steps they are large.
+TEST(CompiledFriction, SlipsByImpulsesAsInTheWorld) {
+  runs<dry_arm_euler<double>>(scenes + "dry_arm.toml");
+  runs<dry_arm_euler<double>>(scenes + "dry_arm.toml", 1.0 / 60);
+  runs<rough_ball_euler<double>>(scenes + "rough_ball.toml");
+  runs<rough_pins_euler<double>>(scenes + "rough_pins.toml");
+  runs<rough_pins_euler<double>>(scenes + "rough_pins.toml", 1.0 / 60);
+  runs<rough_rail_euler<double>>(scenes + "rough_rail.toml");
+  runs<hanger_euler<double>>("tests/derive/compile/bonds/hanger.toml");
+  runs<hanger_euler<double>>("tests/derive/compile/bonds/hanger.toml", 1.0 / 60);
+  runs<sledge_euler<double>>(scenes + "sledge.toml");
+}
+
+TEST(CompiledFriction, JamsByImpulsesAsInTheWorld) {
+  runs<jamming_rod_euler<double>>("tests/hard_cases/jamming_rod/planar.toml");
+  runs<jamming_rod_euler<double>>("tests/hard_cases/jamming_rod/planar.toml", 1.0 / 60);
+}
+
+TEST(CompiledFriction, ASnapshotKeepsLoads) { cdot::snapshot_keeps<rough_pins_euler<double>>(0.001); }
+
+TEST(CompiledFriction, LanesAreAsAlone) {
+  cdot::lanes_are_as_alone<rough_pins_euler>();
+  cdot::lanes_are_as_alone<dry_arm_euler, float>();
+}
+
+}  // namespace
