@@ -17,6 +17,32 @@ std::string text_of(const Tensor& I, double unit) {
 }
 std::string moments(const Tensor& I) { return text_of(I, 1); }
 
+// Bodies of one inertia are of one kind, whose functions know it.
+class Kinds {
+ public:
+  std::string of(const Body& body) {
+    const std::pair<const char*, std::string> parts[] = {{"I", moments(body.inertia)},
+                                                         {"inverse", moments(body.inverse_inertia)}};
+    std::string functions;
+    for (const auto& [name, text] : parts)
+      functions += fmt::format("      static {} {}() {{ return {}; }}\n", text.substr(0, text.find('{')), name, text);
+    const auto known = std::ranges::find(kinds_, functions);
+    const auto place = static_cast<std::size_t>(known - kinds_.begin());
+    if (known == kinds_.end()) kinds_.push_back(functions);
+    return fmt::format("typename Kinds::Kind_{}", place);
+  }
+
+  std::string text() const {
+    std::string text = "\n  // Moments of inertia in the axes of bodies, and their inverses.\n  struct Kinds {\n";
+    for (std::size_t k = 0; k < kinds_.size(); ++k)
+      text += fmt::format("    struct Kind_{} {{\n{}    }};\n", k, kinds_[k]);
+    return text + "  };\n";
+  }
+
+ private:
+  std::vector<std::string> kinds_;
+};
+
 // The axis about which the body is symmetric, as mean_spin() of the runtime finds it; -1: none.
 int symmetry_axis(const Tensor& I) {
   const double slight = 8 * 2.220446049250313e-16 * (I[0] + I[1] + I[2]);
@@ -74,20 +100,20 @@ constexpr const char* mean_functions = R"(
 
 constexpr const char* momentum_functions = R"(
   // Keeps I w of a body that moved.
-  template <class Moments>
-  static void follow(Pose& q, Velocity& v, Gyroscope& g, const Moments& I, const Moments& inverse) {
+  template <class Kind>
+  static void follow(Pose& q, Velocity& v, Gyroscope& g) {
     g.momentum = g.momentum + g.I * (Vector<T>{v.wx, v.wy, v.wz} - g.spin);
-    q.I = turned<T>(q, inverse), g.I = turned<T>(q, I), g.spin = q.I * g.momentum;
+    q.I = turned<T>(q, Kind::inverse()), g.I = turned<T>(q, Kind::I()), g.spin = q.I * g.momentum;
     v.wx = g.spin.x, v.wy = g.spin.y, v.wz = g.spin.z;
   }
   static void carry(const Pose& q, Velocity& v, const Tensor<T>& I) {
     const Vector<T> w = q.I * (I * Vector<T>{v.wx, v.wy, v.wz});
     v.wx = w.x, v.wy = w.y, v.wz = w.z;
   }
-  template <class Moments>
-  static void wind(Pose& q, const Velocity& v, Gyroscope& g, const Moments& I, const Moments& inverse) {
+  template <class Kind>
+  static void wind(Pose& q, const Velocity& v, Gyroscope& g) {
     g.spin = {v.wx, v.wy, v.wz};
-    q.I = turned<T>(q, inverse), g.I = turned<T>(q, I), g.momentum = g.I * g.spin;
+    q.I = turned<T>(q, Kind::inverse()), g.I = turned<T>(q, Kind::I()), g.momentum = g.I * g.spin;
   }
   // The pose after h by the mean spin: of a body that is symmetric about e, and of any other.
   static void spin(Pose& to, const Pose& q, const Velocity& v, const Vector<T>& e, const T& across, const Vector<T>& I,
@@ -104,6 +130,15 @@ constexpr const char* momentum_functions = R"(
     const Vector<T> half = half_turn(h * mean_spin(I, inverse, to_body(q, Vector<T>{v.wx, v.wy, v.wz}), h), c);
     turn_within(to, q, c, half);
     to.x = q.x + h * v.x, to.y = q.y + h * v.y, to.z = q.z + h * v.z;
+  }
+)";
+
+constexpr const char* weighs_in_lanes = R"(  }
+  static void weigh(Pose (&q)[bodies], const Mask& now) {
+    Tensor<T> before[bodies];
+    for (int i = 0; i < bodies; ++i) before[i] = q[i].I;
+    weigh(q);
+    for (int i = 0; i < bodies; ++i) q[i].I = scenes::choose(now, q[i].I, before[i]);
   }
 )";
 
@@ -135,23 +170,24 @@ std::string pose_argument(const Mechanism& mechanism) {
 std::string gyroscopes_of(const Mechanism& mechanism, const std::vector<std::string>& names) {
   if (!mechanism.has_gyroscopes()) return {};
   std::string weigh, wind, follow, drift, carry;
+  Kinds kinds;
   int count = 0;
   for (std::size_t b = 0; b < names.size(); ++b) {
     const Body& body = mechanism.bodies[b];
     if (!body.moves) continue;
     drift += drifted(body, names[b]);
     if (!body.inertia_turns) continue;
+    const std::string kind = kinds.of(body);
     const std::string inverse = moments(body.inverse_inertia), I = moments(body.inertia);
-    weigh += fmt::format("    q[{0}].I = scenes::choose(now, turned<T>(q[{0}], {1}), q[{0}].I);\n", names[b], inverse);
-    wind += fmt::format("    wind(s.q[{0}], s.v[{0}], s.g[{1}], {2}, {3});\n", names[b], count, I, inverse);
+    weigh += fmt::format("    q[{0}].I = turned<T>(q[{0}], {1});\n", names[b], inverse);
+    wind += fmt::format("    wind<{2}>(s.q[{0}], s.v[{0}], s.g[{1}]);\n", names[b], count, kind);
     carry += fmt::format("    carry(to[{0}], v[{0}], turned<T>(from[{0}], {1}));\n", names[b], I);
-    follow += fmt::format("    follow(s.q[{0}], s.v[{0}], s.g[{1}], {2}, {3});\n", names[b], count++, I, inverse);
+    follow += fmt::format("    follow<{2}>(s.q[{0}], s.v[{0}], s.g[{1}]);\n", names[b], count++, kind);
   }
   if (mechanism.on_accelerations())
-    return "\n  // Inverse inertias at the poses, in the lanes of `now`.\n"
-           "  static void weigh(Pose (&q)[bodies], const Mask& now) {\n" +
-           weigh + "  }\n";
-  return momentum_functions + ("  static void wind(State& s) {\n" + wind + "  }\n") +
+    return "\n  // Inverse inertias at the poses.\n  static void weigh(Pose (&q)[bodies]) {\n" + weigh +
+           weighs_in_lanes;
+  return kinds.text() + momentum_functions + ("  static void wind(State& s) {\n" + wind + "  }\n") +
          "  static void follow(State& s) {\n" + follow + follows_in_lanes +
          "  // Velocities at one pose as those of the same angular momentum at another.\n"
          "  static void carry(const Pose (&from)[bodies], const Pose (&to)[bodies], Velocity (&v)[bodies]) {\n" +

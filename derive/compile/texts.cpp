@@ -78,8 +78,8 @@ std::string with_arguments(std::string text, const Arguments& given) {
       {"$g", poses},
       {"$q", turns ? "s.q, " : ""},
       {"$t", turns ? "q, " : ""},
-      {"$w", turns ? "    weigh(at.q, T(0) < T(1));\n" : ""},
-      {"$W", turns ? "    weigh(s.q, T(0) < T(1));\n" : ""}};
+      {"$w", turns ? "    weigh(at.q);\n" : ""},
+      {"$W", turns ? "    weigh(s.q);\n" : ""}};
   for (const auto& [mark, argument] : marks)
     for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos;) text.replace(at, mark.size(), argument);
   return text;
