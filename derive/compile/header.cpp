@@ -84,7 +84,8 @@ class HeaderWriter {
             .bonds = !mechanism_.bonds.empty(),
             .weighs = mechanism_.weighs(),
             .drags = std::ranges::any_of(mechanism_.bodies, &Body::drags),
-            .foresees = !equations_.apply.outputs.empty()};
+            .foresees = !equations_.apply.outputs.empty(),
+            .collocated = mechanism_.method == Method::radau5 ? mechanism_.components() : 0};
   }
   bool has_effects() const { return has().effects || has().bounded; }
   bool has_inputs() const { return !equations_.constants.inputs.empty(); }
@@ -366,7 +367,7 @@ class HeaderWriter {
 
   void write_step() {
     std::string step = step_of(mechanism_, has());
-    if (breaks(mechanism_) || has().modes || has().midpoint) text_ += replaces;
+    if (breaks(mechanism_) || has().replaces()) text_ += replaces;
     if (breaks(mechanism_)) {
       step.replace(step.find(step_head), step_head.size(), "advance(State& s, const T& h)");
       step += step_in_parts(mechanism_.method, has());

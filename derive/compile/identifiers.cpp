@@ -24,7 +24,10 @@ std::set<std::string> taken_names() {
       "has_one_end is_equation is_endless of_value of_rate of_force latch events Events distances after until "
       "go rescue improve stiffen weigh_effects farthest moved_energy hardly_moves drag "
       "advance pass tension stiffened inverse_of positive_part effect_rows Inertia W power before middle mean "
-      "mean_of find_mean_spins missed side given end guess load from bonds Bonds snap strain choose_once latches");
+      "mean_of find_mean_spins missed side given end guess load from bonds Bonds snap strain choose_once latches "
+      "Complex Differences Newton LU freedom unknowns place_of reciprocal set_zero factor turn_back turn_on numbers_of "
+      "solve_shifted differentiate slopes_of largest_change find_increments collocate end re im shift by_pose "
+      "by_velocity body_of begins ends widest begin_of end_of set_difference take_difference");
   std::set<std::string> names;
   for (std::string word; words >> word;) names.insert(word);
   return names;

@@ -64,7 +64,7 @@ void add_options(Line& line, Options& options) {
   line.add("-o,--output", &options.output, "File to write; - is standard output").shown_as("FILE");
   line.add("--integrator", &options.wishes.integrator,
            "Method of the step; without it that of the scene, or rk4 if the scene names none")
-      .one_of({"euler", "implicit", "rattle", "rk4", "dop853"});
+      .one_of({"euler", "implicit", "rattle", "rk4", "dop853", "radau5"});
   line.add("--step", &options.wishes.step, "Its usual length [s]; without it that of the scene, or 0.001").positive();
   line.add("--input", &options.wishes.inputs,
            "A number that a run may change, as hinge.angle.motor.speed: a member of State::p. Several are separated by "

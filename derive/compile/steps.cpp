@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "derive/compile/collocation/radau.hpp"
 #include "derive/compile/foresight/foresight.hpp"
-#include "derive/compile/methods/modes.hpp"
 #include "derive/compile/methods/rattle.hpp"
-#include "derive/compile/methods/strides.hpp"
+#include "derive/compile/methods/runge_kutta.hpp"
 #include "derive/compile/methods/weights.hpp"
 #include "derive/compile/midpoint/implicit.hpp"
 #include "derive/compile/texts.hpp"
 #include "derive/compile/types.hpp"
-#include "runtime/step/runge_kutta_tables.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -99,87 +98,6 @@ constexpr const char* euler_corrects = R"({0}    Velocity moves[bodies];
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + select(keep, T(1) / h, T(0)) * moves[i];
 )";
 
-constexpr const char* stages_begin = R"(
-  // {0}, on accelerations{2}. The end's accelerations begin the next step.
-  static T step(State& s, T h = T(default_step)) {{
-    Slope k[{1}], now;
-    Evaluated at;
-    Velocity v[bodies];
-{3}    for (int i = 0; i < bodies; ++i) at.q[i] = s.q[i];
-    for (int i = 0; i < bodies; ++i) k[0].set(i, rate_of(s.q[i], s.v[i]), s.a[i]);
-)";
-
-constexpr const char* stages_end = R"({0}    for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], h * now.rate(i));
-    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + h * now.acceleration(i);
-{2}    turn(s.q);
-    s.time = s.time + h;
-{1}  }}
-)";
-
-constexpr const char* ends_on_joints = R"(    Velocity moves[bodies];
-    close(s, at, T(0.5), moves);
-$W$C    evaluate($ss.q, s.time, s.J);
-    project(s);
-    accelerate($ss.q, s.time, s.v, s.J, s.lambda, s.a);
-    return s.residual;
-)";
-
-constexpr const char* ends_in_modes = R"(    Velocity moves[bodies];
-    close(s, at, T(0.5), moves);
-$W$C{0}    project(s);
-    pull($ss.q, s.time, s.v, {1});
-    find_margins(s);
-    return s.residual;
-)";
-
-constexpr const char* ends_freely = R"($W$C    fall($ss.q, s.time, s.v, s.a);
-    return T(0);
-)";
-
-// Of few numbers, the last slope joins number by number: wide loads would wait for what has just been stored.
-template <class Method>
-std::string combined(const Method& method, int stage, bool few) {
-  std::string sum, last;
-  int count = 0;
-  for (int j = 0; j < std::min(stage, method.stages); ++j) {
-    const double weight = method.a[stage][j];
-    if (weight == 0) continue;
-    if (count++ > 0) sum += last;
-    const char* sign = count == 1 ? (weight < 0 ? "-" : "") : weight < 0 ? " - " : " + ";
-    last = fmt::format("{}T({}) * k[{}].of[i]", sign, std::abs(weight), j);
-  }
-  const char* const all = "    for (int i = 0; i < Slope::size; ++i) now.of[i] = {};\n";
-  if (count < 3 || !few) return fmt::format(fmt::runtime(all), sum + last);
-  return fmt::format("    for (int i = 0; i != Slope::size; ++i) now.of[i] = {};\n", sum) +
-         fmt::format(fmt::runtime(all), "now.of[i]" + last);
-}
-
-template <class Method>
-std::string runge_kutta(const Method& method, const char* title, const Contents& has, bool few) {
-  const bool rows = has.rows;
-  std::string text = fmt::format(stages_begin, title, method.stages, rows ? "; then C = 0 and J v = -dC/dt" : "",
-                                 rows ? "    T forces[rows];\n" : "");
-  const char* const held = !has.modes ? "" : has.loads ? "s.hold, s.modes.load, " : "s.hold, ";
-  for (int stage = 1; stage < method.stages; ++stage) {
-    text += combined(method, stage, few);
-    text += "    for (int i = 0; i < bodies; ++i) move(at.q[i], s.q[i], h * now.rate(i));\n";
-    text += "    for (int i = 0; i < bodies; ++i) v[i] = s.v[i] + h * now.acceleration(i);\n";
-    text += fmt::format("    at.time = s.time + T({}) * h;\n", double(method.c[stage]));
-    text += has.spatial ? "    turn(at.q);\n" : "    turn(at.q, s.q);\n";
-    text += fmt::format("    slope($sat, v, {}{}k[{}]);\n", rows ? "s.J, forces, " : "", held, stage);
-  }
-  const std::string end = has.modes ? fmt::format(ends_in_modes, rows ? evaluates : "", arguments_of_pull(has))
-                          : rows    ? ends_on_joints
-                                    : ends_freely;
-  if (has.modes) text.replace(text.find(step_head), step_head.size(), "stride(State& s, const T& h)");
-  return text +
-         fmt::format(stages_end, combined(method, method.stages, few), end,
-                     has.gyroscopes
-                         ? "    for (int i = 0; i < bodies; ++i) s.q[i].I = at.q[i].I;  // as J, of the last stage\n"
-                         : "") +
-         (has.modes ? step_by_events(has) : "");
-}
-
 std::string euler(double tolerance, const Contents& has) {
   std::string text = euler_begins;
   if (has.effects || has.bounded) {
@@ -212,8 +130,6 @@ std::string euler(double tolerance, const Contents& has) {
   return text + fmt::format("    return {};\n  }}\n", has.closes() ? "s.residual" : "T(0)");
 }
 
-constexpr int stages_of(Method method) { return method == Method::rk4 ? rk4<double>.stages : dop853<double>.stages; }
-
 }  // namespace
 
 Calls calls_of(Method method, const Contents& has) {
@@ -237,6 +153,13 @@ Calls calls_of(Method method, const Contents& has) {
     if (has.finishes) calls.finish = 1, --calls.solve;
     return calls;
   }
+  if (has.collocated > 0) {
+    const int columns = static_cast<int>(has.collocated), stages = 3;
+    calls.evaluate += columns + stages;
+    calls.fall = calls.accelerate = 2 * columns + stages + 1;
+    calls.newton = operations_of_collocation(has.collocated);
+    return calls;
+  }
   const int stages = stages_of(method);
   calls.evaluate += stages - 1;
   calls.fall = calls.accelerate = stages;
@@ -254,7 +177,7 @@ long operations_of(const Equations& e, const Calls& calls) {
                                                      {calls.finish, &e.finish},       {1, &e.weigh},
                                                      {calls.improve, &e.stiffen},     {calls.guard, &e.guard},
                                                      {calls.reach, &e.reach},         {calls.improve, &e.improve}};
-  long sum = 0;
+  long sum = calls.newton;
   for (const auto& [times, program] : programs) sum += long{times} * derive::count(*program).total();
   return sum;
 }
@@ -276,7 +199,7 @@ long state_bytes_of(const Mechanism& mechanism, const Equations& equations, cons
 }
 
 std::string begin_of(Method method, const Contents& has) {
-  const bool accelerates = method == Method::rk4 || method == Method::dop853;
+  const bool accelerates = works_on_accelerations(method);
   std::string text =
       "\n  // Makes a State whole after its poses, velocities or time were set.\n  static void begin(State& s) {\n"
       "    turn(s.q);\n";
@@ -316,9 +239,8 @@ std::string step_of(const Mechanism& mechanism, const Contents& has) {
   if (mechanism.method == Method::euler) return euler(mechanism.tolerance, has);
   if (mechanism.method == Method::rattle) return rattle(mechanism.tolerance, has);
   if (mechanism.method == Method::implicit) return implicit(mechanism, has);
-  const bool few = mechanism.rates() <= few_rates;
-  if (mechanism.method == Method::rk4) return runge_kutta(rk4<double>, "The Runge-Kutta method of order 4", has, few);
-  return runge_kutta(dop853<double>, "Dormand and Prince's method of order 8", has, few);
+  if (mechanism.method == Method::radau5) return radau(mechanism, has);
+  return runge_kutta(mechanism.method, has, mechanism.rates() <= few_rates);
 }
 
 }  // namespace cdot::compile

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "derive/compile/corrections.hpp"
 #include "derive/compile/equations.hpp"
@@ -16,15 +15,13 @@ struct Calls {
   int distances = 0, guard = 0, reach = 0;
   int dampen = 0, notice = 0, look = 0, finish = 0;  // by RATTLE and the midpoint rule
   int improve = 0;                                   // by the midpoint rule
+  long newton = 0;                                   // by Radau IIA: operations of its linear systems
 };
 Calls calls_of(Method method, const Contents& has);
 // Operations of a step.
 long operations_of(const Equations& equations, const Calls& calls);
 // Of a State of double.
 long state_bytes_of(const Mechanism& mechanism, const Equations& equations, const Contents& has);
-
-// Of the function that steps a State.
-inline constexpr std::string_view step_head = "step(State& s, T h = T(default_step))";
 
 std::string begin_of(Method method, const Contents& has);
 std::string step_of(const Mechanism& mechanism, const Contents& has);

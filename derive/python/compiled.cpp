@@ -35,7 +35,7 @@ class Compiled {
     if (variants < 1) throw py::value_error(fmt::format("variants must be >= 1, but is {}", variants));
     if (lanes != 4 && lanes != 8 && lanes != 16)
       throw py::value_error(fmt::format("lanes must be 4, 8 or 16, but is {}", lanes));
-    const std::vector<std::string> known = {"euler", "rattle", "rk4", "dop853"};
+    const std::vector<std::string> known = names_of(integrators);
     if (std::ranges::find(known, integrator) == known.end())
       throw py::value_error(
           fmt::format("integrator must be one of {}, but is `{}`", fmt::join(known, ", "), integrator));

@@ -87,6 +87,7 @@ const std::vector<std::string> rooms = {
     "derive/compile/foresight", // rounds of Newton that begin close to the end
     "derive/compile/methods",  // its steps as text
     "derive/compile/midpoint", // the implicit midpoint rule, in programs and text
+    "derive/compile/collocation", // Radau IIA as text
     "derive/compile",      // a scene to a header of its own
     "derive/play",         // the playground: its engine and its page
     "derive/play/server",  // the program that serves or writes it

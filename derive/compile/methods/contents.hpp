@@ -1,7 +1,9 @@
 // The parts of a mechanism, and lines of a step that methods share, as text.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <string_view>
 
 namespace cdot::compile {
 
@@ -15,20 +17,25 @@ struct Contents {
   // By RATTLE: effects act by their rates at the start; rates at the end are looked for; the end solves for more than
   // the joints, and so does the start of a run.
   bool rattle = false, midpoint = false, dampens = false, looks = false, finishes = false, exerts = false;
-  bool carries = false;   // by RATTLE, forces at the end read the spin of a body whose inertia turns
-  bool modes = false;     // of rows with bounds by Runge-Kutta methods
-  bool loads = false;     // bounds of these that grow with loads
-  bool bonds = false;     // some joint may break
-  bool weighs = false;    // by Euler's steps or RATTLE: the impulses of corrections count as loads
-  bool drags = false;     // some body has drag
-  bool foresees = false;  // the multipliers of the next projection, by those of the last steps
+  bool carries = false;        // by RATTLE, forces at the end read the spin of a body whose inertia turns
+  bool modes = false;          // of rows with bounds by Runge-Kutta methods
+  bool loads = false;          // bounds of these that grow with loads
+  bool bonds = false;          // some joint may break
+  bool weighs = false;         // by Euler's steps or RATTLE: the impulses of corrections count as loads
+  bool drags = false;          // some body has drag
+  bool foresees = false;       // the multipliers of the next projection, by those of the last steps
+  std::size_t collocated = 0;  // by Radau IIA: components of velocities
   bool projects() const { return rows || modes; }               // velocities
   bool repeats() const { return weighs && exerts && bounded; }  // forces of rows that prescribe a rate
   bool weighs_joints() const { return weighs && (bonds || loads) && rows; }
   bool closes() const { return rows || ends; }
-  bool stiffens() const { return midpoint && (rows || bounded); }  // by tension
-  bool pulls() const { return rattle && (rows || bounded); }       // a State has its joints' accelerations
+  bool stiffens() const { return midpoint && (rows || bounded); }        // by tension
+  bool replaces() const { return modes || midpoint || collocated > 0; }  // some lanes of a State
+  bool pulls() const { return rattle && (rows || bounded); }             // a State has its joints' accelerations
 };
+
+// Of the function that steps a State.
+inline constexpr std::string_view step_head = "step(State& s, T h = T(default_step))";
 
 inline constexpr const char* evaluates = "    evaluate($ss.q, s.time, s.J);\n";
 inline constexpr const char* follows = "    follow(s);\n";

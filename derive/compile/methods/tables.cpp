@@ -129,7 +129,7 @@ std::string tables_of(const Mechanism& mechanism) {
 
 std::string step_in_parts(Method method, const Contents& has) {
   std::string text = parts_begin;
-  const bool accelerates = (method == Method::rk4 || method == Method::dop853) && !has.modes;
+  const bool accelerates = works_on_accelerations(method) && !has.modes;
   if (method != Method::euler && has.rows) text += "    evaluate($safter.q, after.time, after.J);\n";
   if (method != Method::euler && has.rows && !has.modes) text += "    project(after);\n";
   if (has.modes) text += "    after.modes.known = T(0);\n";

@@ -70,25 +70,6 @@ void refuse_parts(const Scene& scene) {
   refusals.throw_any();
 }
 
-constexpr struct {
-  Integrator integrator;
-  Method method;
-} methods[] = {{Integrator::euler, Method::euler},
-               {Integrator::implicit, Method::implicit},
-               {Integrator::rattle, Method::rattle},
-               {Integrator::rk4, Method::rk4},
-               {Integrator::dop853, Method::dop853}};
-
-Method method_of(const Scene& scene) {
-  for (const auto& [integrator, method] : methods)
-    if (scene.settings.integrator == integrator) return method;
-  Refusals refusals(scene);
-  refusals.add({}, fmt::format("cdot compile knows no integrator {}", row_of(scene.settings.integrator).name),
-               "give --integrator euler, implicit, rattle, rk4 or dop853");
-  refusals.throw_any();
-  return {};
-}
-
 // A scene that chooses its method by an accuracy compiles to rk4.
 void settle_method(Scene& scene, const Wishes& wishes) {
   if (!wishes.integrator.empty())
@@ -226,6 +207,18 @@ void refuse_rates_beside_bounds(const Scene& scene, const Mechanism& mechanism) 
   refusals.throw_any();
 }
 
+// Radau IIA: Newton's dense matrices stay on the stack.
+void refuse_large(const Scene& scene, const Mechanism& mechanism) {
+  constexpr std::size_t most = 128;
+  if (mechanism.components() <= most) return;
+  Refusals refusals(scene);
+  refusals.add({},
+               fmt::format("a step compiled by radau5 solves for all velocities at once: for {} components, at most {}",
+                           mechanism.components(), most),
+               "give another --integrator, or leave it to cdot-run");
+  refusals.throw_any();
+}
+
 void note_own_specs(Mechanism& mechanism) {
   const auto note = [&](const std::string& type) {
     if (const std::string file = file_of_own_type(type); !file.empty()) mechanism.own_specs[type] = file;
@@ -251,6 +244,7 @@ void add_parts(const Scene& scene, Mechanism& mechanism) {
     if (!world.joint_type(i).is_effect && !is_rope(world.joint_type(i)) &&
         !scene.joints[static_cast<std::size_t>(i)].definition.soft)
       add_joint(scene, world, i, mechanism);
+  if (mechanism.method == Method::radau5) refuse_large(scene, mechanism);
   add_effects(scene, world, mechanism);
   read_bonds(scene, world, mechanism);
   refuse_rates_beside_bounds(scene, mechanism);
@@ -267,7 +261,7 @@ Mechanism read_mechanism(const std::string& file, const Wishes& wishes) {
   mechanism.file = file, mechanism.title = scene.title;
   mechanism.dimension = scene.dimension == Dimension::planar ? 2 : 3;
   mechanism.method_name = row_of(scene.settings.integrator).name;
-  mechanism.method = method_of(scene);
+  mechanism.method = scene.settings.integrator;
   mechanism.step = scene.step;
   mechanism.size = size_of(scene);
   mechanism.tolerance = tolerance_of(mechanism.size);

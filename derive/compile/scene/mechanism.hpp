@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <cdot/integrators.hpp>
+
 namespace cdot::compile {
 
 using Tensor = std::array<double, 6>;  // xx, yy, zz, xy, xz, yz
@@ -96,7 +98,7 @@ struct Bond {
   std::vector<double> numbers{};  // Parameters<T> of the spec
 };
 
-enum class Method { euler, implicit, rattle, rk4, dop853 };
+using Method = Integrator;
 
 struct Mechanism {
   std::string file, title, method_name;
@@ -124,7 +126,7 @@ struct Mechanism {
   }
   bool spatial() const { return dimension == 3; }
   // True for a Runge-Kutta method; the others step velocities by impulses.
-  bool on_accelerations() const { return method == Method::rk4 || method == Method::dop853; }
+  bool on_accelerations() const { return works_on_accelerations(method); }
   int breakable() const { return bonds.empty() ? 0 : bonds.back().holds + 1; }  // joints that may break
   bool has_rates() const {
     return std::ranges::any_of(joints, [](const Joint& joint) { return std::ranges::count(joint.is_rate, true) > 0; });
@@ -141,6 +143,9 @@ struct Mechanism {
   bool keeps_momenta() const { return has_gyroscopes() && !on_accelerations(); }  // of such bodies
   std::size_t linear() const { return static_cast<std::size_t>(dimension); }      // columns before the angular ones
   std::size_t columns() const { return spatial() ? 6 : 3; }
+  std::size_t components() const {  // of all velocities
+    return columns() * static_cast<std::size_t>(std::ranges::count_if(bodies, &Body::moves));
+  }
   std::string column(std::size_t c) const {
     constexpr const char *plane[] = {"x", "y", "w"}, *space[] = {"x", "y", "z", "wx", "wy", "wz"};
     return spatial() ? space[c] : plane[c];

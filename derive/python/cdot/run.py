@@ -43,7 +43,8 @@ def compile(scene: Union[_cdot.Scene, str], variants: int = 1, *, integrator: st
     A variant in each SIMD lane, and packs of them on all cores. They begin alike; set_states() and set() make them
     differ. batch() steps them.
 
-    integrator  euler, implicit, rattle, rk4 or dop853, with fixed steps; `cdot compile --help` lists what each can have
+    integrator  euler, implicit, rattle, rk4, dop853 or radau5, with fixed steps; specs/scenes/README.md lists what each
+                can have
     inputs      numbers that may differ and change, as "crank.angle.motor.speed"
     lanes       4, 8 or 16 variants at once
 

@@ -71,8 +71,8 @@ class Compiled(unittest.TestCase):
         np.testing.assert_array_equal(out, batch.states())
 
     def test_mistakes_are_told(self):
-        with self.assertRaisesRegex(ValueError, "integrator must be one of euler, rattle, rk4, dop853, but is `radau5`"):
-            cdot.compile("four_bar", integrator="radau5")
+        with self.assertRaisesRegex(ValueError, "integrator must be one of euler, .*, but is `heun`"):
+            cdot.compile("four_bar", integrator="heun")
         with self.assertRaisesRegex(cdot.Error, "no number of this scene is called no_number"):
             cdot.compile("four_bar", inputs=["no.number"])
         with self.assertRaisesRegex(cdot.Error, "text.toml is no file. Fix: write the scene into one"):

@@ -1,0 +1,114 @@
+#include "derive/compile/methods/runge_kutta.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "derive/compile/methods/modes.hpp"
+#include "derive/compile/methods/strides.hpp"
+#include "runtime/step/runge_kutta_tables.hpp"
+
+namespace cdot::compile {
+namespace {
+
+constexpr const char* stages_begin = R"(
+  // {0}, on accelerations{2}. The end's accelerations begin the next step.
+  static T {4} {{
+    Slope k[{1}], now;
+    Evaluated at;
+    Velocity v[bodies];
+{3}    for (int i = 0; i < bodies; ++i) at.q[i] = s.q[i];
+    for (int i = 0; i < bodies; ++i) k[0].set(i, rate_of(s.q[i], s.v[i]), s.a[i]);
+)";
+
+constexpr const char* stages_end = R"({0}    for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], h * now.rate(i));
+    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + h * now.acceleration(i);
+{1}  }}
+)";
+
+constexpr const char* end_begins = R"(    turn(s.q);
+    s.time = s.time + h;
+)";
+
+constexpr const char* ends_on_joints = R"(    Velocity moves[bodies];
+    close(s, at, T(0.5), moves);
+$W$C    evaluate($ss.q, s.time, s.J);
+    project(s);
+    accelerate($ss.q, s.time, s.v, s.J, s.lambda, s.a);
+    return s.residual;
+)";
+
+constexpr const char* ends_in_modes = R"(    Velocity moves[bodies];
+    close(s, at, T(0.5), moves);
+$W$C{0}    project(s);
+    pull($ss.q, s.time, s.v, {1});
+    find_margins(s);
+    return s.residual;
+)";
+
+constexpr const char* ends_freely = R"($W$C    fall($ss.q, s.time, s.v, s.a);
+    return T(0);
+)";
+
+// Of few numbers, the last slope joins number by number: wide loads would wait for what has just been stored.
+template <class Method>
+std::string combined(const Method& method, int stage, bool few) {
+  std::string sum, last;
+  int count = 0;
+  for (int j = 0; j < std::min(stage, method.stages); ++j) {
+    const double weight = method.a[stage][j];
+    if (weight == 0) continue;
+    if (count++ > 0) sum += last;
+    const char* sign = count == 1 ? (weight < 0 ? "-" : "") : weight < 0 ? " - " : " + ";
+    last = fmt::format("{}T({}) * k[{}].of[i]", sign, std::abs(weight), j);
+  }
+  const char* const all = "    for (int i = 0; i < Slope::size; ++i) now.of[i] = {};\n";
+  if (count < 3 || !few) return fmt::format(fmt::runtime(all), sum + last);
+  return fmt::format("    for (int i = 0; i != Slope::size; ++i) now.of[i] = {};\n", sum) +
+         fmt::format(fmt::runtime(all), "now.of[i]" + last);
+}
+
+template <class Method>
+std::string explicit_stages(const Method& method, const char* title, const Contents& has, bool few) {
+  std::string text = fmt::format(stages_begin, title, method.stages, has.rows ? "; then C = 0 and J v = -dC/dt" : "",
+                                 has.rows ? "    T forces[rows];\n" : "", head_on_accelerations(has));
+  for (int stage = 1; stage < method.stages; ++stage) {
+    text += combined(method, stage, few);
+    text += "    for (int i = 0; i < bodies; ++i) move(at.q[i], s.q[i], h * now.rate(i));\n";
+    text += "    for (int i = 0; i < bodies; ++i) v[i] = s.v[i] + h * now.acceleration(i);\n";
+    text += fmt::format("    at.time = s.time + T({}) * h;\n", double(method.c[stage]));
+    text += has.spatial ? "    turn(at.q);\n" : "    turn(at.q, s.q);\n";
+    text += fmt::format("    slope($sat, v, {}k[{}]);\n", arguments_of_slope(has), stage);
+  }
+  return text + fmt::format(stages_end, combined(method, method.stages, few), end_on_accelerations(has)) +
+         (has.modes ? step_by_events(has) : "");
+}
+
+}  // namespace
+
+int stages_of(Method method) { return method == Method::rk4 ? rk4<double>.stages : dop853<double>.stages; }
+
+std::string runge_kutta(Method method, const Contents& has, bool few) {
+  if (method == Method::rk4) return explicit_stages(rk4<double>, "The Runge-Kutta method of order 4", has, few);
+  return explicit_stages(dop853<double>, "Dormand and Prince's method of order 8", has, few);
+}
+
+std::string arguments_of_slope(const Contents& has) {
+  const std::string held = !has.modes ? "" : has.loads ? "s.hold, s.modes.load, " : "s.hold, ";
+  return (has.rows ? "s.J, forces, " : "") + held;
+}
+
+std::string end_on_accelerations(const Contents& has) {
+  const std::string inertias =
+      has.gyroscopes ? "    for (int i = 0; i < bodies; ++i) s.q[i].I = at.q[i].I;  // as J, of the last stage\n" : "";
+  const std::string end = has.modes  ? fmt::format(ends_in_modes, has.rows ? evaluates : "", arguments_of_pull(has))
+                          : has.rows ? ends_on_joints
+                                     : ends_freely;
+  return inertias + end_begins + end;
+}
+
+std::string head_on_accelerations(const Contents& has) {
+  return has.modes ? "stride(State& s, const T& h)" : std::string(step_head);
+}
+
+}  // namespace cdot::compile
