@@ -90,6 +90,28 @@ void begin_accounts(WorldData<S>& world) {
   }
 }
 
+template <class S>
+Balance balance_of(const WorldData<S>& world, const Energy& now, bool with_momenta) {
+  const Accounts& accounts = world.accounts;
+  const double energy = now.kinetic + now.potential;
+  Balance balance;
+  balance.time = world.time;
+  balance.kinetic = now.kinetic, balance.potential = now.potential, balance.start = energy;
+  if (with_momenta) balance.small = small_energy(world);
+  if (!accounts.open) return balance;
+  balance.put_in = accounts.put_in, balance.taken = accounts.taken;
+  balance.start = accounts.start;
+  if (accounts.changed) balance.put_in += energy - accounts.before_change;
+  for (const Island<S>& island : world.islands) {
+    if (!island.flow.work.empty()) {
+      balance.put_in += double(island.flow.work[0]);
+      balance.taken += double(island.flow.work[1]);
+    }
+    if (with_momenta) compare_momentum(world, island, balance);
+  }
+  return balance;
+}
+
 // Later changes before the next step join the first.
 template <class S>
 void note_change(WorldData<S>& world) {
@@ -110,12 +132,13 @@ void book_work(WorldData<S>& world, Island<S>& island) {
   std::fill(island.flow.work.begin(), island.flow.work.end(), T(0));
 }
 
-#define CDOT_INSTANTIATE(S)                            \
-  template void prepare_accounts(WorldData<S>&);       \
-  template void begin_accounts(WorldData<S>&);         \
-  template void put_in(WorldData<S>&, Source, double); \
-  template void take(WorldData<S>&, Source, double);   \
-  template void note_change(WorldData<S>&);            \
+#define CDOT_INSTANTIATE(S)                                              \
+  template Balance balance_of(const WorldData<S>&, const Energy&, bool); \
+  template void prepare_accounts(WorldData<S>&);                         \
+  template void begin_accounts(WorldData<S>&);                           \
+  template void put_in(WorldData<S>&, Source, double);                   \
+  template void take(WorldData<S>&, Source, double);                     \
+  template void note_change(WorldData<S>&);                              \
   template void book_work(WorldData<S>&, Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

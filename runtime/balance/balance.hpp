@@ -17,6 +17,7 @@ struct Energy {
   double kinetic = 0;
   double potential = 0;   // of gravity, constant forces, springs and rows that are springs
   double of_torques = 0;  // in space: of constant torques along the shortest rotation, which is no potential
+  double sum() const { return kinetic + potential + of_torques; }
 };
 // `one_slot` is scratch.
 template <class S>
@@ -65,6 +66,10 @@ bool works_now(const WorldData<S>& world, const Island<S>& island) {
       });
   return island.works;
 }
+// The balance with this energy. Its momenta and Balance::small cost more than all accounts, and change slowly: a run
+// that looks after each step leaves them out of most.
+template <class S>
+Balance balance_of(const WorldData<S>& world, const Energy& now, bool with_momenta);
 // Books work that is done at once.
 template <class S>
 void put_in(WorldData<S>& world, Source source, double work);
@@ -94,8 +99,6 @@ enum class Impulses : char {
 // Call at the start and at the end of a kick of h. C and J are those of the kick.
 template <class S>
 void begin_kick(WorldData<S>& world, const Island<S>& island);
-template <class S>
-void begin_kick(WorldData<S>& world, const Island<S>& island, const typename S::Velocity* velocity);
 template <class S>
 void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typename S::Scalar h);
 // Call at the end of a step of Euler's method: a spring given by its frequency changes its stiffness with the pose.

@@ -49,7 +49,7 @@ void find_damping(const Batch<S>& batch, int slot, const typename S::Scalar* rat
 }
 
 // The parts of a spring in the impulses of its rows. RATTLE exerts springs as forces, which are in no impulse: those at
-// rest, over h.
+// rest, over h. Its impulses of springs are those of dampers.
 enum class Springs : char { none, whole, dampers, without_dampers, as_forces };
 
 // Rows of springs whose impulse is that of dampers alone, or of springs without dampers. Batch::rate has J v of the
@@ -76,17 +76,22 @@ void work_of_parted_effect(const WorldData<S>& world, Batch<S>& batch, int slot,
                            typename S::Scalar time, double h, Work& work) {
   using T = typename S::Scalar;
   constexpr T at_rest[most_rows] = {};
-  T drift[most_rows] = {}, whole[most_rows], unstored[most_rows];
-  if (batch.explicit_time()) find_drift(world, batch, slot, time, drift);
-  batch.law->force(batch, slot, at_rest, whole);
-  batch.law->unstored(batch, slot, at_rest, unstored);
+  const int rows = batch.ops->rows, first = slot * rows;
+  const bool drifts = batch.explicit_time();
+  T drift[most_rows], unstored[most_rows];
+  if (drifts) find_drift(world, batch, slot, time, drift);
+  if (!of_rates) batch.law->unstored(batch, slot, at_rest, unstored);
   double done = 0;
-  for (int r = 0; r < batch.ops->rows; ++r) {
-    const int i = slot * batch.ops->rows + r;
-    done += (of_rates ? double(lambda(i)) : h * double(unstored[r])) * double(batch.rate[i] + drift[r]);
-    work.put(batch.source, -(of_rates ? double(lambda(i)) : h * double(whole[r])) * double(drift[r]));
+  for (int r = 0; r < rows; ++r) {
+    const T rate = drifts ? batch.rate[first + r] + drift[r] : batch.rate[first + r];
+    done += (of_rates ? double(lambda(first + r)) : h * double(unstored[r])) * double(rate);
   }
   work.give(batch.source, done);
+  if (!drifts) return;
+  T whole[most_rows];
+  if (!of_rates) batch.law->force(batch, slot, at_rest, whole);
+  for (int r = 0; r < rows; ++r)
+    work.put(batch.source, -(of_rates ? double(lambda(first + r)) : h * double(whole[r])) * double(drift[r]));
 }
 
 // Rows that are springs, given J v of the rate at which they acted and, in Batch::rate, of the mean velocity. Of an
@@ -129,20 +134,25 @@ void work_of_rate(const Batch<S>& batch, const Guard<typename S::Scalar>& guard,
 // held on both sides without a rate of their own do no work. Flow::first_kick keeps that of the first kick.
 template <class S, class Lambda>
 void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& work) {
+  const int rows = batch.ops->rows;
+  double done[most_rows];
+  bool idle = true;
+  for (int r = 0; r < rows; ++r) {
+    const int i = slot * rows + r;
+    done[r] = double(lambda(i)) * double(batch.rate[i]) + (kick == Kick::second ? work.first_kick[r] : 0);
+    idle = idle && done[r] == 0;
+  }
+  if (kick == Kick::first) std::copy_n(done, rows, work.first_kick);
+  if (kick != Kick::only) work.first_kick += rows;
+  if (idle || kick == Kick::first) return;
   Guard<typename S::Scalar> guards[most_rows];
   batch.law->guard(batch, slot, guards);
-  const bool moves = !batch.law->error;  // a motor or dry friction
-  for (int r = 0; r < batch.ops->rows; ++r) {
-    const int i = slot * batch.ops->rows + r;
-    const double before = kick == Kick::second ? *work.first_kick : 0;
-    const double done = double(lambda(i)) * double(batch.rate[i]) + before;
-    if (kick == Kick::first) *work.first_kick = done;
-    else if (moves) work_of_rate(batch, guards[r], done, work);
-    else if (batch.driven() && !batch.drives_of(slot).empty()) work.give(batch.source, done);
-    else if (batch.explicit_time()) work.put(batch.source, done);
-    else if (guards[r].one_sided()) work.take(batch.source, done);
-    else if (batch.law->distance) work.give(batch.source, done);
-    if (kick != Kick::only) ++work.first_kick;
+  for (int r = 0; r < rows; ++r) {
+    if (!batch.law->error) work_of_rate(batch, guards[r], done[r], work);  // a motor or dry friction
+    else if (batch.driven() && !batch.drives_of(slot).empty()) work.give(batch.source, done[r]);
+    else if (batch.explicit_time()) work.put(batch.source, done[r]);
+    else if (guards[r].one_sided()) work.take(batch.source, done[r]);
+    else if (batch.law->distance) work.give(batch.source, done[r]);
   }
 }
 
@@ -162,10 +172,15 @@ void work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S
     if (!batch.law) {
       for (int i = begin * rows; i < end * rows; ++i) work.put(batch.source, double(of_row(i)) * double(batch.rate[i]));
     } else if (batch.law->spring && springs != Springs::whole) {
-      const bool dampers = springs == Springs::dampers;
+      const auto work_of_part = [&](int slot, Springs part, auto impulse) {
+        const bool of_rates = part == Springs::dampers;
+        if (batch.law->is_of_effect()) work_of_parted_effect(world, batch, slot, impulse, of_rates, time, h, work);
+        else work_of_parted_springs(world, batch, slot, impulse, part, time, h, work);
+      };
+      const auto of_dampers = [&](int i) { return batch.lambda[i]; };
       for (int slot = begin; slot < end; ++slot) {
-        if (batch.law->is_of_effect()) work_of_parted_effect(world, batch, slot, of_row, dampers, time, h, work);
-        else work_of_parted_springs(world, batch, slot, of_row, springs, time, h, work);
+        if (springs == Springs::as_forces) work_of_part(slot, Springs::dampers, of_dampers);
+        work_of_part(slot, springs, of_row);
       }
     } else if (batch.law->force) {
       const auto* const rates = acted(batch, begin, end);
@@ -261,6 +276,11 @@ typename S::Scalar impulse_of(Impulses impulses, const Batch<S>& batch, int i) {
   return corrected ? batch.correction[i] : batch.lambda[i];
 }
 
+template <class S>
+bool has_springs(const Island<S>& island) {
+  return std::ranges::any_of(island.segments, [](const Segment<S>& s) { return s.batch->law && s.batch->law->spring; });
+}
+
 constexpr Kick kick_of(Impulses impulses) {
   if (impulses == Impulses::soft || impulses == Impulses::middle) return Kick::first;
   return impulses == Impulses::relaxed || impulses == Impulses::end ? Kick::second : Kick::only;
@@ -277,19 +297,15 @@ constexpr Springs springs_of(Impulses impulses) {
 
 template <class S>
 void begin_kick(WorldData<S>& world, const Island<S>& island) {
-  begin_kick(world, island, world.bodies.velocity.data());
-}
-
-template <class S>
-void begin_kick(WorldData<S>& world, const Island<S>& island, const typename S::Velocity* velocity) {
   if (!works_now(world, island)) return;
-  for (int i : island.bodies) world.start_of_kick[i] = velocity[i];
+  for (int i : island.bodies) world.start_of_kick[i] = world.bodies.velocity[i];
 }
 
 template <class S>
 void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typename S::Scalar h) {
   using T = typename S::Scalar;
   if (!(impulses == Impulses::drift ? island.driven : works_now(world, island))) return;
+  if (impulses == Impulses::dampers && !has_springs(island)) return;
   const auto& v = world.bodies.velocity;
   auto &start = world.start_of_kick, &mean = world.mean_of_kick;
   for (size_t k = 0; k < island.bodies.size(); ++k) {
@@ -314,7 +330,7 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
       springs_of(impulses), impulses == Impulses::dampers, kick_of(impulses), island.evaluated_at, double(h), work);
   if (impulses == Impulses::rattle_start || impulses == Impulses::rattle_end)
     work_of_stiffness(world, island, island.evaluated_at, start.data(), double(h), work);
-  if (!of_rows) work_of_drives(island, double(h), work);
+  if (!of_rows && world.driven) work_of_drives(island, double(h), work);
   add(world, work);
 }
 
@@ -335,7 +351,7 @@ void find_power(WorldData<S>& world, Island<S>& island, typename S::Scalar time,
       },
       Springs::whole, false, Kick::only, time, 1, work);
   work_of_stiffness(world, island, time, v, 1, work);
-  work_of_drives(island, 1, work);
+  if (world.driven) work_of_drives(island, 1, work);
   power[0] = T(work.put_in), power[1] = T(work.taken);
   std::copy(world.work_by_source.begin(), world.work_by_source.end(), power + 2);
 }
@@ -356,11 +372,10 @@ void book_stiffness(WorldData<S>& world, Island<S>& island) {
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                                      \
-  template void begin_kick(WorldData<S>&, const Island<S>&);                     \
-  template void begin_kick(WorldData<S>&, const Island<S>&, const S::Velocity*); \
-  template void book_kick(WorldData<S>&, Island<S>&, Impulses, S::Scalar);       \
-  template void find_power(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar*);    \
+#define CDOT_INSTANTIATE(S)                                                   \
+  template void begin_kick(WorldData<S>&, const Island<S>&);                  \
+  template void book_kick(WorldData<S>&, Island<S>&, Impulses, S::Scalar);    \
+  template void find_power(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar*); \
   template void book_stiffness(WorldData<S>&, Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

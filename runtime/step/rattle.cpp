@@ -253,20 +253,8 @@ void book_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   };
   swap_poses();
   look_at_effects(world, island, T(world.time));
-  book_kick(world, island, Impulses::dampers, T(2) * h);
   book_kick(world, island, Impulses::rattle_start, h);
   swap_poses();
-}
-
-// Books the second half, its mirror image.
-template <class S>
-void book_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
-  if (!works_now(world, island)) return;
-  book_kick(world, island, Impulses::rattle_end, h);
-  auto& half = world.bodies.displacement;
-  for (size_t k = 0; k < island.bodies.size(); ++k) half[island.bodies[k]] = island.flow.velocity[k];
-  begin_kick(world, island, half.data());
-  book_kick(world, island, Impulses::dampers, h);
 }
 
 }  // namespace
@@ -299,7 +287,7 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   begin_kick(world, island);
   kick(world, island, h / 2);
   solve_end(world, island, h);
-  book_end(world, island, h / 2);
+  book_kick(world, island, Impulses::rattle_end, h / 2);  // the mirror image of the start
   island.evaluated = true;
 }
 

@@ -258,32 +258,12 @@ std::vector<Inconsistency> BasicWorld<S>::inconsistencies(double tolerance) cons
 
 template <class S>
 double BasicWorld<S>::energy() const {
-  const Energy now = energy_of(*data_, scratch_slot<S>());
-  return now.kinetic + now.potential + now.of_torques;
+  return energy_of(*data_, scratch_slot<S>()).sum();
 }
 
 template <class S>
 Balance BasicWorld<S>::balance() const {
-  const WorldData<S>& world = *data_;
-  const Accounts& accounts = world.accounts;
-  const Energy now = energy_of(world, scratch_slot<S>());
-  const double energy = now.kinetic + now.potential;
-  Balance balance;
-  balance.time = world.time;
-  balance.kinetic = now.kinetic, balance.potential = now.potential, balance.start = energy;
-  balance.small = small_energy(world);
-  if (!accounts.open) return balance;
-  balance.put_in = accounts.put_in, balance.taken = accounts.taken;
-  balance.start = accounts.start;
-  if (accounts.changed) balance.put_in += energy - accounts.before_change;
-  for (const Island<S>& island : world.islands) {
-    if (!island.flow.work.empty()) {
-      balance.put_in += double(island.flow.work[0]);
-      balance.taken += double(island.flow.work[1]);
-    }
-    compare_momentum(world, island, balance);
-  }
-  return balance;
+  return balance_of(*data_, energy_of(*data_, scratch_slot<S>()), true);
 }
 
 template <class S>

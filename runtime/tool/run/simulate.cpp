@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "runtime/balance/balance.hpp"
 #include "runtime/state/world_data.hpp"
 #include "runtime/tool/run/balance_report.hpp"
 #include "runtime/tool/run/error_estimate.hpp"
@@ -125,11 +126,8 @@ void look(const Scene& scene, BasicWorld<S>& world, RunResult& result) {
   ++result.diagnoses;
 }
 
-// World::energy(), from its balance where that has all of it.
-template <class S>
-double energy_from(const BasicWorld<S>& world, const Balance& balance) {
-  return S::dimension == Dimension::planar ? balance.kinetic + balance.potential : world.energy();
-}
+// Steps between looks at momenta, which change slowly. For a free body one costs a quarter of a step.
+constexpr long long steps_of_momenta = 32;
 
 template <class S>
 RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string& warnings) {
@@ -148,8 +146,9 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   const Interrupt interrupt;
 
   const int bodies = static_cast<int>(scene.bodies.size());
-  Balance balance = world.balance();
-  Frame before = frame_of(world, result.start, bodies, energy_from(world, balance));
+  WorldData<S>& data = world.data();
+  Energy energy = energy_of(data, data.one_slot);
+  Frame before = frame_of(world, result.start, bodies, energy.sum());
   read_sensors(scene, world, before, before);
   Frame after = before;
   result.energy_start = before.energy;
@@ -161,7 +160,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     judge(scene, after, result);
     if (k > 0) rank.look(after.time, world.weakest_row());
     if (!result.finite) break;
-    result.balance.look(balance);
+    result.balance.look(balance_of(data, energy, k % steps_of_momenta == 0));
     if (k > 0) worst_step.look(world, result.balance);
     if (result.first_rescue < 0 && world.step_counts().rescued > 0)
       result.first_rescue = after.time, result.at_rescue = largest_force(world);
@@ -193,13 +192,14 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     }
     result.steps = k + 1;
     std::swap(before, after);
-    balance = world.balance();
-    after = frame_of(world, steps.time(k + 1), bodies, energy_from(world, balance));
+    energy = energy_of(data, data.one_slot);
+    after = frame_of(world, steps.time(k + 1), bodies, energy.sum());
     read_sensors(scene, world, before, after);
     if (progress.due())
       progress.show(fmt::format("{}{:3.0f} %  {:.4g} s of {:.4g} s", options.doing, 100 * after.time / scene.duration,
                                 after.time, scene.duration));
   }
+  if (result.finite) result.balance.look(world.balance());
   result.work = world.work_by_source();
   rank.end();
   result.rank_losses = rank.found();
