@@ -12,12 +12,16 @@
 namespace cdot {
 namespace {
 
-// Steps taken as one, and parts of one. A method that halves a step which it cannot solve would take the same parts of
-// a half.
-constexpr int parts = 3;
-// A sample costs some steps and going back twice. A run of some hundred steps has this many samples, of three steps or
-// of one: fewer miss the error of a crank that turns fast. A longer run has one within some steps.
-constexpr long long usual_samples = 7, usual_samples_of_one = 12, most_spacing = 140;
+constexpr int steps_as_one = 3;
+// Of a step. The midpoint rule halves a step that it cannot solve, and would take the same parts of a half.
+constexpr int parts_of_one = 2, parts_of_halved = 3;
+constexpr int more_substeps = 3, more_iterations = 4;
+// All samples together cost at most this share of the run's steps, and a few steps more: what they take instead, and
+// going back as one more each. The search for a sample goes on in shorter runs too: where a crank passes its dead
+// centre, all of a run's error may be made in one step.
+constexpr double affordable = 0.05, free_steps = 20, price_of_return = 1;
+// A run of some hundred steps has at most this many samples. A longer run has one within some steps.
+constexpr long long usual_samples = 7, most_spacing = 140;
 // Of the share that warns: an estimate by longer steps that promises more by the end of the run is made anew.
 constexpr double doubted = 0.25;
 constexpr double half_turn = 3.141592653589793;  // a larger error of an angle has no meaning
@@ -35,9 +39,11 @@ Vector position(const BodyState& b) { return {b.x, b.y, b.z}; }
 Vector velocity(const BodyState& b) { return {b.vx, b.vy, b.vz}; }
 Vector spin(const BodyState& b) { return {b.wx, b.wy, b.wz + b.w}; }
 
+template <class S>
 Vector turn(const BodyState& from, const BodyState& to) {
+  if (S::dimension == Dimension::planar) return {0, 0, to.angle - from.angle};
   const auto r = spatial::turn_between(orientation_of(from), orientation_of(to));
-  return {r.x, r.y, r.z + to.angle - from.angle};
+  return {r.x, r.y, r.z};
 }
 
 // The time in which a motion of these sums of squares changes, at most `most`.
@@ -46,8 +52,8 @@ double time_scale(double speed, double change, double most) {
 }
 
 Scene with_more_sweeps(Scene scene) {
-  scene.settings.substeps *= parts;
-  scene.settings.iterations *= 4;
+  scene.settings.substeps *= more_substeps;
+  scene.settings.iterations *= more_iterations;
   return scene;
 }
 
@@ -57,32 +63,50 @@ template <class S>
 ErrorEstimate<S>::ErrorEstimate(const Scene& scene, long long steps)
     : scene_(scene), steps_(steps), warned_(warned_trajectory_share(scene)), size_(extents_of(scene).of_body) {
   for (const double size : size_) is_point_.push_back(size == 0);
-  total_.sums.resize(size_.size());
+  total_.sums.resize(size_.size()), sample_.resize(size_.size());
+  budget_ = affordable * static_cast<double>(steps) + free_steps;
   // The midpoint rule divides long steps unseen.
-  const bool whole = steps >= parts && scene.settings.integrator != Integrator::implicit;
+  const bool divides = scene.settings.integrator == Integrator::implicit;
+  parts_ = divides ? parts_of_halved : parts_of_one;
+  const bool whole = steps >= steps_as_one && !divides;
   choose(sweeps(scene.settings.solver) ? By::more_sweeps : whole ? By::longer_steps : By::shorter_steps);
   // A method that chooses its steps has an estimate of its own.
-  next_ = scene.settings.local_error > 0 ? steps + 1 : std::min((spacing_ + 1) / 2, steps - window_ + 1);
+  next_ = scene.settings.local_error > 0 ? never() : std::min((spacing_ + 1) / 2, steps - window_ + 1);
+}
+
+template <class S>
+double ErrorEstimate<S>::price() const {
+  const int more = by_ == By::longer_steps ? 1 : by_ == By::shorter_steps ? parts_ : more_substeps * more_iterations;
+  return more + price_of_return;
 }
 
 template <class S>
 void ErrorEstimate<S>::choose(By by) {
   by_ = by;
-  window_ = by == By::longer_steps ? parts : 1;
-  const long long samples = by == By::longer_steps ? usual_samples : usual_samples_of_one;
-  spacing_ = std::clamp(steps_ / samples, 1LL, most_spacing);
+  window_ = by == By::longer_steps ? steps_as_one : 1;
+  const auto paid = static_cast<long long>(budget_ / price());
+  spacing_ = std::max({1LL, std::min(steps_ / usual_samples, most_spacing), steps_ / std::max(1LL, paid)});
+}
+
+template <class S>
+void ErrorEstimate<S>::find_next(long long k) {
+  // Between half and one and a half of the spacing, spread evenly by the golden ratio: no multiple of a period.
+  const double turns = 0.6180339887498949 * (total_.error.samples + 1);
+  next_ = k + std::max(1LL, static_cast<long long>(static_cast<double>(spacing_) * (0.5 + turns - std::floor(turns))));
+  if (spent_ + price() > budget_ || next_ + window_ - 1 > steps_) next_ = never();
 }
 
 // The steps taken instead come first: the World then goes back but once.
 template <class S>
 void ErrorEstimate<S>::before_step(BasicWorld<S>& run, long long k, double h) {
   if (k != next_) return;
+  spent_ += price();
   run.snapshot_into(start_);
   length_ = h;
   const bool by_sweeps = by_ == By::more_sweeps;
   if (by_sweeps && !sweeper_) sweeper_ = build_world_in<S>(with_more_sweeps(scene_));
   if (by_sweeps) sweeper_->restore(start_);
-  taken_ = take_instead(by_sweeps ? *sweeper_ : run, by_ == By::shorter_steps ? parts : 1);
+  taken_ = take_instead(by_sweeps ? *sweeper_ : run, by_ == By::shorter_steps ? parts_ : 1);
   if (!by_sweeps) run.restore(start_);
 }
 
@@ -97,52 +121,74 @@ bool ErrorEstimate<S>::take_instead(BasicWorld<S>& world, int steps) {
 }
 
 template <class S>
-double ErrorEstimate<S>::weight(int steps, long long k) const {
-  const double shorter = by_ == By::more_sweeps ? parts : static_cast<double>(steps) / window_;
-  const double share = 1 / (1 - std::pow(shorter, -row_of(scene_.settings.integrator).order));
-  return share * static_cast<double>(k - last_) / window_;
+double ErrorEstimate<S>::share_of_difference() const {
+  const double shorter = by_ == By::more_sweeps ? more_substeps : by_ == By::shorter_steps ? parts_ : 1.0 / window_;
+  return 1 / (1 - std::pow(shorter, -row_of(scene_.settings.integrator).order));
 }
 
 template <class S>
 void ErrorEstimate<S>::after_step(BasicWorld<S>& run, const Frame& before, const Frame& after, long long k) {
   if (k != next_ + window_ - 1) return;
-  const Total kept = total_;
-  if (taken_) add(before, after, weight(by_ == By::shorter_steps ? parts : 1, k));
+  Total kept = total_;
+  if (taken_) add(before, after, k);
   const double promised = total_.error.share * static_cast<double>(steps_) / static_cast<double>(k);
   if (by_ == By::longer_steps && (!taken_ || promised > doubted * warned_)) {
-    total_ = kept;
+    total_ = std::move(kept);
     by_ = By::shorter_steps;
-    run.snapshot_into(end_);
-    run.restore(start_);
-    taken_ = take_instead(run, parts * window_);
-    if (taken_) add(before, after, weight(parts * window_, k));
-    run.restore(end_);
+    take_anew(run);
+    if (taken_) add(before, after, k);
     choose(by_);
   }
+  find_next(k);
   if (taken_) last_ = k;
-  // Between half and one and a half of the spacing, spread evenly by the golden ratio: no multiple of a period.
-  const double turns = 0.6180339887498949 * (total_.error.samples + 1);
-  next_ = k + std::max(1LL, static_cast<long long>(static_cast<double>(spacing_) * (0.5 + turns - std::floor(turns))));
+}
+
+// The window by shorter steps.
+template <class S>
+void ErrorEstimate<S>::take_anew(BasicWorld<S>& run) {
+  const int steps = parts_ * window_;
+  spent_ += steps + 2 * price_of_return;
+  run.snapshot_into(end_);
+  run.restore(start_);
+  taken_ = take_instead(run, steps);
+  run.restore(end_);
 }
 
 template <class S>
-void ErrorEstimate<S>::add(const Frame& before, const Frame& after, double scale) {
+void ErrorEstimate<S>::finish(const Frame& last, long long steps) {
+  if (total_.error.samples > 0 && steps > last_) add_sums(last, steps);
+}
+
+template <class S>
+void ErrorEstimate<S>::add(const Frame& before, const Frame& after, long long k) {
   if (first_.bodies.empty()) first_ = before;
-  const double h = after.time - before.time;
-  for (std::size_t k = 0; k < total_.sums.size(); ++k) {
-    const BodyState &from = before.bodies[k], &to = after.bodies[k], &other = instead_[k];
-    add_to(total_.sums[k].position, minus(position(to), position(other)), scale);
-    add_to(total_.sums[k].angle, turn(other, to), scale);
-    add_to(total_.sums[k].velocity, minus(velocity(to), velocity(other)), scale);
-    add_to(total_.sums[k].spin, minus(spin(to), spin(other)), scale);
+  const double h = after.time - before.time, share = share_of_difference();
+  for (std::size_t i = 0; i < sample_.size(); ++i) {
+    const BodyState &from = before.bodies[i], &to = after.bodies[i], &other = instead_[i];
+    sample_[i] = {};
+    add_to(sample_[i].position, minus(position(to), position(other)), share);
+    add_to(sample_[i].angle, turn<S>(other, to), share);
+    add_to(sample_[i].velocity, minus(velocity(to), velocity(other)), share);
+    add_to(sample_[i].spin, minus(spin(to), spin(other)), share);
     total_.speeds[0] += square(velocity(to)), total_.speeds[1] += square(spin(to));
     total_.changes[0] += square(minus(velocity(to), velocity(from))) / (h * h);
     total_.changes[1] += square(minus(spin(to), spin(from))) / (h * h);
   }
-  ++total_.error.samples;
+  ++total_.error.samples, window_of_sample_ = window_;
+  add_sums(after, k);
+}
+
+template <class S>
+void ErrorEstimate<S>::add_sums(const Frame& after, long long k) {
+  const double scale = static_cast<double>(k - last_) / window_of_sample_;
   const double linear = time_scale(total_.speeds[0], total_.changes[0], after.time),
                angular = time_scale(total_.speeds[1], total_.changes[1], after.time);
-  for (std::size_t k = 0; k < total_.sums.size(); ++k) judge(after, k, linear, angular);
+  for (std::size_t body = 0; body < sample_.size(); ++body) {
+    Sums& sums = total_.sums[body];
+    add_to(sums.position, sample_[body].position, scale), add_to(sums.angle, sample_[body].angle, scale);
+    add_to(sums.velocity, sample_[body].velocity, scale), add_to(sums.spin, sample_[body].spin, scale);
+    judge(after, body, linear, angular);
+  }
 }
 
 template <class S>

@@ -1,10 +1,10 @@
-// The error of a run's trajectory, estimated while it runs, for a few per cent of its cost.
+// The error of a run's trajectory, estimated while it runs, for at most a twentieth of its steps and twenty more.
 //
 // Before some triples of steps the World takes them as one, goes back, and goes on. A method of order p errs in the
 // three by e = d / (1 - 3^p), d being the difference (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary
 // Differential Equations I", 1993, II.4). That formula need not hold for a step of three times the length.
-// Where such steps fail, are divided, or promise a warning, steps are taken in three parts from there on: dearer, and
-// true at longer steps. For sweeps a second World takes the step, with more of them.
+// Where such steps fail, are divided, or promise a warning, steps are taken in parts from there on: dearer, and true at
+// longer steps. For sweeps a second World takes the step, with more of them.
 //
 // The errors of the steps add up with their signs, as those of a symplectic method cancel along an orbit: an error s of
 // velocities displaces a body by s T, where T is the time in which the motion changes, the root of sum v^2 / sum a^2.
@@ -39,6 +39,8 @@ class ErrorEstimate {
   // neither had been called.
   void before_step(BasicWorld<S>& run, long long k, double h);
   void after_step(BasicWorld<S>& run, const Frame& before, const Frame& after, long long k);
+  // Call after the last of so many steps.
+  void finish(const Frame& last, long long steps);
   const TrajectoryError& error() const { return total_.error; }
 
  private:
@@ -54,11 +56,18 @@ class ErrorEstimate {
   enum class By { longer_steps, shorter_steps, more_sweeps };
 
   void choose(By by);
-  // Of the difference that so many steps instead make in the window that ends with step `k`.
-  double weight(int steps, long long k) const;
+  // Of a sample, in steps of the run.
+  double price() const;
+  long long never() const { return steps_ + 1; }
+  // Finds the next sample after one that ends with step `k`.
+  void find_next(long long k);
+  double share_of_difference() const;
+  void take_anew(BasicWorld<S>& run);
   // False if one of them fails, or is divided.
   bool take_instead(BasicWorld<S>& world, int steps);
-  void add(const Frame& before, const Frame& after, double scale);
+  void add(const Frame& before, const Frame& after, long long k);
+  // The last sample stands for the steps since the one before it, and at the end of the run for those that follow.
+  void add_sums(const Frame& after, long long k);
   void judge(const Frame& after, std::size_t body, double linear, double angular);
 
   const Scene& scene_;
@@ -67,11 +76,15 @@ class ErrorEstimate {
   By by_;
   int window_;                            // steps of the run in a sample
   long long spacing_, next_, last_ = 0;   // first step of the next sample, last step of the previous one
+  int parts_;                             // of a step, By::shorter_steps
+  double budget_, spent_ = 0;             // for all samples, and on those so far, in steps
   Snapshot start_, end_;                  // of a window
   double length_ = 0;                     // of a step in it [s]
   bool taken_ = false;                    // the steps instead were
   std::optional<BasicWorld<S>> sweeper_;  // the second World
   std::vector<BodyState> instead_;        // at the end of the steps taken instead
+  std::vector<Sums> sample_;              // the last one: errors of a window
+  int window_of_sample_ = 1;
   Total total_;
   std::vector<double> size_;  // of the mechanism of each body [m]; of a single point the distance that it travels
   std::vector<bool> is_point_;

@@ -204,6 +204,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   rank.end();
   result.rank_losses = rank.found();
   result.worst_step = worst_step.found();
+  error.finish(after, result.steps);
   result.error = error.error();
   finish(scene, world, result);
   return result;

@@ -1,6 +1,7 @@
 // The error of its trajectory that a run with fixed steps estimates, against its distance from a far more accurate run.
 #include <algorithm>
 #include <fmt/format.h>
+#include <optional>
 
 #include "runtime/tool/run/error_report.hpp"
 #include "runtime/tool/run/pick_integrator.hpp"
@@ -18,17 +19,18 @@ struct Counts {
   int runs = 0, warned = 0, truly_off = 0, told = 0, false_alarms = 0;
 };
 
-void study(Scene scene, double step, Counts& counts) {
+// `truth` is found where the first step asks for it.
+void study(Scene scene, double step, std::optional<std::vector<Frame>>& truth, Counts& counts) {
   scene.step = step;
   const std::vector<double> times = equal_times(scene.duration, samples);
   const Run run = run_of(with_integrator(scene), times, most_cpu);
   if (!run.whole || run.result.error.samples == 0) return;
-  Scene unnamed = without_method(scene);
-  const std::vector<Frame> truth = truth_of(unnamed, times, most_cpu);
-  if (truth.empty()) return;
+  const Scene unnamed = without_method(scene);
+  if (!truth) truth = truth_of(unnamed, times, most_cpu);
+  if (truth->empty()) return;
   Yardstick yardstick(unnamed);
-  yardstick.see(truth);
-  const double is = largest_apart(yardstick, run.rows, truth), said = run.result.error.share;
+  yardstick.see(*truth);
+  const double is = largest_apart(yardstick, run.rows, *truth), said = run.result.error.share;
   const bool warns = !trajectory_warning(scene, run.result).empty();
   ++counts.runs, counts.warned += warns, counts.truly_off += is > off;
   counts.told += is > off && warns, counts.false_alarms += warns && is < hardly;
@@ -44,7 +46,8 @@ void study_estimate(const std::vector<Scene>& scenes) {
   for (const Scene& scene : scenes) {
     if (scene.settings.local_error > 0 || scene.accuracy > 0) continue;
     const double own = scene.step > 0 ? scene.step : game_step;
-    for (const double step : {own, own / 4, 2 * own}) study(scene, step, counts);
+    std::optional<std::vector<Frame>> truth;
+    for (const double step : {own, own / 4, 2 * own}) study(scene, step, truth, counts);
   }
   fmt::print(
       "{} runs that pass, {} warned; {} off by more than {}, of which {} warned; {} warned but off by less than {}\n",

@@ -1,11 +1,16 @@
 // The error that a run estimates of itself, against its distance from a run of much higher accuracy.
+#include "runtime/tool/run/error_estimate.hpp"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <cdot/methods.hpp>
+#include <cdot/spaces.hpp>
 
+#include "runtime/state/world_data.hpp"
 #include "runtime/tool/run/error_report.hpp"
+#include "runtime/tool/run/simulate.hpp"
 #include "runtime/tool/run/trajectory.hpp"
 #include "runtime/tool/search/advice.hpp"
 #include "tests/runtime/tool/support.hpp"
@@ -89,6 +94,64 @@ TEST(ErrorEstimate, SeesLongStepsBySweeps) {
   const double is = true_error(scene).larger(), said = estimate(scene).share;
   fmt::print("off by {:.1e}, estimated {:.1e}\n", is, said);
   EXPECT_GE(said, 0.15 * is);
+}
+
+long long steps_of_world = 0;
+
+struct Spent {
+  long long steps = 0;  // of the run's World, beyond those of the run
+  int samples = 0;
+};
+
+// What the estimate takes in so many steps of a run.
+Spent spent_by_estimate(Scene scene, long long steps) {
+  using Space = Planar<double>;
+  scene.duration = scene.step * static_cast<double>(steps);
+  std::string warnings;
+  auto world = world_at_start<Space>(scene, warnings);
+  steps_of_world = 0;
+  world.data().after_substep.push_back([](WorldData<Space>&, double) { ++steps_of_world; });
+  ErrorEstimate<Space> estimate(scene, steps);
+  const int bodies = static_cast<int>(scene.bodies.size());
+  Frame before = frame_of(world, 0, bodies);
+  for (long long k = 1; k <= steps; ++k) {
+    estimate.before_step(world, k, scene.step);
+    EXPECT_TRUE(world.step(scene.step));
+    const Frame after = frame_of(world, static_cast<double>(k) * scene.step, bodies);
+    estimate.after_step(world, before, after, k);
+    before = after;
+  }
+  return {steps_of_world - steps, estimate.error().samples};
+}
+
+// A sample is one long step; a step in parts, two or for the midpoint rule three; or twelve in a World of their own.
+// Going back counts as one more. The first window that promises a warning is made anew, by six steps.
+TEST(ErrorEstimate, TakesATwentiethOfTheStepsAndTwentyMore) {
+  struct Kind {
+    const char* what;
+    Integrator integrator;
+    Solver solver;
+    double step;
+    int of_sample;  // in a second World
+  };
+  for (const auto& [what, integrator, solver, step, of_sample] : {
+           Kind{"longer steps", Integrator::rattle, Solver::direct, 1e-4, 0},
+           Kind{"in parts", Integrator::implicit, Solver::direct, 1e-3, 0},
+           Kind{"doubted", Integrator::rattle, Solver::direct, 0.05, 0},
+           Kind{"sweeps", Integrator::euler, Solver::iterative, 1e-3, 12},
+       }) {
+    for (const long long steps : {5, 20, 60, 200, 1000}) {
+      Scene scene = mechanism("double_pendulum", integrator, step);
+      scene.settings.solver = solver;
+      const auto [more, samples] = spent_by_estimate(scene, steps);
+      const long long taken = more + (of_sample + 1) * samples;
+      fmt::print("{:13} {:4} steps: {:2} samples for {:2} steps\n", what, steps, samples, taken);
+      EXPECT_GE(samples, 1) << what << ", " << steps << " steps";
+      EXPECT_LE(static_cast<double>(taken), 20 + 0.05 * static_cast<double>(steps))
+          << what << ", " << steps << " steps";
+      EXPECT_EQ(more == 0, solver == Solver::iterative) << "for sweeps a second World takes the steps";
+    }
+  }
 }
 
 TEST(ErrorEstimate, OfOwnStepsIsNone) {
