@@ -154,6 +154,27 @@ TEST(ErrorEstimate, TakesATwentiethOfTheStepsAndTwentyMore) {
   }
 }
 
+// Euler's method falls too far by h^2 g / 2 in each step. Five steps have one sample, of the first three.
+TEST(ErrorEstimate, OfTheLastSampleStandsForTheRest) {
+  Scene scene = mechanism("simple_pendulum", Integrator::euler, 1e-3);
+  scene.joints.clear(), scene.duration = 5 * scene.step;
+  scene.trajectory_tolerance = 1e3;  // of a point the distance that it falls: nothing is doubted
+  const TrajectoryError said = estimate(scene);
+  EXPECT_EQ(said.samples, 1);
+  const double exact = 5 * scene.step * scene.step / 2 * std::abs(scene.settings.gravity_y);
+  EXPECT_NEAR(said.position, exact, 1e-9 * exact);
+}
+
+// Momenta are looked at every 32 steps, and at the end.
+TEST(ErrorEstimate, OfMomentaIsKnownOfShortRuns) {
+  Scene scene = mechanism("spatial/torque_free_body", Integrator::rk4, 0.1);
+  scene.duration = 10 * scene.step;
+  std::string warnings;
+  const BalanceWatch::Worst worst = simulate(scene, {}, warnings).balance.angular;
+  EXPECT_GT(worst.amount, 0);
+  EXPECT_NEAR(worst.time, scene.duration, 1e-12);
+}
+
 TEST(ErrorEstimate, OfOwnStepsIsNone) {
   Scene scene = scene_named("compound_pendulum");
   scene.settings.integrator = Integrator::dop853;
