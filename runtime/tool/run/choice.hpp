@@ -15,7 +15,8 @@ struct Choice {
   double asked = 0;        // of the size of each mechanism and of 1 rad; or [m] and [rad]
   bool of_size = true;     // the first of these
   // In the same units: the largest distance from the next coarser run, divided by the square root of the gain that
-  // their local errors or steps promise.
+  // their local errors or steps promise. Up to `asked` half as much again, or without that gain where steps were left
+  // to another method.
   double achieved = 0;
   bool reached = false;
   double holds_until = 0;            // [s]: the last time up to which the run has the accuracy

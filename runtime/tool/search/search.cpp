@@ -23,6 +23,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double least_sure = 1e-12;  // below it, smaller steps gain nothing for sure
 // Between two looks the error may be so many local errors, or this share of the accuracy, if that is smaller.
 constexpr double local_errors = 10, unseen = 0.1;
+// Up to the accuracy asked for, a claim is so many times the error that seems sure.
+constexpr double margin = 1.5;
 constexpr double aim = 0.5;  // share of the accuracy that a further run aims at
 constexpr int shorter_for_rescued = 4, shorter_for_others = 2;
 constexpr double long_step = 0.4;  // of the duration
@@ -182,6 +184,9 @@ void Search::judge(const Attempt& coarse, Attempt& fine) const {
                                  fine.achieved * converges < coarse.achieved;
   fine.reached = known && seems_to_converge && balanced(fine) && fine.achieved <= yardstick_.asked();
   if (fine.reached) fine.holds_until = scene_.duration;
+  // Steps that were left to another method err alike in both runs.
+  const double claim = fine.result.counts.rescued > 0 ? apart : margin * fine.achieved;
+  fine.claimed = std::max(fine.achieved, std::min(claim, yardstick_.asked()));
 }
 
 // The better of two: a run that reached the accuracy, then one that holds it longer, then any that has ended.
@@ -242,7 +247,7 @@ void Search::try_even_steps(const Attempt& even) {
   Attempt now = attempt({is_slow ? Integrator::rattle : Integrator::implicit}, infinity, {}, false);
   if (now.whole && now.result.counts.rescued == 0) {
     const auto [apart, agree_until] = distance(yardstick_, even, now);
-    now.achieved = std::max(least_sure, unlike * apart), now.holds_until = agree_until;
+    now.achieved = now.claimed = std::max(least_sure, unlike * apart), now.holds_until = agree_until;
     now.reached = balanced(now) && now.achieved <= yardstick_.asked();
     if (now.reached) now.holds_until = scene_.duration;
   }
@@ -344,7 +349,7 @@ Choice Search::choice_of(const Attempt& attempt) const {
   choice.step = scene_.duration / intervals_of_own_steps / attempt.knob.parts;
   choice.asked = yardstick_.asked();
   choice.of_size = yardstick_.of_size();
-  choice.achieved = attempt.achieved;
+  choice.achieved = attempt.claimed;
   choice.reached = attempt.reached;
   choice.holds_until = attempt.holds_until;
   choice.rescued = attempt.result.counts.rescued;
