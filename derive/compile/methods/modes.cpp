@@ -143,8 +143,9 @@ constexpr const char* decides = R"(
 
 constexpr const char* margins_begin = R"(
   // How far each row is from its next event, in units of the resolution. Off: C - end. Held: its force from its bounds.
-  // At a bound: the missing rate.
-  static void find_margins(State& s) {
+  // At a bound: the missing rate. Returns how far the furthest end is passed, beyond a few resolutions.
+  static T find_margins(State& s) {
+    T passed = T(0);
     Modes& m = s.modes;
     Guards G;
     guard($ss.q, s.time, s.v, G);
@@ -156,6 +157,7 @@ constexpr const char* margins_begin = R"(
       const T bound = select(G.low[i] < G.high[i], slips, T(1e30));
       const T away = select(has_one_end(G, i), gap(G, i) / m.of_value[i], bound);
       m.margin[i] = smaller(select(magnitude(s.hold[i]) < T(0.5), held, away), T(1e30));
+      passed = select(has_one_end(G, i), larger(passed, -gap(G, i) - T(4) * m.of_value[i]), passed);
     }
 )";
 
@@ -314,7 +316,7 @@ std::string modes_of(const Contents& has, const std::string& waits) {
   if (!has.loads) margins.erase(margins.find(growing), growing.size());
   text += margins;
   if (has.events) text += fmt::format(margins_of_events, waits, has.forces ? "m.force, " : "");
-  return text + "  }\n" +
+  return text + "    return passed;\n  }\n" +
          fmt::format(chooses, arguments_of_pull(has), has.events ? "    latch(s);\n" : "",
                      has.forces ? "choose_once" : "choose_modes") +
          (has.forces ? chooses_again : "");

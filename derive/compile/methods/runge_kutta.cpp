@@ -42,8 +42,7 @@ constexpr const char* ends_in_modes = R"(    Velocity moves[bodies];
     close(s, at, T(0.5), moves);
 $W$C{0}    project(s);
     pull($ss.q, s.time, s.v, {1});
-    find_margins(s);
-    return s.residual;
+    return larger(s.residual, find_margins(s));
 )";
 
 constexpr const char* ends_freely = R"($W$C    fall($ss.q, s.time, s.v, s.a);

@@ -51,6 +51,7 @@ class EffectReader {
     }
     for (int j = joints; j < world_.joint_count(); ++j)
       if (!record(j).places.empty()) add_soft(fmt::format("spring{}", j - joints + 1), j);
+    for (Effect& motor : strong_motors_) add_strong_motor(motor);
   }
 
  private:
@@ -171,7 +172,7 @@ class EffectReader {
     if (!note_functions(source, joint, static_cast<int>(number), effect)) return;
     const std::string what = name_law(kind, effect);
     if (effect.law == Effect::motor && mechanism_.on_accelerations() && std::isinf(effect.numbers[1]))
-      return add_strong_motor(effect);
+      return strong_motors_.push_back(effect);
     effect.name += "." + what;
     if (batch_of(place).ops->counters > 0) effect.angle = mechanism_.angles++;
     if (is_bounded(place)) return add_bounded(source, effect, place);
@@ -189,8 +190,17 @@ class EffectReader {
     return found == mechanism_.joints.end() ? -1 : static_cast<int>(found - mechanism_.joints.begin());
   }
 
-  // It never slips, so it needs no events.
-  void add_strong_motor(const Effect& effect) {
+  // A motor without a largest force never slips, so it needs no events: it is an equation. Beside a row with bounds on
+  // its coordinate it is the last of these: an end that is met stops it, as in the World.
+  void add_strong_motor(Effect& effect) {
+    const bool shared = std::ranges::any_of(mechanism_.bounded, [&](const Effect& other) {
+      return other.bodies == effect.bodies && other.type == effect.type && other.coordinate == effect.coordinate;
+    });
+    if (shared) {
+      effect.name += ".motor";
+      mechanism_.bounded.push_back(effect);
+      return;
+    }
     mechanism_.joints.push_back(
         {effect.name + ".motor", effect.type, effect.bodies, effect.parameters, effect.coordinate, effect.numbers[0]});
     mechanism_.joints.back().holds = effect.holds;
@@ -249,6 +259,7 @@ class EffectReader {
   BasicWorld<S>& world_;
   const RefuseEffect& refuse_;
   Mechanism& mechanism_;
+  std::vector<Effect> strong_motors_;
 };
 
 }  // namespace

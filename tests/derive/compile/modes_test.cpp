@@ -3,6 +3,7 @@
 
 #include "bounds_dop853.hpp"
 #include "bounds_rk4.hpp"
+#include "contradicting_rk4.hpp"
 #include "dry_arm_dop853.hpp"
 #include "dry_arm_rk4.hpp"
 #include "ends_rk4.hpp"
@@ -16,6 +17,7 @@
 #include "robot_arm_rk4.hpp"
 #include "sledge_dop853.hpp"
 #include "sledge_rk4.hpp"
+#include "strong_motors_rk4.hpp"
 #include "tests/derive/compile/beside_world.hpp"
 #include "timed_bounds_dop853.hpp"
 #include "timed_bounds_rk4.hpp"
@@ -69,6 +71,23 @@ void stops_where_friction_says() {
 TEST(CompiledModes, StopASledgeWhereFrictionSays) {
   stops_where_friction_says<sledge_rk4<double>>();
   stops_where_friction_says<sledge_dop853<double>>();
+}
+
+// A motor that nothing stops swings a rod beyond the end of its rope.
+TEST(CompiledModes, TellHowFarAnEndIsPassed) {
+  using Rod = contradicting_rk4<double>;
+  Rod::State state;
+  Rod::reset(state);
+  for (int k = 0; k < 100; ++k) EXPECT_LT(Rod::step(state), 1e-12);  // slack up to 0.168 s
+  double told = 0;
+  for (int k = 0; k < 400; ++k) told = Rod::step(state);
+  EXPECT_NEAR(state.q[Rod::rod].angle, 1.5, 1e-9);
+  EXPECT_NEAR(told, 2 * std::sin(0.75) - 0.5, 1e-6);
+}
+
+TEST(CompiledModes, LimitsStopMotorsAsInTheWorld) {
+  runs_as_the_world<strong_motors_rk4<double>>("tests/hard_cases/motor_against_limit/planar.toml", Integrator::rk4,
+                                               1e-12);
 }
 
 // Every row of the scene is at a bound at some time, and off it at another, but for the motors that pull with all they
