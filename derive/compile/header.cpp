@@ -228,7 +228,7 @@ class HeaderWriter {
                          ", const T& h, Velocity (&next)[bodies]" + (has().rows ? ", T (&lambda)[rows]" : "") +
                          (has().bounded ? ", Bounded& B)" : ")"),
                      equations_.kick);
-    if (has().loads && has().weighs) write_carry(at), text_ += settle_loads_of(has());
+    if (has().corrects_loads()) write_carry(at), text_ += settle_loads_of(has());
     if (has().ends) write_ends(at, moving);
     if (has().events) {
       write_function("Distances from the events of rows with bounds",

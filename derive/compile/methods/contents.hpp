@@ -25,8 +25,9 @@ struct Contents {
   bool drags = false;          // some body has drag
   bool foresees = false;       // the multipliers of the next projection, by those of the last steps
   std::size_t collocated = 0;  // by Radau IIA: components of velocities
-  bool projects() const { return rows || modes; }               // velocities
-  bool repeats() const { return weighs && exerts && bounded; }  // forces of rows that prescribe a rate
+  bool projects() const { return rows || modes; }                        // velocities
+  bool repeats() const { return weighs && exerts && bounded; }           // forces of rows that prescribe a rate
+  bool corrects_loads() const { return loads && (weighs || midpoint); }  // by impulses beside those found
   bool weighs_joints() const { return weighs && (bonds || loads) && rows; }
   bool closes() const { return rows || ends; }
   bool stiffens() const { return midpoint && (rows || bounded); }        // by tension

@@ -90,13 +90,15 @@ std::string arguments_of_carry(const Contents& has) {
 }
 
 std::string settle_loads_of(const Contents& has) {
-  const std::string force = has.weighs ? "whole" : "force";
-  const std::string carries = has.rows ? fmt::format(carries_of_joints, has.weighs ? " + drawn[i]" : "", force)
-                                       : fmt::format("      carry($pq, time, {}, found);\n", force);
+  const std::string force = has.corrects_loads() ? "whole" : "force";
+  const std::string carries = has.rows
+                                  ? fmt::format(carries_of_joints, has.corrects_loads() ? " + drawn[i]" : "", force)
+                                  : fmt::format("      carry($pq, time, {}, found);\n", force);
   const std::string corrections =
       std::string(has.rows ? "const T (&drawn)[rows], " : "") + "const T (&before)[bounded], ";
   return fmt::format(settles, has.rows ? "const Jacobian& J, const T (&lambda)[rows], " : "",
-                     (has.weighs ? carries_with_corrections : "") + carries, has.weighs ? corrections : "");
+                     (has.corrects_loads() ? carries_with_corrections : "") + carries,
+                     has.corrects_loads() ? corrections : "");
 }
 
 }  // namespace cdot::compile

@@ -69,13 +69,12 @@ constexpr const char* measures_ends = R"(      nearest($ss.q, end, off, side);
 // The impulses of rows with bounds take half of the change x.
 constexpr const char* settles_round = R"(      T hold[bounded];
       for (int i = 0; i < bounded; ++i) hold[i] = s.hold[i];
-      settle(B, hold, x);
-      for (int i = 0; i < bounded; ++i) {{
+{1}      for (int i = 0; i < bounded; ++i) {{
         s.hold[i] = select(goes_on, hold[i], s.hold[i]);
         low[i] = select(goes_on, mu[i] + T(2) * B.low[i], low[i]), high[i] = select(goes_on, mu[i] + T(2) * B.high[i], high[i]);
         mu[i] = mu[i] + select(goes_on, T(2) * x[i], T(0));
       }}
-{})";
+{0})";
 
 constexpr const char* rounds_end =
     R"(      const T way = farthest(d, h), miss = larger(T(single ? 1e6 : 1e12) * way, T({1}) * worst);
@@ -120,9 +119,8 @@ constexpr const char* projects = R"(    solve($qs.J, rate, y, d);
 constexpr const char* settles_end = R"(    for (int i = 0; i < bounded; ++i) {{
       B.low[i] = (is_rate[i] ? low[i] : B.low[i]) - mu[i], B.high[i] = (is_rate[i] ? high[i] : B.high[i]) - mu[i];
     }}
-    settle(B, s.hold, x);
-    for (int i = 0; i < bounded; ++i) mu[i] = mu[i] + x[i], s.force[i] = mu[i] / h;
-{})";
+{1}    for (int i = 0; i < bounded; ++i) mu[i] = mu[i] + x[i], s.force[i] = mu[i] / h;
+{0})";
 
 // An end that was hit takes energy by itself.
 constexpr const char* judges_end = R"(    T loss = T(0);
@@ -166,9 +164,8 @@ constexpr const char* aims_at_ends = R"(    T off[bounded], side[bounded], misse
     for (int i = 0; i < bounded; ++i)
       missed_ends[i] = missed_ends[i] + select(side[i] * off[i] > T(0), off[i] / h, T(0));
 )";
-constexpr const char* rescue_settles = R"(    settle(B, s.hold, x);
-    for (int i = 0; i < bounded; ++i) s.force[i] = x[i] / h;
-{})";
+constexpr const char* rescue_settles = R"({1}    for (int i = 0; i < bounded; ++i) s.force[i] = x[i] / h;
+{0})";
 constexpr const char* rescue_moves = "    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + d[i];\n";
 constexpr const char* rescue_closes = R"(    Velocity moves[bodies];
     close(s, at, T(0.2), moves);
@@ -199,6 +196,25 @@ constexpr const char* parts = R"(
   }}
 )";
 
+// Bounds of x grow with what carries a load: with x, and this share of the impulses so far. Half of the change of an
+// impulse has half of its bounds, so half of its load.
+constexpr const char* settles_loaded = R"(    {{
+      T before[bounded], load[bounded];
+      for (int i = 0; i < bounded; ++i) before[i] = {2}mu[i], load[i] = magnitude(before[i]);
+{3}      settle_loads($s{0}, s.time, {4}before, B, x, load, [&](T (&now)[bounded]) {{ settle(B, {1}, now); }});
+    }}
+)";
+constexpr const char* draws_joints = R"(      T drawn[rows];
+      for (int i = 0; i < rows; ++i) drawn[i] = {}lambda[i];
+      evaluate($s{}, s.time, s.J);
+)";
+
+std::string settles_x(const Contents& has, const char* q, const char* hold, const char* share) {
+  if (!has.loads) return fmt::format("    settle(B, {}, x);\n", hold);
+  return fmt::format(settles_loaded, q, hold, share, has.rows ? fmt::format(draws_joints, share, q) : "",
+                     has.rows ? "s.J, y, drawn, " : "");
+}
+
 // What impulses x of rows with bounds change.
 std::string adds_bounded(const Contents& has, const char* indent) {
   std::string text = fmt::format("{}for (int e = 0; e < bounded; ++e) {{\n", indent);
@@ -220,9 +236,11 @@ std::string ending(const Contents& has) {
         "    T rate[rows];\n    rates(s.J, s.v, rate);\n"
         "    const T energy = moved_energy(s.q, s.v, before);\n    const auto stands = hardly_moves(s.v, h);\n";
   if (has.finishes)
-    text +=
-        fmt::format(finishes, has.rows ? "s.J, " : "", has.looks ? "given, at_end, " : "", has.rows ? ", y" : "",
-                    has.bounded ? ", B" : "", has.bounded ? fmt::format(settles_end, adds_bounded(has, "    ")) : "");
+    text += fmt::format(
+        finishes, has.rows ? "s.J, " : "", has.looks ? "given, at_end, " : "", has.rows ? ", y" : "",
+        has.bounded ? ", B" : "",
+        has.bounded ? fmt::format(settles_end, adds_bounded(has, "    "), settles_x(has, "s.q", "s.hold", "T(0) * "))
+                    : "");
   else if (has.rows) text += projects;
   if (!has.rows) return text + "    (void)last, (void)work, (void)residual;\n";
   return text + judges_end + (has.ends ? forgives_hits : "") + stores_end;
@@ -264,7 +282,8 @@ std::string round(const Mechanism& mechanism, const Contents& has) {
   text += measured(has) + stiffens(has, "middle", "h");
   if (has.gyroscopes) text += "      find_mean_spins(at.q, s.v, h, mean);\n";
   text += "      T power;\n" + improves(has, "middle", "h");
-  if (has.bounded) text += fmt::format(settles_round, adds_bounded(has, "      "));
+  if (has.bounded)
+    text += fmt::format(settles_round, adds_bounded(has, "      "), settles_x(has, "middle", "hold", "T(0.5) * "));
   const auto bodies = static_cast<double>(std::ranges::count_if(mechanism.bodies, &Body::moves));
   const double goal = 0.01 * mechanism.tolerance, few = std::clamp(bodies * bodies, 1e2, 1e4);
   return text +
@@ -291,7 +310,8 @@ std::string rescue(const Contents& has) {
   if (has.effects) text += weighs;
   if (has.gyroscopes) text += "    for (int i = 0; i < bodies; ++i) mean[i] = s.v[i];\n";
   text += improves(has, "s.q", "twice");
-  if (has.bounded) text += fmt::format(rescue_settles, adds_bounded(has, "    "));
+  if (has.bounded)
+    text += fmt::format(rescue_settles, adds_bounded(has, "    "), settles_x(has, "s.q", "s.hold", "T(0) * "));
   text += rescue_moves + drifts(has, "s", "h") + "    s.time = s.time + h;\n";
   if (has.gyroscopes) text += follows;
   if (has.closes()) text += rescue_closes;

@@ -99,6 +99,7 @@ void BoundedSystem::output_changes(const Values& w, const Values& v, int h) {
     const int mu = algebra_.input(element("mu", b));
     for (int* bound : {&kick.low, &kick.high}) *bound = algebra_.times(half, algebra_.sum({{*bound, mu}, {1, -1}}));
     output_row(b, algebra_.sum({{algebra_.sum(missed)}, {-1}}), kick);
+    if (blocks_.mechanism().has_loads()) rows_[b].output_by_load();
   }
   output_S({});
 }

@@ -1,12 +1,17 @@
-// Friction that grows with what a contact or a joint carries, by Euler's steps: compiled scenes move as the World does.
+// Friction that grows with what a contact or a joint carries, by impulses: compiled scenes move as the World does.
 #include <gtest/gtest.h>
 
 #include "dry_arm_euler.hpp"
+#include "dry_arm_implicit.hpp"
 #include "hanger_euler.hpp"
+#include "hanger_implicit.hpp"
 #include "jamming_rod_euler.hpp"
+#include "jamming_rod_implicit.hpp"
 #include "rough_ball_euler.hpp"
 #include "rough_pins_euler.hpp"
+#include "rough_pins_implicit.hpp"
 #include "rough_rail_euler.hpp"
+#include "rough_rail_implicit.hpp"
 #include "sledge_euler.hpp"
 #include "tests/derive/compile/beside_world.hpp"
 
@@ -16,8 +21,14 @@ using cdot::Integrator;
 using namespace cdot::scenes;
 
 template <class Scene>
-void runs(const std::string& file, double step = 0.001) {
-  cdot::runs_as_the_world<Scene>(file, Integrator::euler, 1e-11, 1, step);
+void runs(const std::string& file, double step = 0.001, Integrator integrator = Integrator::euler) {
+  cdot::runs_as_the_world<Scene>(file, integrator, 1e-11, 1, step);
+}
+// By the midpoint rule, in short and in long steps.
+template <class Scene>
+void runs_by_midpoint(const std::string& file) {
+  runs<Scene>(file, 0.001, Integrator::implicit);
+  runs<Scene>(file, 1.0 / 60, Integrator::implicit);
 }
 
 const std::string scenes = "tests/derive/compile/scenes/";
@@ -40,10 +51,20 @@ TEST(CompiledFriction, JamsByImpulsesAsInTheWorld) {
   runs<jamming_rod_euler<double>>("tests/hard_cases/jamming_rod/planar.toml", 1.0 / 60);
 }
 
+// The bounds of the middle grow with the whole impulses of a step, those of its end with what the end adds.
+TEST(CompiledFriction, SlipsInTheMiddleAsInTheWorld) {
+  runs_by_midpoint<dry_arm_implicit<double>>(scenes + "dry_arm.toml");
+  runs_by_midpoint<hanger_implicit<double>>("tests/derive/compile/bonds/hanger.toml");
+  runs_by_midpoint<jamming_rod_implicit<double>>("tests/hard_cases/jamming_rod/planar.toml");
+  runs_by_midpoint<rough_pins_implicit<double>>(scenes + "rough_pins.toml");
+  runs_by_midpoint<rough_rail_implicit<double>>(scenes + "rough_rail.toml");
+}
+
 TEST(CompiledFriction, ASnapshotKeepsLoads) { cdot::snapshot_keeps<rough_pins_euler<double>>(0.001); }
 
 TEST(CompiledFriction, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<rough_pins_euler>();
+  cdot::lanes_are_as_alone<rough_pins_implicit>();
   cdot::lanes_are_as_alone<dry_arm_euler, float>();
 }
 
