@@ -86,7 +86,7 @@ std::string BodyTexts::push() const {
   return text + (pose_argument(mechanism).empty() ? "" : "    (void)q;\n") + "    (void)v, (void)h;\n  }\n";
 }
 
-std::string BodyTexts::weighed() const {
+std::string BodyTexts::weighed(bool with_bounds) const {
   std::string text = R"(
   // Twice the kinetic energy.
   static T weighed(const Pose (&q)[bodies], const Velocity (&v)[bodies]) {
@@ -107,7 +107,24 @@ std::string BodyTexts::weighed() const {
       text +=
           fmt::format("    sum = sum + T({}) * ({});\n", 1 / b.inv_I, squares(mechanism.linear(), mechanism.columns()));
   });
-  return text + "    return sum;\n  }\n";
+  return text + "    return sum;\n  }\n" + (with_bounds ? bounds_of_weighed() : "");
+}
+
+// Bounds of it that turn no spin to a body's axes.
+std::string BodyTexts::bounds_of_weighed() const {
+  std::string most, least;
+  each([&](const Body& b, const std::string& name) {
+    const std::string moving = fmt::format("(v[{0}].x * v[{0}].x + v[{0}].y * v[{0}].y + v[{0}].z * v[{0}].z)", name);
+    const std::string turning =
+        fmt::format("(v[{0}].wx * v[{0}].wx + v[{0}].wy * v[{0}].wy + v[{0}].wz * v[{0}].wz)", name);
+    const double trace = b.inertia_turns ? b.inertia[0] + b.inertia[1] + b.inertia[2] : b.inv_I > 0 ? 1 / b.inv_I : 0;
+    if (b.inv_m > 0) least += fmt::format("    sum = sum + T({}) * {};\n", 1 / b.inv_m, moving);
+    if (trace > 0) most += fmt::format("    sum = sum + T({}) * {};\n", trace, turning);
+  });
+  const char* const function =
+      "  static T {}(const Velocity (&v)[bodies]) {{\n    T sum = T(0);\n{}    return sum;\n  }}\n";
+  return "  // At least that, and at most.\n" + fmt::format(fmt::runtime(function), "weighed_at_least", least) +
+         fmt::format(fmt::runtime(function), "weighed_at_most", least + most);
 }
 
 // A constant torque has a potential in the plane only. In space its work counts along the shortest rotation.

@@ -20,7 +20,8 @@ struct BodyTexts {
   // push(): forces other than the joints' for a step of Euler's method.
   std::string push() const;
   // weighed(): twice the kinetic energy.
-  std::string weighed() const;
+  std::string weighed(bool with_bounds) const;
+  std::string bounds_of_weighed() const;
   std::string energy(bool has_effects) const;
   // By the implicit midpoint rule: what judges a part of a step; drag(), if some body has drag.
   std::string judged() const;

@@ -17,15 +17,22 @@ std::string text_of(const Tensor& I, double unit) {
 }
 std::string moments(const Tensor& I) { return text_of(I, 1); }
 
+// S of a body in the axes of the world.
+std::string turned_by(const std::string& pose, const Tensor& S) {
+  if (!is_diagonal(S)) return fmt::format("turned<T>({}, {})", pose, moments(S));
+  const auto axis = static_cast<std::size_t>(std::min_element(S.begin(), S.begin() + 3) - S.begin());
+  return fmt::format("turned<{}, T>({}, T({}), T({}), T({}))", axis, pose, S[axis], S[(axis + 1) % 3] - S[axis],
+                     S[(axis + 2) % 3] - S[axis]);
+}
+
 // Bodies of one inertia are of one kind, whose functions know it.
 class Kinds {
  public:
   std::string of(const Body& body) {
-    const std::pair<const char*, std::string> parts[] = {{"I", moments(body.inertia)},
-                                                         {"inverse", moments(body.inverse_inertia)}};
-    std::string functions;
-    for (const auto& [name, text] : parts)
-      functions += fmt::format("      static {} {}() {{ return {}; }}\n", text.substr(0, text.find('{')), name, text);
+    const std::string functions =
+        fmt::format("      static Tensor<T> I(const Pose& q) {{ return {}; }}\n", turned_by("q", body.inertia)) +
+        fmt::format("      static Tensor<T> inverse(const Pose& q) {{ return {}; }}\n",
+                    turned_by("q", body.inverse_inertia));
     const auto known = std::ranges::find(kinds_, functions);
     const auto place = static_cast<std::size_t>(known - kinds_.begin());
     if (known == kinds_.end()) kinds_.push_back(functions);
@@ -33,7 +40,8 @@ class Kinds {
   }
 
   std::string text() const {
-    std::string text = "\n  // Moments of inertia in the axes of bodies, and their inverses.\n  struct Kinds {\n";
+    std::string text =
+        "\n  // Inertias and their inverses in the axes of the world, by kinds of bodies.\n  struct Kinds {\n";
     for (std::size_t k = 0; k < kinds_.size(); ++k)
       text += fmt::format("    struct Kind_{} {{\n{}    }};\n", k, kinds_[k]);
     return text + "  };\n";
@@ -103,7 +111,7 @@ constexpr const char* momentum_functions = R"(
   template <class Kind>
   static void follow(Pose& q, Velocity& v, Gyroscope& g) {
     g.momentum = g.momentum + g.I * (Vector<T>{v.wx, v.wy, v.wz} - g.spin);
-    q.I = turned<T>(q, Kind::inverse()), g.I = turned<T>(q, Kind::I()), g.spin = q.I * g.momentum;
+    q.I = Kind::inverse(q), g.I = Kind::I(q), g.spin = q.I * g.momentum;
     v.wx = g.spin.x, v.wy = g.spin.y, v.wz = g.spin.z;
   }
   static void carry(const Pose& q, Velocity& v, const Tensor<T>& I) {
@@ -113,7 +121,7 @@ constexpr const char* momentum_functions = R"(
   template <class Kind>
   static void wind(Pose& q, const Velocity& v, Gyroscope& g) {
     g.spin = {v.wx, v.wy, v.wz};
-    q.I = turned<T>(q, Kind::inverse()), g.I = turned<T>(q, Kind::I()), g.momentum = g.I * g.spin;
+    q.I = Kind::inverse(q), g.I = Kind::I(q), g.momentum = g.I * g.spin;
   }
   // The pose after h by the mean spin: of a body that is symmetric about e, and of any other.
   static void spin(Pose& to, const Pose& q, const Velocity& v, const Vector<T>& e, const T& across, const Vector<T>& I,
@@ -178,8 +186,8 @@ std::string gyroscopes_of(const Mechanism& mechanism, const std::vector<std::str
     drift += drifted(body, names[b]);
     if (!body.inertia_turns) continue;
     const std::string kind = kinds.of(body);
-    const std::string inverse = moments(body.inverse_inertia), I = moments(body.inertia);
-    weigh += fmt::format("    q[{0}].I = turned<T>(q[{0}], {1});\n", names[b], inverse);
+    const std::string I = moments(body.inertia);
+    weigh += fmt::format("    q[{0}].I = {1};\n", names[b], turned_by("q[" + names[b] + "]", body.inverse_inertia));
     wind += fmt::format("    wind<{2}>(s.q[{0}], s.v[{0}], s.g[{1}]);\n", names[b], count, kind);
     carry += fmt::format("    carry(to[{0}], v[{0}], turned<T>(from[{0}], {1}));\n", names[b], I);
     follow += fmt::format("    follow<{2}>(s.q[{0}], s.v[{0}], s.g[{1}]);\n", names[b], count++, kind);

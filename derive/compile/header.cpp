@@ -49,7 +49,8 @@ class HeaderWriter {
     text_ += bodies.turn(equations_.turning) + gyroscopes_of(mechanism_, names_.bodies);
     if (has().midpoint && has().gyroscopes) text_ += mean_spins_of(mechanism_, names_.bodies);
     if (mechanism_.method == Method::euler && !has_effects()) text_ += bodies.push();
-    text_ += bodies.weighed() + bodies.energy(has_effects()) + (has().midpoint && has().drags ? bodies.dragged() : "");
+    text_ += bodies.weighed(has().foresees && has().gyroscopes) + bodies.energy(has_effects()) +
+             (has().midpoint && has().drags ? bodies.dragged() : "");
     write_equations();
     write_corrections();
     if (has().exerts) text_ += start_of(has());

@@ -13,7 +13,7 @@ std::set<std::string> taken_names() {
       "auto const static struct case switch default return template left largest next kick potential E sum free B "
       "Bounded Bound bounded Mask entry divide settle part find_active p Inputs find_contradiction is_rate reach "
       "past along hold mu residual error moves Vector Tensor Gyroscope Rate Pack NumberOf angles Angles count "
-      "next_angles Kinds append lower share shift "
+      "next_angles weighed_at_least weighed_at_most is_slight Kinds append lower share shift "
       "to pull scenes std still choose rate_of larger foresee remember exert apply aim Aim Multipliers is_pack "
       "orient weigh wind follow drift spin dot cross times root half_turn turned to_world to_body turn_by free_turn "
       "inverse_root wide_half_turn add trace turn_within newton_step mean_spin sin_cos sin_cos_beside magnitude any "

@@ -113,6 +113,14 @@ inline Tensor<T> turned(const Pose& q, const Moments& S) {
   const Vector<T> Sx = times(S, x), Sy = times(S, y), Sz = times(S, z);
   return {dot(x, Sx), dot(y, Sy), dot(z, Sz), dot(x, Sy), dot(x, Sz), dot(y, Sz)};
 }
+// The same of moments that are `least` about one axis of the body, and by x and y more about the next ones.
+template <int axis, class T, class Pose>
+inline Tensor<T> turned(const Pose& q, const T& least, const T& x, const T& y) {
+  const Vector<T> axes[3] = {{q.xx, q.yx, q.zx}, {q.xy, q.yy, q.zy}, {q.xz, q.yz, q.zz}};
+  const Vector<T>&a = axes[(axis + 1) % 3], &b = axes[(axis + 2) % 3], xa = x * a, yb = y * b;
+  return {least + (xa.x * a.x + yb.x * b.x), least + (xa.y * a.y + yb.y * b.y), least + (xa.z * a.z + yb.z * b.z),
+          xa.x * a.y + yb.x * b.y,           xa.x * a.z + yb.x * b.z,           xa.y * a.z + yb.y * b.z};
+}
 template <class Pose, class T>
 inline Vector<T> to_world(const Pose& q, const Vector<T>& a) {
   return {q.xx * a.x + q.xy * a.y + q.xz * a.z, q.yx * a.x + q.yy * a.y + q.yz * a.z,
@@ -232,13 +240,16 @@ inline Vector<T> mean_spin(const Moments& I, const Moments& inverse, const Vecto
     const Vector<T> side = cross(theta, L), turned = L - sinc * side + versine * cross(theta, side);
     const Vector<T> residual = after - times(inverse, turned);
     const T size = dot(residual, residual);
+    const Vector<T> step = newton_step(I, (T(0.5) * h) * turned, theta, sinc, versine, residual);
+    const T length = dot(step, step);
+    const auto is_last = curvature * length * length <= fine;
+    // One round is enough for most steps.
+    if (round == 0 && !any(!(size > fine && size < T(0.25) * spin && is_last))) return T(0.5) * (W + (after - step));
     const auto better = busy && size < smallest, converges = size < T(0.25) * smallest;
     best = choose(better, mean, best), smallest = select(better, size, smallest);
     busy = busy && converges && size > fine;
-    const Vector<T> step = newton_step(I, (T(0.5) * h) * turned, theta, sinc, versine, residual);
     after = choose(busy, after - step, after);
-    const T length = dot(step, step);
-    const auto last = busy && curvature * length * length <= fine;
+    const auto last = busy && is_last;
     best = choose(last, T(0.5) * (W + after), best);
     busy = busy && !last;
   }

@@ -87,9 +87,15 @@ constexpr const char* euler_corrects_as_foreseen =
     }}
     remember(s, fits, h * h, total, foreseen);
     // A displacement beyond the motion of the step, or of an error older than it, would add energy.
-    const auto keep = (is_foreseen || left <= T(0.1) * error) && T(4) * weighed(s.q, moves) <= h * h * weighed(s.q, s.v);
+    auto is_slight = {1};
+    const auto keep = (is_foreseen || left <= T(0.1) * error) && is_slight;
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + select(keep, T(1) / h, T(0)) * moves[i];
 )";
+
+constexpr const char* is_slight = "T(4) * weighed(s.q, moves) <= h * h * weighed(s.q, s.v)";
+// The bounds decide for most steps.
+constexpr const char* is_slight_by_bounds = R"(T(4) * weighed_at_most(moves) <= h * h * weighed_at_least(s.v);
+    if (any(!is_slight)) is_slight = is_slight || T(4) * weighed(s.q, moves) <= h * h * weighed(s.q, s.v))";
 
 constexpr const char* euler_corrects = R"({0}    Velocity moves[bodies];
     const T error = close(s, at, T(0.2), moves{1});
@@ -119,7 +125,7 @@ std::string euler(double tolerance, const Contents& has) {
                 (has.spatial ? foresees_small_turns : std::string()) +
                     (has.gyroscopes ? "" : "    for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], h * s.v[i]);\n"),
                 has.spatial ? "auto" : "const auto") +
-            fmt::format(euler_corrects_as_foreseen, tolerance);
+            fmt::format(euler_corrects_as_foreseen, tolerance, has.gyroscopes ? is_slight_by_bounds : is_slight);
   else if (has.closes()) text += fmt::format(euler_corrects, declares_gained(has), gained(has));
   if (has.gyroscopes && has.closes()) text += follows;
   text += "$C";
