@@ -82,6 +82,7 @@ class HeaderWriter {
             .carries = mechanism_.method == Method::rattle && carries_spin(mechanism_, !equations_.effect_of.empty()),
             .modes = !mechanism_.bounded.empty() && mechanism_.on_accelerations(),
             .loads = mechanism_.has_loads(),
+            .strong = mechanism_.on_accelerations() && mechanism_.has_strong_motors(),
             .bonds = !mechanism_.bonds.empty(),
             .weighs = mechanism_.weighs(),
             .drags = std::ranges::any_of(mechanism_.bodies, &Body::drags),
@@ -94,7 +95,6 @@ class HeaderWriter {
     return compile::with_arguments(std::move(text), {has_inputs(), has().angles, has().events, has().bonds,
                                                      has().gyroscopes, pose_argument(mechanism_)});
   }
-
   void line(const std::string& line = {}) { text_ += line + "\n"; }
   // f(body, its name) for those that move.
   template <class F>

@@ -20,6 +20,7 @@ struct Contents {
   bool carries = false;        // by RATTLE, forces at the end read the spin of a body whose inertia turns
   bool modes = false;          // of rows with bounds by Runge-Kutta methods
   bool loads = false;          // bounds of these that grow with loads
+  bool strong = false;         // motors without a largest force among these
   bool bonds = false;          // some joint may break
   bool weighs = false;         // by Euler's steps or RATTLE: the impulses of corrections count as loads
   bool drags = false;          // some body has drag

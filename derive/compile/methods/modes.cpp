@@ -132,7 +132,7 @@ constexpr const char* decides = R"(
       settle(B, hold, now);
     }};
     {2}
-    for (int i = 0; i < bounded; ++i) {{
+{5}    for (int i = 0; i < bounded; ++i) {{
       const Mask up = force[i] >= B.high[i], down = force[i] <= B.low[i];
       const Mask leaves = !is_equation(G, i) && magnitude(s.hold[i]) < T(0.5) && (up || down){4};
       const T end = select(magnitude(G.low[i]) > T(0), T(1), T(-1));
@@ -266,6 +266,12 @@ constexpr const char* holds_jammed = R"(
       solve(now);
       for (int e = 0; e < bounded; ++e) force[e] = select(jams, now[e], force[e]);
     })";
+// An end that has stopped such a motor holds without a force: let go, it would be passed.
+constexpr const char* finds_strong_motors = R"(    Mask drives = T(1) < T(0);
+    for (int i = 0; i < bounded; ++i)
+      if (is_rate[i]) drives = drives || is_equation(G, i);
+)";
+
 std::string pull_of(const Contents& has) {
   const bool rows = has.rows, loads = has.loads;
   return fmt::format(pulls, rows ? "const Jacobian& J, " : "", rows ? "T (&lambda)[rows], " : "",
@@ -292,7 +298,9 @@ std::string decides_of(const Contents& has) {
                      has.loads
                          ? "const Mask jams = settle_loads($ss.q, s.time, " + J + "B, force, s.modes.load, solve);"
                          : "solve(force);",
-                     has.loads ? stops_jammed : "", has.loads ? " && !jams" : "");
+                     has.loads ? stops_jammed : "",
+                     std::string(has.loads ? " && !jams" : "") + (has.strong ? " && !(drives && stopped[i])" : ""),
+                     has.strong ? finds_strong_motors : "");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <cdot/effects.hpp>
 
 #include "derive/compile/scene/bonds.hpp"
+#include "derive/compile/scene/groups.hpp"
 #include "runtime/rows/spline.hpp"
 #include "runtime/state/world_data.hpp"
 #include "runtime/tool/scene/profile.hpp"
@@ -51,7 +52,8 @@ class EffectReader {
     }
     for (int j = joints; j < world_.joint_count(); ++j)
       if (!record(j).places.empty()) add_soft(fmt::format("spring{}", j - joints + 1), j);
-    for (Effect& motor : strong_motors_) add_strong_motor(motor);
+    const std::vector<int> groups = groups_of(mechanism_);
+    for (Effect& motor : strong_motors_) add_strong_motor(motor, groups);
   }
 
  private:
@@ -190,11 +192,16 @@ class EffectReader {
     return found == mechanism_.joints.end() ? -1 : static_cast<int>(found - mechanism_.joints.begin());
   }
 
-  // A motor without a largest force never slips, so it needs no events: it is an equation. Beside a row with bounds on
-  // its coordinate it is the last of these: an end that is met stops it, as in the World.
-  void add_strong_motor(Effect& effect) {
+  // A motor without a largest force never slips, so it needs no events: it is an equation. In a mechanism with ends it
+  // is the last of the rows with bounds: an end that is met stops it, as in the World.
+  void add_strong_motor(Effect& effect, const std::vector<int>& groups) {
+    const auto group_of = [&](const Effect& of) {
+      int group = -1;
+      for (const int body : of.bodies) group = std::max(group, groups[static_cast<std::size_t>(body)]);
+      return group;
+    };
     const bool shared = std::ranges::any_of(mechanism_.bounded, [&](const Effect& other) {
-      return other.bodies == effect.bodies && other.type == effect.type && other.coordinate == effect.coordinate;
+      return (other.law == Effect::limit || other.law == Effect::bound) && group_of(other) == group_of(effect);
     });
     if (shared) {
       effect.name += ".motor";

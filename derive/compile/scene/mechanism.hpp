@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -136,6 +137,11 @@ struct Mechanism {
   bool weighs() const {
     return (!bonds.empty() || has_events_by_force() || has_loads()) &&
            (method == Method::euler || method == Method::rattle);
+  }
+  // Without a largest force, among the rows with bounds.
+  bool has_strong_motors() const {
+    return std::ranges::any_of(bounded,
+                               [](const Effect& of) { return of.law == Effect::motor && std::isinf(of.numbers[1]); });
   }
   bool has_loads() const { return std::ranges::any_of(bounded, &Effect::is_loaded); }
   // True if the inertia of a body turns with it.
