@@ -215,7 +215,7 @@ std::string settles_x(const Contents& has, const char* q, const char* hold, cons
                      has.rows ? "s.J, y, drawn, " : "");
 }
 
-// What impulses x of rows with bounds change.
+// The changes by impulses x of rows with bounds.
 std::string adds_bounded(const Contents& has, const char* indent) {
   std::string text = fmt::format("{}for (int e = 0; e < bounded; ++e) {{\n", indent);
   text += fmt::format("{}  for (int i = 0; i < bodies; ++i) d[i] = d[i] + x[e] * B.g[e][i];\n", indent);

@@ -103,7 +103,7 @@ struct Spent {
   int samples = 0;
 };
 
-// What the estimate takes in so many steps of a run.
+// The steps that the estimate takes in a run of so many.
 Spent spent_by_estimate(Scene scene, long long steps) {
   using Space = Planar<double>;
   scene.duration = scene.step * static_cast<double>(steps);
