@@ -21,10 +21,9 @@ constexpr std::size_t few_rates = 24;
 std::string unrolled(const std::string& text, const Counts& counts);
 
 // Functions take the inputs, the angles, events and bonds: "$d" declares them, "$s" passes those of a State, "$p" those
-// of the caller;
-// "$C" counts the turns of the angles. Functions that weigh take poses where inertias turn: "$g" declares them, "$q"
-// passes those of a State, "$t" those of the caller. Poses get their inertias by "$w" at a stage, by "$W" at the end of
-// a step.
+// of the caller; "$C" counts the turns of the angles. Functions that weigh take poses where inertias turn: "$g"
+// declares them, "$q" passes those of a State, "$t" those of the caller. Poses get their inertias by "$w" at a stage,
+// by "$W" at the end of a step.
 struct Arguments {
   bool inputs, angles, events, bonds, turns;
   std::string poses;  // a declaration
