@@ -24,6 +24,7 @@ constexpr double close = 0.02, dip = 0.5, clearly = 1.5;
 constexpr int most_passings = 16;  // in one step, of several loops
 constexpr double shortest = 0.5, longest_share = 1.3;
 constexpr int lengths_tried = 52;
+constexpr double least_share = 0.2;  // of a length, for the next attempt
 
 // Where a row passes a loss of rank: `at` in units of the step, `slope` of the distance per step.
 struct Passing {
@@ -97,27 +98,14 @@ double now_over(const Island<S>& island, int row, double least) {
   return std::sqrt(double(island.system.pivot(row) / island.system.diagonal(row)) / std::max(least, 1e-300));
 }
 
-}  // namespace
+template <class T>
+struct Passage {
+  bool near = false;  // the step needs projected stages
+  T length = T(0);    // that leads its stages away from the pose; 0: the present one is as good
+  double noise = 0;   // [m/s], [rad/s]: magnified round-off that the velocities of such a step have
+};
 
-template <class S>
-void prepare_rank_loss(Island<S>& island, const RungeKuttaOf<S>& method) {
-  const auto rows = static_cast<size_t>(island.system.rows());
-  island.flow.pivots.assign(rows * static_cast<size_t>(method.stages), 0.0);
-  island.flow.of_row.assign(static_cast<size_t>(method.stages), 0.0);
-}
-
-template <class S>
-void note_pivots(Island<S>& island, int stage) {
-  const System<S>& system = island.system;
-  if (!island.solver->exact) return;
-  const int rows = system.rows();
-  double* to = island.flow.pivots.data() + static_cast<size_t>(stage) * static_cast<size_t>(rows);
-  for (int r = 0; r < rows; ++r) {
-    const bool counts = !system.fixed[r] && !system.broken[r];
-    to[r] = !counts ? 1.0 : system.dependent(r) ? 0.0 : double(system.pivot(r) / system.diagonal(r));
-  }
-}
-
+// Of a step of h whose stages were noted; the length is at most `longest`.
 template <class S>
 Passage<typename S::Scalar> passage_of(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                        typename S::Scalar h, typename S::Scalar longest) {
@@ -162,10 +150,73 @@ Passage<typename S::Scalar> passage_of(WorldData<S>& world, Island<S>& island, c
   return passage;
 }
 
+}  // namespace
+
+template <class S>
+void prepare_rank_loss(Island<S>& island, const RungeKuttaOf<S>& method) {
+  const auto rows = static_cast<size_t>(island.system.rows());
+  island.flow.pivots.assign(rows * static_cast<size_t>(method.stages), 0.0);
+  island.flow.of_row.assign(static_cast<size_t>(method.stages), 0.0);
+}
+
+template <class S>
+void note_pivots(Island<S>& island, int stage) {
+  const System<S>& system = island.system;
+  if (!island.solver->exact) return;
+  const int rows = system.rows();
+  double* to = island.flow.pivots.data() + static_cast<size_t>(stage) * static_cast<size_t>(rows);
+  for (int r = 0; r < rows; ++r) {
+    const bool counts = !system.fixed[r] && !system.broken[r];
+    to[r] = !counts ? 1.0 : system.dependent(r) ? 0.0 : double(system.pivot(r) / system.diagonal(r));
+  }
+}
+
+template <class S>
+bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar longest,
+                     typename S::Scalar& h, double& noise) {
+  using T = typename S::Scalar;
+  if (island.flow.projects_stages || world.settings.drift != Drift::projection) return false;
+  const Passage<T> passage = passage_of(world, island, method, h, longest);
+  if (!passage.near) return false;
+  if (method.implicit) {
+    // Newton's old df/dy misleads it there. No shorter step would help: fall_back() finishes this one.
+    h = T(0);
+    island.flow.astray = false;
+    go_back(world, island);
+    return true;
+  }
+  island.flow.projects_stages = true;
+  ++world.counts->steered;
+  go_back(world, island);
+  if (passage.length > T(0)) h = passage.length;
+  noise = passage.noise;
+  return true;
+}
+
+template <class T>
+bool Doubt<T>::asks(double error, T& h, double& noise) {
+  const bool tried = longer_ > T(0);
+  if (!open_ || (!tried && !(error > local_error_ && error <= noise))) return false;
+  if (tried && !(error <= error_ * std::pow(double(h / longer_), 0.5 * order_))) {
+    h = longer_, noise = noise_;
+    open_ = false;
+    return true;
+  }
+  if (error <= local_error_) return false;
+  longer_ = h, error_ = error;
+  noise_ = std::max(noise_, noise), noise = 0;
+  h *= T(std::max(least_share, std::pow(2 * error / local_error_, -1.0 / order_)));
+  return true;
+}
+
+#define CDOT_INSTANTIATE(T) template class Doubt<T>;
+CDOT_FOR_EACH_NUMBER(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
 #define CDOT_INSTANTIATE(S)                                            \
   template void prepare_rank_loss(Island<S>&, const RungeKuttaOf<S>&); \
   template void note_pivots(Island<S>&, int);                          \
-  template Passage<S::Scalar> passage_of(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);
+  template bool tries_with_care(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar&, double&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

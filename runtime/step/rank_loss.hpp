@@ -21,16 +21,30 @@ void prepare_rank_loss(Island<S>& island, const RungeKuttaOf<S>& method);
 template <class S>
 void note_pivots(Island<S>& island, int stage);
 
-template <class T>
-struct Passage {
-  bool near = false;  // the step needs projected stages
-  T length = T(0);    // that leads its stages away from the pose; 0: the present one is as good
-  double noise = 0;   // [m/s], [rad/s]: magnified round-off that the velocities of such a step have
-};
-
-// Of a step of h whose stages were noted; the length is at most `longest`.
+// True if the attempt at a step of h came near a loss of rank of K: goes back for one with projected stages, of a
+// length h that leads them away from it; 0 if the method cannot pass there. `noise`: magnified round-off that the
+// velocities of such a step have [m/s], [rad/s].
 template <class S>
-Passage<typename S::Scalar> passage_of(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
-                                       typename S::Scalar h, typename S::Scalar longest);
+bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar longest,
+                     typename S::Scalar& h, double& noise);
+
+// Tells round-off from an error of the length, where no step before bounds that length: two bodies that are a million
+// times as heavy as the one between them make a pivot as small as a loss of rank does, and that noise then allows a
+// step of any length. An error e ~ h^p falls as the step is shortened, here by half of that power at least.
+template <class T>
+class Doubt {
+ public:
+  // `bounded`: there is nothing to tell.
+  Doubt(bool bounded, double local_error, int order) : open_(!bounded), local_error_(local_error), order_(order) {}
+  // Call after an attempt of h with this error. True if another one is needed, of the length h and with this noise.
+  bool asks(double error, T& h, double& noise);
+
+ private:
+  bool open_;
+  double local_error_;
+  int order_;
+  T longer_ = T(0);  // the last length whose error only its noise allows; 0: none
+  double error_ = 0, noise_ = 0;
+};
 
 }  // namespace cdot

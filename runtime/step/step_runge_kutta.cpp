@@ -94,30 +94,6 @@ double try_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
   return left || island.flow.astray ? std::numeric_limits<double>::infinity() : error;
 }
 
-// True if the attempt at a step of h came near a loss of rank of K: goes back for one with projected stages, of a
-// length h that leads them away from it; 0 if the method cannot pass there. `noise`: see Passage.
-template <class S>
-bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar longest,
-                     typename S::Scalar& h, double& noise) {
-  using T = typename S::Scalar;
-  if (island.flow.projects_stages || world.settings.drift != Drift::projection) return false;
-  const Passage<T> passage = passage_of(world, island, method, h, longest);
-  if (!passage.near) return false;
-  if (method.implicit) {
-    // Newton's old df/dy misleads it there. No shorter step would help: fall_back() finishes this one.
-    h = T(0);
-    island.flow.astray = false;
-    go_back(world, island);
-    return true;
-  }
-  island.flow.projects_stages = true;
-  ++world.counts->steered;
-  go_back(world, island);
-  if (passage.length > T(0)) h = passage.length;
-  noise = passage.noise;
-  return true;
-}
-
 // Takes `left` of a fixed step of `whole`, or its largest half, quarter, ... with an allowed error. The parts share the
 // allowed error `absurd` in proportion to their lengths. Returns the length, 0 if no part is short enough.
 // Flow::margins are those of the end.
@@ -178,6 +154,20 @@ double try_adaptive_step(WorldData<S>& world, Island<S>& island, const RungeKutt
   return error <= 1 && leaps(island, h) ? std::max(2.0, std::pow(2 * safety, method.error_order)) : error;
 }
 
+// True if the attempt with this error needs another one, of a length h and with this noise: near a loss of rank, or in
+// doubt of its noise.
+template <class S>
+bool tries_again(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar reach,
+                 double error, Doubt<typename S::Scalar>& doubt, int& attempt, typename S::Scalar& h, double& noise) {
+  if (tries_with_care(world, island, method, reach, h, noise)) {
+    --attempt;  // its length says nothing about the error
+    return true;
+  }
+  if (!doubt.asks(error, h, noise)) return false;
+  go_back(world, island);
+  return true;
+}
+
 // Takes a step as long as the error allows, at most `reach`. Returns like take_fixed_step().
 template <class S>
 typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
@@ -190,15 +180,15 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
   T h = length_of_step(proposed, left, reach);
   int astray = 0;
   double noise = 0;
+  Doubt<T> doubt(proposed > T(0), world.settings.local_error, method.error_order);
   for (int attempt = 0; attempt <= most_rejections && astray < most_astray; ++attempt) {
     const double allowed = std::max(world.settings.local_error, noise);
     const double error = try_adaptive_step(world, island, method, time, h, allowed, safety);
     // A NaN counts as the largest error.
     const double factor = std::clamp(safety * std::pow(error, -1.0 / method.error_order), 0.2, 5.0);
     flow.next_step = h * T(error <= 1e300 ? factor : 0.2);
-    if (tries_with_care(world, island, method, reach, h, noise)) {
+    if (tries_again(world, island, method, reach, error * allowed, doubt, attempt, h, noise)) {
       if (!(h > T(0))) break;
-      --attempt;  // its length says nothing about the error
       continue;
     }
     const bool noisy = noise > world.settings.local_error, tells = !noisy && error <= 1e300;

@@ -21,7 +21,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 constexpr double least_sure = 1e-12;  // below it, smaller steps gain nothing for sure
-// Between two looks the error may be so many local errors, or this share of the accuracy, if that is smaller.
+// Between two looks the error may be so many local errors. Beyond this share of the accuracy they still count in a
+// claim, but refuse no run.
 constexpr double local_errors = 10, unseen = 0.1;
 // Up to the accuracy asked for, a claim is so many times the error that seems sure.
 constexpr double margin = 1.5;
@@ -43,9 +44,10 @@ constexpr double even = 150, slow = 150;
 constexpr double unlike = 2;  // the error in units of the distance of two methods of different kind
 
 // --- Fixed steps.
-constexpr double converges = 1.5;  // the distances of runs must fall by this, or
-constexpr double surely = 1e-3;    // the first must be below this share of the accuracy
-constexpr int most_idle = 3;       // refinements in a row without that
+// The distances of runs must fall by this: a first one says nothing about that, as long steps may have no order yet.
+constexpr double converges = 1.5;
+constexpr double surely = 1e-3;  // or be below this share of the accuracy
+constexpr int most_idle = 3;     // refinements in a row without that
 
 // --- Prices, in evaluations of an island's accelerations. All runs of a search together may take
 // RunOptions::search_work, or so many times the price of steps of a millisecond, if
@@ -176,16 +178,17 @@ void Search::judge(const Attempt& coarse, Attempt& fine) const {
   const auto [apart, agree_until] = distance(yardstick_, coarse, fine);
   fine.holds_until = agree_until;
   const double gained = sure_gain(coarse, fine, apart);
-  const double between_looks = std::min(local_errors * fine.knob.local_error, unseen * yardstick_.asked());
-  fine.achieved = std::max({std::min(apart, least_sure), apart / gained, between_looks});
+  const double between_looks = local_errors * fine.knob.local_error;
+  fine.achieved =
+      std::max({std::min(apart, least_sure), apart / gained, std::min(between_looks, unseen * yardstick_.asked())});
   const bool known = fine.knob.parts > coarse.knob.parts || !fine.knob.adaptive() ||
                      (fine.result.counts.rescued == 0 && !same_steps(coarse.result.counts, fine.result.counts));
   const bool seems_to_converge = fine.knob.adaptive() || fine.achieved < surely * yardstick_.asked() ||
-                                 fine.achieved * converges < coarse.achieved;
+                                 (std::isfinite(coarse.achieved) && fine.achieved * converges < coarse.achieved);
   fine.reached = known && seems_to_converge && balanced(fine) && fine.achieved <= yardstick_.asked();
   if (fine.reached) fine.holds_until = scene_.duration;
   // Steps that were left to another method err alike in both runs.
-  const double claim = fine.result.counts.rescued > 0 ? apart : margin * fine.achieved;
+  const double claim = fine.result.counts.rescued > 0 ? apart : std::max(margin * fine.achieved, between_looks);
   fine.claimed = std::max(fine.achieved, std::min(claim, yardstick_.asked()));
 }
 
@@ -208,8 +211,10 @@ std::optional<double> Search::next_share(const Attempt& last, const Attempt& now
   if (!now.whole) return least;
   if (!last.whole && !now.knob.adaptive()) return 0.5;
   if (!last.whole) return second_share(now.knob, yardstick_.asked());
-  // Two runs agree on a motion whose energy balance fails: finer ones would agree with them.
-  if (now.knob.adaptive() && now.achieved <= yardstick_.asked() && !balanced(now) && !balanced(last)) sensitive_ = true;
+  // Two runs agree on a motion whose energy balance fails: finer ones would agree with them. They may do better without
+  // steps that were left to another method.
+  const bool own_steps = now.knob.adaptive() && now.result.counts.rescued == 0;
+  if (own_steps && now.achieved <= yardstick_.asked() && !balanced(now) && !balanced(last)) sensitive_ = true;
   sensitive_ |= now.knob.strictest() && now.result.counts.rescued == 0;
   idle = now.achieved * converges < last.achieved ? 0 : idle + 1;
   if (!now.knob.adaptive() && idle > most_idle) return {};

@@ -1,0 +1,63 @@
+// The error that a run claims against the delivered trajectory of a motion in closed form, where it is over before a
+// loose run looks for the first time.
+#include <cmath>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <tuple>
+
+#include <cdot/methods.hpp>
+
+#include "runtime/text/files.hpp"
+#include "tests/runtime/tool/support.hpp"
+
+namespace cdot::test::claims_test {
+namespace {
+
+// A box of 1 kg falls into a spring of 10 N/m with 5 N s/m. Beside it hangs one on a spring so stiff that stiff methods
+// are tried first, by the longest steps.
+constexpr double stiffness = 10, damping = 5, gravity = 9.81;
+
+Scene boxes_on_springs(const TemporaryFolder& folder, double duration, double accuracy) {
+  std::string text = fmt::format("duration = {}\naccuracy = {}\n", duration, accuracy);
+  for (const auto& [name, x, k, c] : {std::tuple{"soft", 0, stiffness, damping}, {"stiff", 1, 1e8, 1e3}})
+    text += fmt::format(
+        "[[body]]\nname = \"{0}\"\nmass = 1\nshape = {{ box = [0.4, 0.4] }}\nposition = [{1}, 0]\n"
+        "[[joint]]\ntype = \"prismatic\"\nbodies = [\"world\", \"{0}\"]\nat = [{1}, 0]\nt = [1, 0]\n"
+        "slide.spring = {{ stiffness = {2}, damping = {3} }}\n",
+        name, x, k, c);
+  const std::string file = (folder / "boxes.toml").string();
+  write_file(file, text);
+  return read_scene(file);
+}
+
+// y = -(g / k) (1 - e^(-d t) (cos w t + d / w sin w t)), d = c / 2, w^2 = k - d^2
+double height_of(double time) {
+  const double d = damping / 2, w = std::sqrt(stiffness - d * d);
+  return -gravity / stiffness * (1 - std::exp(-d * time) * (std::cos(w * time) + d / w * std::sin(w * time)));
+}
+
+TEST(Claims, HoldForMotionsThatEndBetweenLooks) {
+  const TemporaryFolder folder;
+  double worst = 0;
+  for (const double duration : {5, 20, 200, 2000}) {
+    for (const double accuracy : {1e-2, 1e-3, 1e-5}) {
+      const Scene scene = boxes_on_springs(folder, duration, accuracy);
+      RunOptions options;
+      options.row_times = every(0.05, 3);
+      double off = 0;
+      options.row = [&](const Frame& frame) {
+        off = std::max(off, std::abs(frame.bodies[0].y - height_of(frame.time)));
+      };
+      std::string warnings;
+      const Choice choice = simulate(scene, options, warnings).choice.value();
+      fmt::print("  {:4} s, {:.0e} m: {} claims {:.1e}, is off by {:.1e}\n", duration, accuracy,
+                 name_of(integrators, choice.integrator), choice.achieved, off);
+      EXPECT_TRUE(choice.reached) << duration << " s, " << accuracy;
+      worst = std::max(worst, off / choice.achieved);
+    }
+  }
+  EXPECT_LT(worst, 1);
+}
+
+}  // namespace
+}  // namespace cdot::test::claims_test
