@@ -155,6 +155,7 @@ class Probe {
     ops_ = variants.general;
     batch_.ops = ops_;
     batch_.parameters.assign(joint.parameters.begin(), joint.parameters.end());
+    follow_time(joint);
     batch_.jacobian.assign(static_cast<size_t>(ops_->jacobian_size), T(0));
     for (auto* array : {&batch_.C, &batch_.bias, &batch_.rate}) array->assign(static_cast<size_t>(ops_->rows), T(0));
     batch_.body.resize(joint.bodies.size());
@@ -170,6 +171,17 @@ class Probe {
       bodies_.effective_mass[k] = world_->bodies.inverse_mass[i];
     }
     if (ops_->start_counting) count_on(joint, variants);
+  }
+
+  // The joint's own numbers in time; those of its effects stand in rows of their own.
+  void follow_time(const JointRecord& joint) {
+    batch_.drives.clear();
+    for (const JointDrive& drive : joint.drives)
+      if (drive.place < 0) batch_.drives.push_back(drive.drive);
+    constexpr ProfileSpan always;
+    batch_.first_drive = {0, static_cast<int>(batch_.drives.size())};
+    batch_.home.assign(1, 0);
+    batch_.spans = {always.from, always.until};
   }
 
   // displacement = M^-1 J^T of the row. Returns K of the row, the change of C that this predicts.
