@@ -149,11 +149,13 @@ std::vector<Concern> concerns_about(const Diagnosis::Island& island, const Setti
                                     const Names& names) {
   std::vector<Concern> concerns;
   on_rows(island, names, concerns);
+  const size_t of_rows = concerns.size();
   on_limited_forces(island, settings, concerns);
   on_stiffness(island, settings, h, names, concerns);
   on_spin(island, settings, h, names, concerns);
   on_damping(island, settings, h, names, concerns);
   on_condition(island, settings, single, names, concerns);
+  for (size_t k = of_rows; k < concerns.size(); ++k) concerns[k].of_method = true;
   return concerns;
 }
 

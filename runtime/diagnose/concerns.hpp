@@ -14,6 +14,7 @@ namespace cdot {
 struct Concern {
   bool warning = false;  // else a note
   std::string what, fix;
+  bool of_method = false;  // a prediction of its error, which a measured error answers
   auto operator<=>(const Concern&) const = default;
 };
 

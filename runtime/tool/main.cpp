@@ -13,7 +13,7 @@ constexpr cdot::command_line::Command commands[] = {
                  "and warn where the method does not suit them", cdot::diagnose_command},
     {"accuracy", "Solve a scene in many ways; show the CPU time of every accuracy", cdot::accuracy_command},
     {"import", "Turn a robot description (URDF, MJCF) into a scene", cdot::import_command},
-    {"list", "List the joints with their parameters, or the keys of a scene", cdot::list_command},
+    {"list", "List the joints and effects with their parameters, one of them, or the keys of a scene", cdot::list_command},
     {"jacobian", "", cdot::moved_to_diagnose},
 };
 // clang-format on

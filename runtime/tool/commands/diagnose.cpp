@@ -141,7 +141,7 @@ std::string diagnosis_text(const Scene& asked, const RunResult& result) {
   if (result.diagnosis.size() > most_islands)
     text += fmt::format("and {} more islands, all in --json\n", result.diagnosis.size() - most_islands);
   text += losses_text(scene, result.rank_losses);
-  const std::vector<Concern> concerns = concerns_about(scene, result.diagnosis, false);
+  const std::vector<Concern> concerns = concerns_of(scene, result, false);
   for (const Concern& one : concerns) {
     text += fmt::format("{}: {}\n", one.warning ? "warning" : "note", one.what);
     if (!one.fix.empty()) text += fmt::format("  likely fix: {}\n", one.fix);
@@ -159,7 +159,7 @@ std::string diagnosis_json(const Scene& asked, const RunResult& result) {
                {"islands", Json::array()}};
   for (const WorstOfIsland& one : result.diagnosis) json["islands"].push_back(island_json(scene, one));
   json["rank_losses"] = rank_losses_json(scene, result.rank_losses);
-  json["concerns"] = concerns_json(concerns_about(scene, result.diagnosis, false));
+  json["concerns"] = concerns_json(concerns_of(scene, result, false));
   json["failure"] = failure(asked, result);
   return json.dump(2) + "\n";
 }
@@ -211,8 +211,7 @@ int run(const Options& options) {
   text::print_messages(stderr, warnings);
   if (result.interrupted) return stopped;
   fmt::print("{}", options.json ? diagnosis_json(scene, result) : diagnosis_text(scene, result));
-  const bool nothing_wrong =
-      concerns_about(as_run(scene, result), result.diagnosis, true).empty() && failure(scene, result).empty();
+  const bool nothing_wrong = concerns_of(as_run(scene, result), result, true).empty() && failure(scene, result).empty();
   return nothing_wrong ? well : answer_is_no;
 }
 

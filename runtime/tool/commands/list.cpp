@@ -7,6 +7,7 @@
 
 #include "runtime/rows/parameters.hpp"
 #include "runtime/text/json.hpp"
+#include "runtime/text/spelling.hpp"
 #include "runtime/tool/commands/options.hpp"
 #include "runtime/tool/scene/keys.hpp"
 
@@ -42,6 +43,7 @@ std::string list_text(const JointType& type) {
                      : type.is_effect     ? fmt::format("{}  ({} {})\n", type.name, type.bodies, body_or_bodies)
                                       : fmt::format("{}  ({} {}, {} row{})\n", type.name, type.bodies, body_or_bodies,
                                                     rows, rows == 1 ? "" : "s");
+  text += fmt::format("    \"{}\"\n", type.title);
   for (const ParameterInfo& parameter : type.parameters) {
     const std::string body = body_name(parameter);
     text += fmt::format("    {:<12} {} [{}]{}{}\n", parameter.name, kind_of(parameter), parameter.unit,
@@ -95,6 +97,23 @@ std::string list_text() {
          list_text(Dimension::spatial, "in space (dimension = 3)") + "\n" + list_of_effects_on_joints();
 }
 
+std::string list_text(const std::string& name) {
+  std::string text;
+  std::vector<std::string> names;
+  const auto add = [&](std::span<const JointType> types, const char* place) {
+    for (const JointType& type : types) {
+      names.emplace_back(type.name);
+      if (type.name == name) text += fmt::format("{}{}:\n{}", text.empty() ? "" : "\n", place, list_text(type));
+    }
+  };
+  add(joint_types(Dimension::planar), "In the plane");
+  add(joint_types(Dimension::spatial), "In space");
+  if (text.empty()) add(coordinate_effects(), "On a coordinate or a joint");
+  if (text.empty())
+    throw Error(fmt::format("no joint or effect has the name `{}`{}", name, text::did_you_mean(name, names)));
+  return text;
+}
+
 std::string list_json() {
   Json list = Json::array();
   add_to(list, Dimension::planar);
@@ -116,16 +135,21 @@ std::string keys_text() {
 }
 
 struct Options {
+  std::string name;
   bool json = false, keys = false;
 };
 
 void add_options(Line& line, Options& options) {
-  line.add("--json", &options.json, "print JSON");
-  line.add("--keys", &options.keys, "list the keys of a scene file instead").excludes("--json");
+  line.add("NAME", &options.name, "only this joint or effect");
+  line.add("--json", &options.json, "print JSON").excludes("NAME");
+  line.add("--keys", &options.keys, "list the keys of a scene file instead").excludes("--json").excludes("NAME");
 }
 
 int run(const Options& options) {
-  fmt::print("{}", options.keys ? keys_text() : options.json ? list_json() : list_text());
+  fmt::print("{}", options.keys            ? keys_text()
+                   : options.json          ? list_json()
+                   : !options.name.empty() ? list_text(options.name)
+                                           : list_text());
   return well;
 }
 

@@ -146,6 +146,13 @@ Scene as_run(const Scene& scene, const RunResult& result) {
   return result.choice ? solved_by(*result.choice, scene) : scene;
 }
 
+std::vector<Concern> concerns_of(const Scene& as_run, const RunResult& result, bool warnings_only) {
+  std::vector<Concern> concerns = concerns_about(as_run, result.diagnosis, warnings_only);
+  if (result.choice && result.choice->reached)
+    std::erase_if(concerns, [](const Concern& concern) { return concern.of_method; });
+  return concerns;
+}
+
 std::string summary_text(const Scene& asked, const RunResult& result) {
   const Scene scene = as_run(asked, result);
   std::string text = fmt::format("{}\n", scene.title.empty() ? scene.file : scene.title);
@@ -195,7 +202,7 @@ std::string summary_text(const Scene& asked, const RunResult& result) {
         result.counts.retried, result.counts.retried == 1 ? "" : "s", result.counts.direct);
   for (const std::string& joint : result.broken_joints) text += fmt::format("  broken          \"{}\"\n", joint);
   for (const std::string& note : result.notes) text += fmt::format("  note            {}\n", note);
-  for (const Concern& concern : concerns_about(scene, result.diagnosis, true))
+  for (const Concern& concern : concerns_of(scene, result, true))
     text += fmt::format("  warning         {}. Likely fix: {}\n", concern.what, concern.fix);
   if (const std::string lost = balance_warning(scene, result); !lost.empty())
     text += fmt::format("  warning         {}. {}\n", lost, fix_of(result, "a shorter step"));
@@ -253,7 +260,7 @@ std::string summary_json(const Scene& asked, const RunResult& result) {
       {"retried", {{"steps", result.counts.retried}, {"direct", result.counts.direct}}},
       {"broken_joints", result.broken_joints},
       {"notes", result.notes},
-      {"concerns", concerns_json(concerns_about(scene, result.diagnosis, true))},
+      {"concerns", concerns_json(concerns_of(scene, result, true))},
   };
   if (result.counts.evaluations > 0)
     json["own_steps"] = {{"evaluations", result.counts.evaluations}, {"taken", result.counts.taken},

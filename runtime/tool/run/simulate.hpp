@@ -112,6 +112,9 @@ std::string failure(const Scene& scene, const RunResult& result);
 // The scene with the method that ran.
 Scene as_run(const Scene& scene, const RunResult& result);
 
+// Concerns about the method that ran; none of its error where the run measured that and reached the accuracy asked for.
+std::vector<Concern> concerns_of(const Scene& as_run, const RunResult& result, bool warnings_only);
+
 text::Json rank_losses_json(const Scene& scene, const std::vector<RankLoss>& losses);
 std::string summary_text(const Scene& scene, const RunResult& result);
 std::string summary_json(const Scene& scene, const RunResult& result);

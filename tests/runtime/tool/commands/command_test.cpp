@@ -100,7 +100,7 @@ TEST(Command, ListShowsEffectsInSectionsOfTheirOwn) {
   const std::string text = cdot_run("list").out;
   size_t from = 0;
   for (const char* part :
-       {"Joints in the plane", "\nrevolute  (2 bodies, 2 rows)", "Effects in the plane", "\nservo  (2 bodies)\n",
+       {"Joints in the plane", "\nrevolute  (2 bodies, 2 rows)", "Effects in the plane", "\nservo  (2 bodies)\n    \"",
         "Joints in space", "\nrevolute_n1  (", "Effects in space", "\ndrag  ("}) {
     const size_t at = text.find(part, from);
     ASSERT_NE(at, std::string::npos) << part << " after " << text.substr(0, from);
@@ -126,6 +126,19 @@ TEST(Command, ListShowsJointsWithParametersAndCoordinates) {
   EXPECT_EQ((*revolute)["parameters"][0]["kind"], "point");
   EXPECT_EQ((*revolute)["coordinates"][0]["name"], "angle");
   EXPECT_FALSE((*revolute)["effect"]);
+}
+
+TEST(Command, ListTellsTheMeaningOfOneName) {
+  const CommandResult prismatic = cdot_run("list prismatic");
+  EXPECT_EQ(prismatic.status, 0) << prismatic.err;
+  EXPECT_EQ(prismatic.out.find("In the plane:\nprismatic  (2 bodies, 2 rows)\n"), 0u) << prismatic.out;
+  EXPECT_NE(prismatic.out.find("on the line through pb of b with the normal t"), std::string::npos) << prismatic.out;
+  EXPECT_NE(prismatic.out.find("In space:\nprismatic  ("), std::string::npos) << prismatic.out;
+  EXPECT_EQ(prismatic.out.find("revolute"), std::string::npos) << prismatic.out;
+  EXPECT_EQ(cdot_run("list breaking").status, 0);
+  const CommandResult unknown = cdot_run("list prismatik");
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("`prismatik`; did you mean `prismatic`?"), std::string::npos) << unknown.err;
 }
 
 TEST(Command, ListShowsTheKeysOfAScene) {

@@ -52,6 +52,22 @@ TEST(DiagnoseCommand, NamesAWrongMethodAndABetterOne) {
   }
 }
 
+// A wheel on its centre turns by 0.7 rad per step of rattle, exactly: its measured error answers the rule for its
+// turns.
+TEST(DiagnoseCommand, AMeasuredErrorAnswersARuleForItsMethod) {
+  const TemporaryFolder folder;
+  const auto file = folder / "wheel.toml";
+  std::ofstream(file) << "duration = 2\n[[body]]\nname = \"wheel\"\nmass = 1\ninertia = 0.04\ntorque = 0.5\n"
+                         "[[joint]]\ntype = \"revolute\"\nbodies = [\"world\", \"wheel\"]\nat = [0, 0]\n";
+  for (const char* command : {"simulate", "diagnose"}) {
+    const std::string run = fmt::format("{} '{}'", command, file.string());
+    const CommandResult measured = cdot_run(run);
+    EXPECT_FALSE(says(measured.out, "rotates by")) << measured.out;
+    EXPECT_EQ(measured.status, 0) << measured.out;
+    EXPECT_TRUE(says(cdot_run(run + " --integrator rattle --step 0.03125").out, "rad per substep: rattle"));
+  }
+}
+
 // omega^2 = 1e6 / 1: 1000 rad/s. The run fails after a warning with the cause.
 TEST(DiagnoseCommand, SaysThatASpringIsTooStiffForTheStep) {
   const TemporaryFolder folder;
