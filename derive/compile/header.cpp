@@ -63,32 +63,7 @@ class HeaderWriter {
   }
 
  private:
-  Contents has() const {
-    return {.rows = !equations_.rows.empty(),
-            .effects = !mechanism_.effects.empty(),
-            .bounded = !mechanism_.bounded.empty(),
-            .ends = equations_.has_ends,
-            .events = equations_.has_events,
-            .forces = mechanism_.has_events_by_force(),
-            .spatial = mechanism_.spatial(),
-            .gyroscopes = mechanism_.has_gyroscopes(),
-            .angles = mechanism_.angles > 0,
-            .rattle = mechanism_.method == Method::rattle,
-            .midpoint = mechanism_.method == Method::implicit,
-            .dampens = !equations_.dampen.outputs.empty(),
-            .looks = !equations_.effect_of.empty(),
-            .finishes = equations_.finishes,
-            .exerts = equations_.exerts,
-            .carries = mechanism_.method == Method::rattle && carries_spin(mechanism_, !equations_.effect_of.empty()),
-            .modes = !mechanism_.bounded.empty() && mechanism_.on_accelerations(),
-            .loads = mechanism_.has_loads(),
-            .strong = mechanism_.on_accelerations() && mechanism_.has_strong_motors(),
-            .bonds = !mechanism_.bonds.empty(),
-            .weighs = mechanism_.weighs(),
-            .drags = std::ranges::any_of(mechanism_.bodies, &Body::drags),
-            .foresees = !equations_.apply.outputs.empty(),
-            .collocated = mechanism_.method == Method::radau5 ? mechanism_.components() : 0};
-  }
+  Contents has() const { return contents_of(mechanism_, equations_); }
   bool has_effects() const { return has().effects || has().bounded; }
   bool has_inputs() const { return !equations_.constants.inputs.empty(); }
   std::string with_arguments(std::string text) const {
@@ -372,6 +347,10 @@ class HeaderWriter {
     if (breaks(mechanism_)) {
       step.replace(step.find(step_head), step_head.size(), "advance(State& s, const T& h)");
       step += step_in_parts(mechanism_.method, has());
+    }
+    if (has().snaps) {
+      step.replace(step.find(step_head), step_head.size(), "go(State& s, const T& h)");
+      step += snaps_after(has());
     }
     text_ += step;
   }

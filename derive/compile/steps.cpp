@@ -4,6 +4,7 @@
 
 #include "derive/compile/collocation/radau.hpp"
 #include "derive/compile/foresight/foresight.hpp"
+#include "derive/compile/gyroscopes.hpp"
 #include "derive/compile/methods/rattle.hpp"
 #include "derive/compile/methods/runge_kutta.hpp"
 #include "derive/compile/methods/weights.hpp"
@@ -138,6 +139,34 @@ std::string euler(double tolerance, const Contents& has) {
 
 }  // namespace
 
+Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
+  return {.rows = !equations.rows.empty(),
+          .effects = !mechanism.effects.empty(),
+          .bounded = !mechanism.bounded.empty(),
+          .ends = equations.has_ends,
+          .events = equations.has_events,
+          .forces = mechanism.has_events_by_force(),
+          .spatial = mechanism.spatial(),
+          .gyroscopes = mechanism.has_gyroscopes(),
+          .angles = mechanism.angles > 0,
+          .rattle = mechanism.method == Method::rattle,
+          .midpoint = mechanism.method == Method::implicit,
+          .dampens = !equations.dampen.outputs.empty(),
+          .looks = !equations.effect_of.empty(),
+          .finishes = equations.finishes,
+          .exerts = equations.exerts,
+          .carries = mechanism.method == Method::rattle && carries_spin(mechanism, !equations.effect_of.empty()),
+          .modes = !mechanism.bounded.empty() && mechanism.on_accelerations(),
+          .loads = mechanism.has_loads(),
+          .strong = mechanism.on_accelerations() && mechanism.has_strong_motors(),
+          .bonds = !mechanism.bonds.empty(),
+          .snaps = !mechanism.bonds.empty() && mechanism.on_accelerations(),
+          .weighs = mechanism.weighs(),
+          .drags = std::ranges::any_of(mechanism.bodies, &Body::drags),
+          .foresees = !equations.apply.outputs.empty(),
+          .collocated = mechanism.method == Method::radau5 ? mechanism.components() : 0};
+}
+
 Calls calls_of(Method method, const Contents& has) {
   Calls calls{.evaluate = 1, .errors = 2, .rates = 1, .solve = 2};  // the corrections
   if (has.ends) calls.past = 2;
@@ -188,13 +217,24 @@ long operations_of(const Equations& e, const Calls& calls) {
   return sum;
 }
 
+namespace {
+
+// Of the member `modes`: margins are those of rows with bounds and of joints that may break.
+long numbers_of_modes(const Mechanism& mechanism, const Equations& equations, const Contents& has) {
+  if (!has.strides()) return 0;
+  const long bounded = long(mechanism.bounded.size()), strengths = has.snaps ? long(mechanism.bonds.size()) : 0;
+  const long struck = has.modes && has.snaps ? bounded + long(equations.rows.size()) : 0;
+  return 1 + (has.loads ? 7 : 6) * bounded + 2 * strengths + struck;
+}
+
+}  // namespace
+
 long state_bytes_of(const Mechanism& mechanism, const Equations& equations, const Contents& has) {
   long of_bodies = 0;
   for (const Body& body : mechanism.bodies) of_bodies += numbers_of(mechanism, body, has.pulls());
   const long of_rows = long{has.foresees ? 1 + foreseen_by(has.rattle) : 1} * long(equations.rows.size()) +
                        long(equations.stored.size()) + (has.closes() ? 1 : 0) + (has.foresees ? 2 : 0) +
-                       (has.exerts ? equations.groups : 0) +
-                       (has.modes ? 1 + (has.loads ? 7 : 6) * long(mechanism.bounded.size()) : 0) +
+                       (has.exerts ? equations.groups : 0) + numbers_of_modes(mechanism, equations, has) +
                        2 * mechanism.breakable() + (has.events ? 3 * long(mechanism.bounded.size()) : 0);
   return long{sizeof(double)} *
          (1 + of_bodies + of_rows + long(mechanism.bounded.size()) +
@@ -212,7 +252,7 @@ std::string begin_of(Method method, const Contents& has) {
   if (has.gyroscopes) text += accelerates ? "$W" : "    wind(s);\n";
   text += "$C";
   if (has.bounded && (has.midpoint || has.weighs)) text += "    for (T& of_row : s.force) of_row = T(0);\n";
-  if (has.modes) text += "    s.modes = {};\n";
+  if (has.strides()) text += "    s.modes = {};\n";
   if (has.events) text += "    latch(s);\n";
   if (has.rows) text += "    for (int i = 0; i < rows; ++i) s.lambda[i] = T(0);\n";
   if (has.weighs && has.loads) {

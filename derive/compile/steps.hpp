@@ -9,6 +9,8 @@
 
 namespace cdot::compile {
 
+Contents contents_of(const Mechanism& mechanism, const Equations& equations);
+
 // How often step() calls each function, with one round of Newton and no end passed.
 struct Calls {
   int evaluate = 0, errors = 0, rates = 0, accelerate = 0, solve = 0, fall = 0, kick = 0, past = 0;

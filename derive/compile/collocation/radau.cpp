@@ -367,7 +367,7 @@ std::string radau(const Mechanism& mechanism, const Contents& has) {
          fmt::format(finds, forces, std::string("        ") + turns, arguments_of_slope(has), c[1], c[2], c[3],
                      mechanism.size, lengths, numbers, by.real, by.alpha, by.beta) +
          fmt::format(collocates, end_on_accelerations(has), head_on_accelerations(has)) +
-         (has.modes ? step_by_events(has) : "");
+         (has.strides() ? step_by_events(has) : "");
 }
 
 // Two eliminations, of which the complex one takes four times as many operations, and their substitutions.

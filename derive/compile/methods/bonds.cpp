@@ -13,35 +13,87 @@ constexpr const char* bonds_type_text =
   struct Bonds {{
     T holds[{0}], load[{0}];
   }};
+  // The joint of each strength, and its mechanism.
+  static constexpr int joints = {0}, strengths = {1}, mechanisms = {2};
+  static constexpr int joint_of[strengths] = {{{3}}}, mechanism_of[strengths] = {{{4}}};
 )";
 
 // As the World does it: runtime/effects/breaking.cpp. Of bonds at the same distance the joint with the lower number
 // goes first.
 constexpr const char* snap_begins = R"(
-  // Joints that carry too much after a step: in each mechanism the one that is most beyond its strength breaks.
-  static void snap(State& s{0}) {{
-    constexpr int bonds = {1}, joint[bonds] = {{{2}}}, of[bonds] = {{{3}}}, joints = {4}, mechanisms = {5};
-    using std::sqrt;
-    T from[bonds], least[mechanisms], first[mechanisms];
+  // Joints that carry too much: in each mechanism the one that is most beyond its strength breaks.
+  static {0} snap(State& s{1}) {{
+    weigh_joints(s{2});
+    T from[strengths], least[mechanisms], first[mechanisms];
     for (T& of_joint : first) of_joint = T(-1);
     for (T& of_joint : least) of_joint = T(1e30);
 )";
 
-constexpr const char* snap_chooses = R"(    strain({}s.time, s.bonds.load, from);
-    for (int k = 0; k < bonds; ++k) {{
-      T &far = least[of[k]], &which = first[of[k]];
-      const auto breaks = s.bonds.holds[joint[k]] > T(0) && from[k] <= T(0) && from[k] < far;
-      far = select(breaks, from[k], far), which = select(breaks, T(joint[k]), which);
+constexpr const char* snap_chooses = R"(    strain($ss.time, s.bonds.load, from);
+    for (int k = 0; k < strengths; ++k) {{
+      T &far = least[mechanism_of[k]], &which = first[mechanism_of[k]];
+      const auto breaks = s.bonds.holds[joint_of[k]] > T(0) && from[k] <= {0} && from[k] < far;
+      far = select(breaks, from[k], far), which = select(breaks, T(joint_of[k]), which);
     }}
     auto some = T(1) < T(0);
     Mask now[joints];
     for (Mask& of_joint : now) of_joint = some;
-    for (int k = 0; k < bonds; ++k) now[joint[k]] = magnitude(first[of[k]] - T(joint[k])) < T(0.5);
+    for (int k = 0; k < strengths; ++k)
+      now[joint_of[k]] = magnitude(first[mechanism_of[k]] - T(joint_of[k])) < T(0.5);
     for (const Mask& of_joint : now) some = some || of_joint;
-    if (!any(some)) return;
+    if (!any(some)) return{1};
     for (int k = 0; k < joints; ++k) s.bonds.holds[k] = select(now[k], T(0), s.bonds.holds[k]);
-{}  }}
+{2}{3}  }}
 )";
+
+// A step that passes the strength of a joint ends there: runtime/solve/bonds.cpp.
+constexpr const char* margins_of_joints = R"({0}    weigh_joints(s, {1});
+    T from[strengths];
+    strain($ss.time, s.bonds.load, from);
+    for (int k = 0; k < strengths; ++k)
+      m.margin[{2}k] = select(s.bonds.holds[joint_of[k]] > T(0), smaller(from[k] / near, T(1e30)), T(1e30));
+)";
+
+constexpr const char* chooses_joints = R"(
+  static void find_margins(State& s) {{
+    Modes& m = s.modes;
+{0}  }}
+
+  // Where forces break a joint, the others carry other loads.
+  static void choose_modes(State& s, const T&) {{
+    for (Mask again = T(0) < T(1); any(again);) {{
+      State next = s;
+      project(next);
+      accelerate($snext.q, next.time, next.v, next.J, next.lambda, next.a);
+      replace(s, next, again);
+      again = snap(s, {1}, T(single ? 1e-5 : 1e-10));
+    }}
+    find_margins(s);
+    s.modes.known = T(1);
+  }}
+)";
+
+// The World counts in the load of a whole step all impacts in it.
+constexpr const char* snaps_after_step = R"(
+  // A step, after which joints break that carry too much by the forces at its end and by the impulses of impacts.
+  static T step(State& s, T h = T(default_step)) {{
+{0}    const T residual = go(s, h);
+{1}    const Mask some = snap(s, {2}T(0));
+    s.modes.known = select(some, T(0), s.modes.known);
+    return residual;
+  }}
+)";
+constexpr const char* struck_rows = R"(    T force[rows];
+    for (int i = 0; i < rows; ++i) force[i] = s.lambda[i] + s.modes.struck[i] / h;
+)";
+constexpr const char* struck_bounds = R"(    T of_bounds[bounded];
+    for (int i = 0; i < bounded; ++i) of_bounds[i] = s.modes.force[i] + s.modes.struck_bounds[i] / h;
+)";
+
+const std::vector<int>& bodies_of(const Mechanism& mechanism, const Bond& bond) {
+  return bond.joint < 0 ? mechanism.bounded[static_cast<std::size_t>(bond.rope)].bodies
+                        : mechanism.joints[static_cast<std::size_t>(bond.joint)].bodies;
+}
 
 // The norm of its rows' forces.
 std::string load_of(const Bond& bond, const std::vector<std::size_t>& rows) {
@@ -51,6 +103,16 @@ std::string load_of(const Bond& bond, const std::vector<std::size_t>& rows) {
   for (std::size_t r = rows[joint]; r < rows[joint + 1]; ++r)
     squares += fmt::format("{0}force[{1}] * force[{1}]", squares.empty() ? "" : " + ", r);
   return fmt::format("    s.bonds.load[{}] = sqrt({});\n", bond.holds, squares);
+}
+
+// Forces of a broken joint.
+std::string forgets_forces(const Bond& bond, const std::vector<std::size_t>& rows, const Contents& has) {
+  constexpr const char* forgets_row = "    s.{0}[{1}] = select(now[{2}], T(0), s.{0}[{1}]);\n";
+  if (bond.joint < 0) return fmt::format(forgets_row, has.modes ? "modes.force" : "force", bond.rope, bond.holds);
+  std::string text;
+  const auto joint = static_cast<std::size_t>(bond.joint);
+  for (std::size_t r = rows[joint]; r < rows[joint + 1]; ++r) text += fmt::format(forgets_row, "lambda", r, bond.holds);
+  return text;
 }
 
 // By RATTLE the next step begins with the pull of those that are left.
@@ -65,9 +127,29 @@ std::string pulls_anew(const Mechanism& mechanism, const Contents& has) {
                     has.rows ? "s.J, s.lambda, " : "", has.repeats() ? "s.repeats, " : "");
 }
 
+// The parameters of snap() that are forces.
+std::string forces_parameters(const Contents& has) {
+  return std::string(has.rows ? ", const T (&force)[rows]" : "") +
+         (has.bounded ? ", const T (&of_bounds)[bounded]" : "");
+}
 }  // namespace
 
-std::string bonds_type(const Mechanism& mechanism) { return fmt::format(bonds_type_text, mechanism.breakable()); }
+std::string forces_of_state(const Contents& has) {
+  return std::string(has.rows ? "s.lambda" : "") + (has.rows && has.bounded ? ", " : "") +
+         (has.bounded ? "s.modes.force" : "");
+}
+
+std::string bonds_type(const Mechanism& mechanism) {
+  const std::vector<int> groups = groups_of(mechanism);
+  std::vector<int> joints, of;
+  for (const Bond& bond : mechanism.bonds) {
+    joints.push_back(bond.holds), of.push_back(0);
+    for (const int body : bodies_of(mechanism, bond))
+      of.back() = std::max(of.back(), groups[static_cast<std::size_t>(body)]);
+  }
+  return fmt::format(bonds_type_text, mechanism.breakable(), mechanism.bonds.size(),
+                     1 + *std::ranges::max_element(groups), fmt::join(joints, ", "), fmt::join(of, ", "));
+}
 
 std::string arguments_of_strain(const Mechanism& mechanism) {
   return fmt::format("$dconst T& time, const T (&load)[{}], T (&from)[{}])", mechanism.breakable(),
@@ -79,33 +161,41 @@ std::string arguments_of_draw(const Contents& has) {
          (has.repeats() ? ", const T (&mu)[bounded]" : "") + ", Velocity (&d)[bodies])";
 }
 
+std::string margins_of_bonds(const Contents& has) {
+  return fmt::format(margins_of_joints, "    const T near = T(single ? 1e-5 : 1e-10);\n", forces_of_state(has),
+                     has.modes ? "bounded + " : "");
+}
+
+std::string snaps_after(const Contents& has) {
+  std::string clears, sums;
+  const bool of_rows = has.rows && has.modes;
+  if (of_rows) clears += "    for (T& of_row : s.modes.struck) of_row = T(0);\n", sums += struck_rows;
+  if (has.modes) clears += "    for (T& of_row : s.modes.struck_bounds) of_row = T(0);\n", sums += struck_bounds;
+  return fmt::format(snaps_after_step, clears, sums,
+                     std::string(!has.rows ? ""
+                                 : of_rows ? "force, "
+                                           : "s.lambda, ") +
+                         (has.modes ? "of_bounds, " : ""));
+}
+
 std::string snap_of(const Mechanism& mechanism, const std::vector<std::size_t>& rows, const Contents& has) {
-  const std::vector<int> groups = groups_of(mechanism);
-  std::vector<int> joints, of;
-  std::string loads, forgets = has.rows ? evaluates : "";
-  for (const Bond& bond : mechanism.bonds) {
-    const bool is_rope = bond.joint < 0;
-    const auto number = static_cast<std::size_t>(is_rope ? bond.rope : bond.joint);
-    int group = 0;
-    for (const int body : is_rope ? mechanism.bounded[number].bodies : mechanism.joints[number].bodies)
-      group = std::max(group, groups[static_cast<std::size_t>(body)]);
-    const bool another = joints.empty() || joints.back() != bond.holds;
-    joints.push_back(bond.holds), of.push_back(group);
-    if (!another) continue;
-    loads += load_of(bond, rows);
-    for (std::size_t r = is_rope ? 0 : rows[number]; !is_rope && r < rows[number + 1]; ++r)
-      forgets += fmt::format("    s.lambda[{0}] = select(now[{1}], T(0), s.lambda[{0}]);\n", r, bond.holds);
-    if (is_rope)
-      forgets += fmt::format("    s.force[{0}] = select(now[{1}], T(0), s.force[{0}]);\n", number, bond.holds);
+  std::string loads, after = has.rows ? evaluates : "";
+  for (std::size_t k = 0; k < mechanism.bonds.size(); ++k) {
+    const Bond& bond = mechanism.bonds[k];
+    if (k > 0 && mechanism.bonds[k - 1].holds == bond.holds) continue;
+    loads += load_of(bond, rows), after += forgets_forces(bond, rows, has);
   }
-  if (has.rattle) forgets += pulls_anew(mechanism, has);
-  const std::string arguments =
-      std::string(has.rows ? ", const T (&force)[rows]" : "") + (has.bounded ? ", const T (&of_bounds)[bounded]" : "");
-  std::string text = fmt::format(snap_begins, arguments, mechanism.bonds.size(), fmt::join(joints, ", "),
-                                 fmt::join(of, ", "), mechanism.breakable(), 1 + *std::ranges::max_element(groups));
-  if (has.rows) text += "    (void)force;\n";
-  if (has.bounded) text += "    (void)of_bounds;\n";
-  return text + loads + fmt::format(snap_chooses, "$s", forgets);
+  if (has.rattle) after += pulls_anew(mechanism, has);
+  const std::string parameters = forces_parameters(has);
+  std::string text = "\n  // The loads on joints, by the forces of all rows.\n  static void weigh_joints(State& s" +
+                     parameters + ") {\n    using std::sqrt;\n" + (has.rows ? "    (void)force;\n" : "") +
+                     (has.bounded ? "    (void)of_bounds;\n" : "") + loads + "  }\n";
+  text += fmt::format(snap_begins, has.snaps ? "Mask" : "void", parameters + (has.snaps ? ", const T& most" : ""),
+                      std::string(has.rows ? ", force" : "") + (has.bounded ? ", of_bounds" : ""));
+  text += fmt::format(snap_chooses, has.snaps ? "most" : "T(0)", has.snaps ? " some" : "", after,
+                      has.snaps ? "    return some;\n" : "");
+  if (has.snaps && !has.modes) text += fmt::format(chooses_joints, margins_of_bonds(has), forces_of_state(has));
+  return text;
 }
 
 }  // namespace cdot::compile

@@ -22,18 +22,20 @@ struct Contents {
   bool loads = false;          // bounds of these that grow with loads
   bool strong = false;         // motors without a largest force among these
   bool bonds = false;          // some joint may break
+  bool snaps = false;          // by Runge-Kutta methods: when it does is located in a step
   bool weighs = false;         // by Euler's steps or RATTLE: the impulses of corrections count as loads
   bool drags = false;          // some body has drag
   bool foresees = false;       // the multipliers of the next projection, by those of the last steps
   std::size_t collocated = 0;  // by Radau IIA: components of velocities
+  bool strides() const { return modes || snaps; }                        // steps end strides at events
   bool projects() const { return rows || modes; }                        // velocities
   bool repeats() const { return weighs && exerts && bounded; }           // forces of rows that prescribe a rate
   bool corrects_loads() const { return loads && (weighs || midpoint); }  // by impulses beside those found
   bool weighs_joints() const { return weighs && (bonds || loads) && rows; }
   bool closes() const { return rows || ends; }
-  bool stiffens() const { return midpoint && (rows || bounded); }        // by tension
-  bool replaces() const { return modes || midpoint || collocated > 0; }  // some lanes of a State
-  bool pulls() const { return rattle && (rows || bounded); }             // a State has its joints' accelerations
+  bool stiffens() const { return midpoint && (rows || bounded); }            // by tension
+  bool replaces() const { return strides() || midpoint || collocated > 0; }  // some lanes of a State
+  bool pulls() const { return rattle && (rows || bounded); }                 // a State has its joints' accelerations
 };
 
 // Of the function that steps a State.

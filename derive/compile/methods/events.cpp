@@ -32,6 +32,8 @@ constexpr const char* notes_group =
 // The next step of the mechanism does not repeat what ended this one: another set of rows acts in it.
 constexpr const char* forgets =
     "    for (int i = 0; i < bodies; ++i) s.pull[i] = choose(some[group_of_body[i]], still(), s.pull[i]);\n";
+constexpr const char* forgets_lambda =
+    "    for (int i = 0; i < rows; ++i) s.lambda[i] = select(some[group_of_row[i]], T(0), s.lambda[i]);\n";
 constexpr const char* restarts =
     "    for (int i = 0; i < groups; ++i) s.begins[i] = select(some[i], T(1), s.begins[i]);\n";
 
@@ -50,6 +52,7 @@ std::string latch_of(const std::string& waits, const Contents& has) {
                                  : has.modes ? "s.modes.force, "
                                              : "s.force, ");
   if (alone) text += forgets;
+  if (alone && has.weighs_joints() && !has.exerts) text += forgets_lambda;  // which are the loads of that pull
   if (has.modes) text += "    s.modes.known = select(some, T(0), s.modes.known);\n";
   if (has.exerts) text += restarts;
   return text + "  }\n";

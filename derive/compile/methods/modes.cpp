@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <string_view>
 
+#include "derive/compile/methods/bonds.hpp"
 #include "derive/compile/methods/loads.hpp"
 
 namespace cdot::compile {
@@ -40,7 +41,6 @@ constexpr const char* adds_forces =
 
 // As the World does it: runtime/step/events.cpp.
 constexpr const char* kinds_of_rows = R"(
-  static T smaller(const T& a, const T& b) { return select(b < a, b, a); }
   static Mask is_endless(const T& bound) { return magnitude(bound) > T(1e29); }
   // Of row i: its value and its force have one end each; it holds on both sides; its distance from its end.
   static Mask has_one_end(const Guards& G, int i) {
@@ -102,7 +102,7 @@ constexpr const char* stops = R"(
       for (T& of_row : hold) of_row = T(0);
       settle(B, hold, now);
     }};
-{2}    for (int e = 0; e < bounded; ++e) {{
+{2}{4}    for (int e = 0; e < bounded; ++e) {{
       stopped[e] = hits && magnitude(mu[e]) > T(0){3};
       for (int i = 0; i < bodies; ++i) s.v[i] = choose(hits, s.v[i] + mu[e] * B.g[e][i], s.v[i]);
     }}
@@ -187,13 +187,22 @@ constexpr const char* chooses = R"(
     pull($ss.q, s.time, s.v, {0});
     raise_resolutions(s, s.a, h);
     find_margins(s);
-    for (int i = 0; i < bounded; ++i) s.modes.chosen[i] = s.modes.margin[i];
+    for (int i = 0; i < watched; ++i) s.modes.chosen[i] = s.modes.margin[i];
     s.modes.known = T(1);
   }}
 )";
 
+// Impulses of impacts are loads.
+constexpr const char* notes_impulses = R"(    for (int e = 0; e < bounded; ++e) {{
+      const T now = select(hits, mu[e], T(0));
+      s.modes.struck_bounds[e] = s.modes.struck_bounds[e] + now;
+{}    }}
+)";
+constexpr const char* notes_impulses_of_rows =
+    "      for (int i = 0; i < rows; ++i) s.modes.struck[i] = s.modes.struck[i] + now * B.l[e][i];\n";
+
 // Forces may make events happen, as of a pin that is too weak: then the modes are others.
-constexpr const char* chooses_again = R"(
+constexpr const char* latches = R"(
   // True in lanes where an event happens.
   static Mask latches(State& s) {
     const Events before = s.events;
@@ -203,28 +212,39 @@ constexpr const char* chooses_again = R"(
       some = some || s.events.began[i] > before.began[i] || s.events.ended[i] > before.ended[i];
     return some;
   }
-  static void choose_modes(State& s, const T& h) {
+)";
+constexpr const char* chooses_again = R"(
+  static void choose_modes(State& s, const T& h) {{
     choose_once(s, h);
-    for (Mask again = latches(s); any(again);) {
+    for (;;) {{
+      const Mask {};
+      if (!any(again)) return;
       State next = s;
       choose_once(next, h);
       replace(s, next, again);
-      again = latches(s);
-    }
-  }
+    }}
+  }}
 )";
 
 constexpr const char* types =
     R"(  // Of rows with bounds: forces; resolutions, below which a value, a rate or a force counts as 0; how far each row is
   // from its next event in these units, when its mode was chosen and now.
   struct Modes {{
-    T force[bounded], of_value[bounded], of_rate[bounded], of_force[bounded], chosen[bounded], margin[bounded];
+    T force[bounded], of_value[bounded], of_rate[bounded], of_force[bounded], chosen[watched], margin[watched];
     T known;  // 1 where the modes are those of the next step
 {0}  }};
   // Of such rows: the distance from their end, what their rates miss, and the bounds of their forces.
   struct Guards {{
     T off[bounded], missing[bounded], low[bounded], high[bounded];
 {1}  }};
+)";
+
+constexpr const char* types_of_bonds =
+    R"(  // Of joints that may break: how far each is from breaking. None holds beyond its strength: chosen is 0.
+  struct Modes {
+    T chosen[watched], margin[watched];
+    T known;  // 1 where joints that carry too much are broken
+  };
 )";
 
 // As project() does it for rows that are held.
@@ -286,10 +306,30 @@ std::string pull_of(const Contents& has) {
 
 std::string stops_of(const Contents& has) {
   const std::string J = has.rows ? "s.J, " : "";
-  if (!has.loads) return fmt::format(stops, J, "", "    solve(mu);\n", "");
+  const std::string notes = has.snaps ? fmt::format(notes_impulses, has.rows ? notes_impulses_of_rows : "") : "";
+  if (!has.loads) return fmt::format(stops, J, "", "    solve(mu);\n", "", notes);
   const std::string none = has.rows ? "T none[rows];\n    for (T& of_row : none) of_row = T(0);\n    " : "";
   return fmt::format(stops, J, impacts_by_load, fmt::format(settles_impact, none, has.rows ? "s.J, none, " : ""),
-                     unless_it_slips);
+                     unless_it_slips, notes);
+}
+
+// Where forces of a choice call for another one.
+std::string choices_of(const Contents& has) {
+  const bool again = has.forces || has.snaps;
+  std::string text = fmt::format(chooses, arguments_of_pull(has), has.events ? "    latch(s);\n" : "",
+                                 again ? "choose_once" : "choose_modes");
+  if (!again) return text;
+  if (has.forces) text += latches;
+  const char* const near = "T(single ? 1e-5 : 1e-10)";
+  const auto snaps = [&](const std::string& most) {
+    return fmt::format("snap(s, {}, {})", forces_of_state(has), most);
+  };
+  // First events; other modes have other forces.
+  const std::string asks = !has.forces ? "again = " + snaps(near)
+                           : has.snaps ? "happens = latches(s), again = happens || " +
+                                             snaps(fmt::format("select(happens, T(-1e30), {})", near))
+                                       : "again = latches(s)";
+  return text + fmt::format(chooses_again, asks);
 }
 
 std::string decides_of(const Contents& has) {
@@ -306,7 +346,17 @@ std::string decides_of(const Contents& has) {
 }  // namespace
 
 std::string modes_types(const Contents& has) {
-  return fmt::format(types, has.loads ? "    T load[bounded];  // forces with which bounds grow\n" : "",
+  const std::string watched =
+      fmt::format("  static constexpr int watched = {}{};  // for events\n", has.modes ? "bounded" : "strengths",
+                  has.modes && has.snaps ? " + strengths" : "");
+  if (!has.modes) return watched + types_of_bonds;
+  std::string more = has.loads ? "    T load[bounded];  // forces with which bounds grow\n" : "";
+  if (has.snaps) {
+    more += "    T struck_bounds[bounded];  // impulses of impacts\n";
+    if (has.rows) more += "    T struck[rows];\n";
+  }
+  return watched +
+         fmt::format(types, more,
                      has.loads ? "    T by_low[bounded], by_high[bounded];  // what each unit of a load adds\n" : "");
 }
 
@@ -324,10 +374,8 @@ std::string modes_of(const Contents& has, const std::string& waits) {
   if (!has.loads) margins.erase(margins.find(growing), growing.size());
   text += margins;
   if (has.events) text += fmt::format(margins_of_events, waits, has.forces ? "m.force, " : "");
-  return text + "    return passed;\n  }\n" +
-         fmt::format(chooses, arguments_of_pull(has), has.events ? "    latch(s);\n" : "",
-                     has.forces ? "choose_once" : "choose_modes") +
-         (has.forces ? chooses_again : "");
+  if (has.snaps) text += margins_of_bonds(has);
+  return text + "    return passed;\n  }\n" + choices_of(has);
 }
 
 }  // namespace cdot::compile

@@ -35,7 +35,7 @@ constexpr const char* ends_on_joints = R"(    Velocity moves[bodies];
 $W$C    evaluate($ss.q, s.time, s.J);
     project(s);
     accelerate($ss.q, s.time, s.v, s.J, s.lambda, s.a);
-    return s.residual;
+{}    return s.residual;
 )";
 
 constexpr const char* ends_in_modes = R"(    Velocity moves[bodies];
@@ -80,7 +80,7 @@ std::string explicit_stages(const Method& method, const char* title, const Conte
     text += fmt::format("    slope($sat, v, {}k[{}]);\n", arguments_of_slope(has), stage);
   }
   return text + fmt::format(stages_end, combined(method, method.stages, few), end_on_accelerations(has)) +
-         (has.modes ? step_by_events(has) : "");
+         (has.strides() ? step_by_events(has) : "");
 }
 
 }  // namespace
@@ -101,13 +101,13 @@ std::string end_on_accelerations(const Contents& has) {
   const std::string inertias =
       has.gyroscopes ? "    for (int i = 0; i < bodies; ++i) s.q[i].I = at.q[i].I;  // as J, of the last stage\n" : "";
   const std::string end = has.modes  ? fmt::format(ends_in_modes, has.rows ? evaluates : "", arguments_of_pull(has))
-                          : has.rows ? ends_on_joints
+                          : has.rows ? fmt::format(ends_on_joints, has.snaps ? "    find_margins(s);\n" : "")
                                      : ends_freely;
   return inertias + end_begins + end;
 }
 
 std::string head_on_accelerations(const Contents& has) {
-  return has.modes ? "stride(State& s, const T& h)" : std::string(step_head);
+  return has.strides() ? "stride(State& s, const T& h)" : std::string(step_head);
 }
 
 }  // namespace cdot::compile

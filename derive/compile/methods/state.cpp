@@ -75,8 +75,8 @@ std::string reset_of(const Contents& has) {
 
 std::string state_of(const Mechanism& mechanism, const Contents& has, bool inputs) {
   std::string text =
-      (has.modes ? modes_types(has) : "") + state_begins + of_bodies(mechanism, has) + of_rows(mechanism, has);
-  if (has.modes) text += "    Modes modes;\n";
+      (has.strides() ? modes_types(has) : "") + state_begins + of_bodies(mechanism, has) + of_rows(mechanism, has);
+  if (has.strides()) text += "    Modes modes;\n";
   if (inputs) text += "    Inputs p;\n";
   if (has.angles) text += "    Angles angles;\n";
   if (has.events) text += "    Events events;\n";

@@ -7,17 +7,18 @@ namespace {
 
 // As the World does it: runtime/step/step_runge_kutta.cpp and between.cpp.
 constexpr const char* steps = R"(
+  static T smaller(const T& a, const T& b) { return select(b < a, b, a); }
   // The margin of the row that is furthest beyond its event, beside that at the choice of the modes.
   static T furthest(const Modes& m) {
     T worst = T(0);
-    for (int i = 0; i < bounded; ++i) worst = smaller(worst, m.margin[i] - smaller(m.chosen[i], T(0)));
+    for (int i = 0; i < watched; ++i) worst = smaller(worst, m.margin[i] - smaller(m.chosen[i], T(0)));
     return worst;
   }
 
   // Where the first row has just passed its event, between 0 and 1, by linear interpolation.
-  static T first_event(const T (&chosen)[bounded], const T (&before)[bounded], const T (&after)[bounded]) {
+  static T first_event(const T (&chosen)[watched], const T (&before)[watched], const T (&after)[watched]) {
     T first = T(1);
-    for (int i = 0; i < bounded; ++i) {
+    for (int i = 0; i < watched; ++i) {
       const T aim = smaller(chosen[i], T(0)) - T(2), low = before[i] - aim, high = after[i] - aim;
       first = select(high < T(0) && low > high, smaller(first, low / (low - high)), first);
     }
@@ -27,8 +28,8 @@ constexpr const char* steps = R"(
   // Ends the stride from s to `next` where the first row has just passed its event, in the lanes of `busy`. Every third
   // round bisects, in case linear interpolation stalls.
   static void go_to_event(const State& s, State& next, T& length, Mask busy, T& residual) {
-    T low = T(0), high = length, before[bounded], after[bounded];
-    for (int i = 0; i < bounded; ++i) before[i] = s.modes.margin[i], after[i] = next.modes.margin[i];
+    T low = T(0), high = length, before[watched], after[watched];
+    for (int i = 0; i < watched; ++i) before[i] = s.modes.margin[i], after[i] = next.modes.margin[i];
     Mask stalls = T(1) < T(0);
     for (int search = 0; search < 61 && any(busy || stalls); ++search) {
       const T share = larger(T(0.001), smaller(T(0.999), first_event(s.modes.chosen, before, after)));
@@ -43,7 +44,7 @@ constexpr const char* steps = R"(
       length = select(ends, at, length), residual = select(ends, error, residual);
       busy = busy && !ends, stalls = stalls && !ends;
       high = select(passed, at, high), low = select(passed, low, at);
-      for (int i = 0; i < bounded; ++i) {
+      for (int i = 0; i < watched; ++i) {
         after[i] = select(passed, there.modes.margin[i], after[i]);
         before[i] = select(passed, before[i], there.modes.margin[i]);
       }

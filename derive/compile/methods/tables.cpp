@@ -129,14 +129,15 @@ std::string tables_of(const Mechanism& mechanism) {
 
 std::string step_in_parts(Method method, const Contents& has) {
   std::string text = parts_begin;
-  const bool accelerates = works_on_accelerations(method) && !has.modes;
+  const bool accelerates = works_on_accelerations(method) && !has.strides();
   if (method != Method::euler && has.rows) text += "    evaluate($safter.q, after.time, after.J);\n";
-  if (method != Method::euler && has.rows && !has.modes) text += "    project(after);\n";
-  if (has.modes) text += "    after.modes.known = T(0);\n";
+  if (method != Method::euler && has.rows && !has.strides()) text += "    project(after);\n";
+  if (has.strides()) text += "    after.modes.known = T(0);\n";
   if (accelerates && has.rows)
     text += "    accelerate($safter.q, after.time, after.v, after.J, after.lambda, after.a);\n";
   if (accelerates && !has.rows) text += "    fall($safter.q, after.time, after.v, after.a);\n";
   if (has.pulls()) text += "    for (Velocity& of_body : after.pull) of_body = still();\n";
+  if (has.pulls() && has.rows) text += "    for (T& of_row : after.lambda) of_row = T(0);\n";
   if (has.exerts) text += "    for (T& of_group : after.begins) of_group = T(1);\n";
   return text + passed;
 }

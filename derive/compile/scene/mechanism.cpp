@@ -43,8 +43,6 @@ void refuse_joint(const SceneJoint& joint, const Scene& scene, Refusals& refusal
     refusals.add(joint.where, fmt::format("{}: cdot compile knows no {}", name, part), "leave it to cdot-run");
   };
   const JointType* type = find_joint_type(scene.dimension, joint.definition.type);
-  if (!joint.bonds.empty() && row_of(scene.settings.integrator).level == Level::acceleration)
-    refuse(fmt::format("joints that break by {}", row_of(scene.settings.integrator).name));
   if (!joint.bonds.empty() && (joint.definition.soft || (type && type->is_effect)))
     refuse("effects and soft joints that break");
   if (type && (joint.definition.soft || is_rope(*type)) && in_time(joint.definition.parameters))

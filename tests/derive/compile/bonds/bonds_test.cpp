@@ -1,15 +1,35 @@
 // Joints that break: compiled scenes lose them in the step in which the World does, and pins that shear.
 #include <gtest/gtest.h>
 
+#include "blows_dop853.hpp"
+#include "blows_euler.hpp"
+#include "blows_implicit.hpp"
+#include "blows_radau5.hpp"
+#include "blows_rattle.hpp"
+#include "blows_rk4.hpp"
+#include "bonds_dop853.hpp"
 #include "bonds_euler.hpp"
 #include "bonds_implicit.hpp"
+#include "bonds_in_space_dop853.hpp"
 #include "bonds_in_space_euler.hpp"
 #include "bonds_in_space_implicit.hpp"
+#include "bonds_in_space_radau5.hpp"
 #include "bonds_in_space_rattle.hpp"
+#include "bonds_in_space_rk4.hpp"
+#include "bonds_radau5.hpp"
 #include "bonds_rattle.hpp"
+#include "bonds_rk4.hpp"
+#include "latched_rattle.hpp"
+#include "links_dop853.hpp"
+#include "links_euler.hpp"
+#include "links_implicit.hpp"
+#include "links_radau5.hpp"
+#include "links_rattle.hpp"
+#include "links_rk4.hpp"
 #include "pins_dop853.hpp"
 #include "pins_euler.hpp"
 #include "pins_implicit.hpp"
+#include "pins_radau5.hpp"
 #include "pins_rattle.hpp"
 #include "pins_rk4.hpp"
 #include "tests/derive/compile/beside_world.hpp"
@@ -40,6 +60,104 @@ TEST(CompiledBonds, BreakInSpaceAsInTheWorld) {
   breaks_as_in_the_world<bonds_in_space_rattle<double>>("bonds_in_space.toml", Integrator::rattle);
 }
 
+// Without rows that have bounds, and with numbers that jump.
+TEST(CompiledBonds, BreakWithoutBoundsAsInTheWorld) {
+  breaks_as_in_the_world<links_euler<double>>("links.toml", Integrator::euler);
+  breaks_as_in_the_world<links_implicit<double>>("links.toml", Integrator::implicit);
+  breaks_as_in_the_world<links_rattle<double>>("links.toml", Integrator::rattle);
+}
+
+// The step after an event begins without the joints' pull: its loads, too.
+TEST(CompiledBonds, BreakByALatchAsInTheWorld) {
+  cdot::runs_as_the_world<latched_rattle<double>>(scenes + "latched.toml", Integrator::rattle, 1e-10, 1);
+  latched_rattle<double>::State state;
+  latched_rattle<double>::reset(state);
+  for (int k = 0; k < 63; ++k) latched_rattle<double>::step(state, 0.001);
+  EXPECT_EQ(state.bonds.holds[0], 1);
+  latched_rattle<double>::step(state, 0.001);
+  EXPECT_EQ(state.bonds.holds[0], 0);
+}
+
+// The time at which a joint breaks is located. An impact breaks it at the end of the step.
+template <class Scene>
+void breaks_in_time_as_in_the_world(const std::string& file, Integrator integrator, double step = 0.001) {
+  cdot::runs_as_the_world<Scene>(scenes + file, integrator, 1e-9, 1.1, step);
+}
+
+TEST(CompiledBonds, BreakInTimeAsInTheWorld) {
+  breaks_in_time_as_in_the_world<bonds_rk4<double>>("bonds.toml", Integrator::rk4);
+  breaks_in_time_as_in_the_world<bonds_dop853<double>>("bonds.toml", Integrator::dop853);
+  breaks_in_time_as_in_the_world<bonds_dop853<double>>("bonds.toml", Integrator::dop853, 1.0 / 60);
+  breaks_in_time_as_in_the_world<bonds_radau5<double>>("bonds.toml", Integrator::radau5);
+}
+
+TEST(CompiledBonds, BreakInTimeInSpaceAsInTheWorld) {
+  breaks_in_time_as_in_the_world<bonds_in_space_rk4<double>>("bonds_in_space.toml", Integrator::rk4);
+  breaks_in_time_as_in_the_world<bonds_in_space_rk4<double>>("bonds_in_space.toml", Integrator::rk4, 1.0 / 60);
+  breaks_in_time_as_in_the_world<bonds_in_space_dop853<double>>("bonds_in_space.toml", Integrator::dop853);
+  breaks_in_time_as_in_the_world<bonds_in_space_radau5<double>>("bonds_in_space.toml", Integrator::radau5, 1.0 / 60);
+}
+
+TEST(CompiledBonds, BreakInTimeWithoutBoundsAsInTheWorld) {
+  breaks_in_time_as_in_the_world<links_rk4<double>>("links.toml", Integrator::rk4);
+  breaks_in_time_as_in_the_world<links_dop853<double>>("links.toml", Integrator::dop853, 1.0 / 60);
+  breaks_in_time_as_in_the_world<links_radau5<double>>("links.toml", Integrator::radau5);
+}
+
+// A joint of the chain breaks at its strength; of a pillar that carries too much from the start only the lower one.
+template <class Scene>
+void breaks_in_the_test() {
+  typename Scene::State state;
+  Scene::reset(state);
+  double broke[6] = {}, load[6] = {};
+  while (state.time < 2) {
+    for (int k = 0; k < 6; ++k) load[k] = std::max(load[k], state.bonds.holds[k] * state.bonds.load[k]);
+    Scene::step(state, 0.001);
+    for (int k = 0; k < 6; ++k)
+      if (broke[k] == 0 && state.bonds.holds[k] == 0) broke[k] = state.time;
+  }
+  EXPECT_LT(broke[1], broke[0]);
+  EXPECT_GT(load[1], 29.8);
+  EXPECT_LT(load[1], 30);
+  EXPECT_EQ(broke[5], 0.001);
+  EXPECT_EQ(broke[4], 0);
+}
+
+TEST(CompiledBonds, BreakInTimeInTheTest) {
+  breaks_in_the_test<bonds_rk4<double>>();
+  breaks_in_the_test<bonds_dop853<double>>();
+  breaks_in_the_test<bonds_radau5<double>>();
+}
+
+// The impulse of a blow is a load of the step in which it falls: by Runge-Kutta methods m v of the weight, so m v / h.
+template <class Scene>
+void blow_is_a_load() {
+  typename Scene::State state;
+  Scene::reset(state);
+  double blow = 0;
+  while (state.time < 0.2) {
+    Scene::step(state, 1.0 / 60);
+    blow = std::max(blow, state.bonds.load[0]);
+  }
+  EXPECT_EQ(state.bonds.holds[0], 1);
+  EXPECT_NEAR(blow, 3 * (60 * std::sqrt(2 * 9.81 * 0.1) + 9.81), 1e-5);
+}
+
+TEST(CompiledBonds, BreakByBlowsAsInTheWorld) {
+  const auto runs = [](auto of, Integrator integrator) {
+    cdot::runs_as_the_world<decltype(of)>(scenes + "blows.toml", integrator, 1e-9, 0.8);
+  };
+  runs(blows_euler<double>{}, Integrator::euler);
+  runs(blows_implicit<double>{}, Integrator::implicit);
+  runs(blows_rattle<double>{}, Integrator::rattle);
+  runs(blows_rk4<double>{}, Integrator::rk4);
+  runs(blows_dop853<double>{}, Integrator::dop853);
+  runs(blows_radau5<double>{}, Integrator::radau5);
+  blow_is_a_load<blows_rk4<double>>();
+  blow_is_a_load<blows_dop853<double>>();
+  blow_is_a_load<blows_radau5<double>>();
+}
+
 // By their own force.
 TEST(CompiledBonds, PinsShearAsInTheWorld) {
   breaks_as_in_the_world<pins_euler<double>>("pins.toml", Integrator::euler);
@@ -51,6 +169,7 @@ TEST(CompiledBonds, PinsShearAsInTheWorld) {
 TEST(CompiledBonds, PinsShearInTimeAsInTheWorld) {
   cdot::runs_as_the_world<pins_rk4<double>>(scenes + "pins.toml", Integrator::rk4, 1e-9, 2);
   cdot::runs_as_the_world<pins_dop853<double>>(scenes + "pins.toml", Integrator::dop853, 1e-9, 2, 1.0 / 60);
+  cdot::runs_as_the_world<pins_radau5<double>>(scenes + "pins.toml", Integrator::radau5, 1e-9, 1);
 }
 
 template <class Scene>
@@ -112,6 +231,8 @@ TEST(CompiledBonds, TellTheirLoads) {
 
 TEST(CompiledBonds, ASnapshotKeepsThem) {
   cdot::snapshot_keeps<bonds_rattle<double>>(0.002);
+  cdot::snapshot_keeps<bonds_rk4<double>>(0.002);
+  cdot::snapshot_keeps<links_dop853<double>>(0.002);
   const auto kept = cdot::snapshot_keeps<bonds_implicit<double>>(0.002);
   EXPECT_EQ(kept.bonds.holds[0], 0);
 }
@@ -121,6 +242,11 @@ TEST(CompiledBonds, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<bonds_implicit>();
   cdot::lanes_are_as_alone<bonds_rattle, float>();
   cdot::lanes_are_as_alone<bonds_in_space_rattle>();
+  cdot::lanes_are_as_alone<bonds_rk4>();
+  cdot::lanes_are_as_alone<blows_rk4>();
+  cdot::lanes_are_as_alone<bonds_in_space_dop853>();
+  cdot::lanes_are_as_alone<links_rk4, float>();
+  cdot::lanes_are_as_alone<links_radau5>();
   cdot::lanes_are_as_alone<pins_rattle>();
   cdot::lanes_are_as_alone<pins_rk4>();
 }
