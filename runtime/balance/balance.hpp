@@ -99,6 +99,10 @@ enum class Impulses : char {
 // Call at the start and at the end of a kick of h. C and J are those of the kick.
 template <class S>
 void begin_kick(WorldData<S>& world, const Island<S>& island);
+// Call in each kick of RATTLE: keeps the forces at rest in Batch::impulse for book_kick(), which comes when C is
+// another one.
+template <class S>
+void note_at_rest(Island<S>& island);
 template <class S>
 void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typename S::Scalar h);
 // Call at the end of a step of Euler's method: a spring given by its frequency changes its stiffness with the pose.

@@ -2,96 +2,24 @@
 // on time.
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <type_traits>
 
 #include <cdot/spaces.hpp>
 
 #include "runtime/balance/balance.hpp"
+#include "runtime/balance/parted.hpp"
 
 namespace cdot {
 namespace {
 
-struct Work {
-  double* by_source;             // put in, less taken
-  double* first_kick = nullptr;  // Flow::first_kick
-  double put_in = 0, taken = 0;
-  void put(size_t source, double work) { put_in += work, by_source[source] += work; }
-  // Work of a force that can only take. A part with the other sign is the method's own error.
-  void take(size_t source, double work) {
-    if (!(work >= 0)) taken -= work, by_source[source] += work;
-  }
-  // Work of a force that can do either.
-  void give(size_t source, double work) {
-    if (work > 0) put(source, work);
-    else take(source, work);
-  }
-  void put(Source source, double work) { put(static_cast<size_t>(source), work); }
-  void take(Source source, double work) { take(static_cast<size_t>(source), work); }
-};
-
-// dC/dt of one slot whose bias holds something else by now. C and J keep their values.
-template <class S>
-void find_drift(const WorldData<S>& world, Batch<S>& batch, int slot, typename S::Scalar time,
-                typename S::Scalar* drift) {
-  const int rows = batch.ops->rows;
-  auto* const bias = batch.bias.data() + slot * rows;
-  std::copy_n(bias, rows, drift);
-  batch.ops->evaluate(batch, slot, slot + 1, world.bodies, time);
-  std::swap_ranges(bias, bias + rows, drift);
-}
-
 // The force of dampers among the rows of a slot: that of the law at this rate, less that at rest.
 template <class S>
 void find_damping(const Batch<S>& batch, int slot, const typename S::Scalar* rate, typename S::Scalar* force) {
-  typename S::Scalar at_rest[most_rows] = {}, none[most_rows];
-  batch.law->force(batch, slot, at_rest, none);
+  typename S::Scalar none[most_rows];
+  batch.law->force(batch, slot, at_rest<typename S::Scalar>, none);
   batch.law->force(batch, slot, rate, force);
   for (int r = 0; r < batch.ops->rows; ++r) force[r] -= none[r];
-}
-
-// The parts of a spring in the impulses of its rows. RATTLE exerts springs as forces, which are in no impulse: those at
-// rest, over h. Its impulses of springs are those of dampers.
-enum class Springs : char { none, whole, dampers, without_dampers, as_forces };
-
-// Rows of springs whose impulse is that of dampers alone, or of springs without dampers. Batch::rate has J v of the
-// mean velocity. Of springs as forces C must be that of the kick.
-template <class S, class Lambda>
-void work_of_parted_springs(const WorldData<S>& world, Batch<S>& batch, int slot, Lambda lambda, Springs springs,
-                            typename S::Scalar time, double h, Work& work) {
-  using T = typename S::Scalar;
-  constexpr T at_rest[most_rows] = {};
-  T drift[most_rows] = {}, force[most_rows];
-  if (batch.explicit_time()) find_drift(world, batch, slot, time, drift);
-  if (springs == Springs::as_forces) batch.law->force(batch, slot, at_rest, force);
-  for (int r = 0; r < batch.ops->rows; ++r) {
-    const int i = slot * batch.ops->rows + r;
-    const double impulse = springs == Springs::as_forces ? h * double(force[r]) : double(lambda(i));
-    if (springs == Springs::dampers) work.take(batch.source, impulse * double(batch.rate[i] + drift[r]));
-    work.put(batch.source, -impulse * double(drift[r]));
-  }
-}
-
-// Effects whose impulse is that of what rates change, or the force at rest over h. C must be that of the kick.
-template <class S, class Lambda>
-void work_of_parted_effect(const WorldData<S>& world, Batch<S>& batch, int slot, Lambda lambda, bool of_rates,
-                           typename S::Scalar time, double h, Work& work) {
-  using T = typename S::Scalar;
-  constexpr T at_rest[most_rows] = {};
-  const int rows = batch.ops->rows, first = slot * rows;
-  const bool drifts = batch.explicit_time();
-  T drift[most_rows], unstored[most_rows];
-  if (drifts) find_drift(world, batch, slot, time, drift);
-  if (!of_rates) batch.law->unstored(batch, slot, at_rest, unstored);
-  double done = 0;
-  for (int r = 0; r < rows; ++r) {
-    const T rate = drifts ? batch.rate[first + r] + drift[r] : batch.rate[first + r];
-    done += (of_rates ? double(lambda(first + r)) : h * double(unstored[r])) * double(rate);
-  }
-  work.give(batch.source, done);
-  if (!drifts) return;
-  T whole[most_rows];
-  if (!of_rates) batch.law->force(batch, slot, at_rest, whole);
-  for (int r = 0; r < rows; ++r)
-    work.put(batch.source, -(of_rates ? double(lambda(first + r)) : h * double(whole[r])) * double(drift[r]));
 }
 
 // Rows that are springs, given J v of the rate at which they acted and, in Batch::rate, of the mean velocity. Of an
@@ -125,8 +53,7 @@ enum class Kick : char { only, first, second };
 // A rate of 0 by a force that may be 0 is friction, which can only take.
 template <class S>
 void work_of_rate(const Batch<S>& batch, const Guard<typename S::Scalar>& guard, double done, Work& work) {
-  const bool drives = guard.rate != 0 || guard.lower > 0 || guard.upper < 0;
-  if (drives || batch.law->in_time || batch.explicit_time()) work.put(batch.source, done);
+  if (guard.rate != 0 || guard.lower > 0 || guard.upper < 0) work.put(batch.source, done);
   else work.take(batch.source, done);
 }
 
@@ -145,22 +72,27 @@ void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& 
   if (kick == Kick::first) std::copy_n(done, rows, work.first_kick);
   if (kick != Kick::only) work.first_kick += rows;
   if (idle || kick == Kick::first) return;
+  const bool has_ends = batch.law->error;
+  const bool ends_move = has_ends && batch.driven() && !batch.drives_of(slot).empty();
+  const bool in_time = batch.explicit_time() || (!has_ends && batch.law->in_time);
   Guard<typename S::Scalar> guards[most_rows];
-  batch.law->guard(batch, slot, guards);
+  if (!in_time) batch.law->guard(batch, slot, guards);
   for (int r = 0; r < rows; ++r) {
-    if (!batch.law->error) work_of_rate(batch, guards[r], done[r], work);  // a motor or dry friction
-    else if (batch.driven() && !batch.drives_of(slot).empty()) work.give(batch.source, done[r]);
-    else if (batch.explicit_time()) work.put(batch.source, done[r]);
+    if (ends_move) work.give(batch.source, done[r]);
+    else if (in_time) work.put(batch.source, done[r]);
+    else if (!has_ends) work_of_rate(batch, guards[r], done[r], work);  // a motor or dry friction
     else if (guards[r].one_sided()) work.take(batch.source, done[r]);
     else if (batch.law->distance) work.give(batch.source, done[r]);
   }
 }
 
 // All rows that may do work, given J v of mean velocities by batch.ops->velocity(..., mean). `acted` finds J v at which
-// whole springs acted, into Batch::impulse. alone: rows that are no springs have no impulse.
+// whole springs acted, into Batch::impulse. alone: rows that are no springs have no impulse. Returns true if a spring
+// may be given by its frequency.
 template <class S, class Lambda, class Acted>
-void work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S::Velocity* mean, Lambda lambda,
+bool work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S::Velocity* mean, Lambda lambda,
                   Acted acted, Springs springs, bool alone, Kick kick, typename S::Scalar time, double h, Work& work) {
+  bool by_mass = false;
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     const int begin = segment.begin, end = segment.end, rows = batch.ops->rows;
@@ -168,21 +100,20 @@ void work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S
     if (alone && !(batch.law && batch.law->spring)) continue;
     if (springs == Springs::none && batch.law && (batch.law->spring || batch.law->force)) continue;
     batch.ops->velocity(batch, begin, end, mean, batch.rate.data());
+    by_mass |= batch.law && batch.law->by_mass;
     const auto of_row = [&](int i) { return lambda(batch, i); };
     if (!batch.law) {
       for (int i = begin * rows; i < end * rows; ++i) work.put(batch.source, double(of_row(i)) * double(batch.rate[i]));
     } else if (batch.law->spring && springs != Springs::whole) {
-      const auto work_of_part = [&](int slot, Springs part, auto impulse) {
-        const bool of_rates = part == Springs::dampers;
-        if (batch.law->is_of_effect()) work_of_parted_effect(world, batch, slot, impulse, of_rates, time, h, work);
-        else work_of_parted_springs(world, batch, slot, impulse, part, time, h, work);
-      };
-      const auto of_dampers = [&](int i) { return batch.lambda[i]; };
+      const bool of_effect = batch.law->is_of_effect(), as_forces = springs == Springs::as_forces;
+      const auto of_part = [&](int i) { return as_forces ? batch.lambda[i] : of_row(i); };
       for (int slot = begin; slot < end; ++slot) {
-        if (springs == Springs::as_forces) work_of_part(slot, Springs::dampers, of_dampers);
-        work_of_part(slot, springs, of_row);
+        if (of_effect) work_of_parted_effect(world, batch, slot, of_part, springs, time, h, work);
+        else work_of_parted_springs(world, batch, slot, of_part, springs, time, h, work);
+        if (as_forces) work.first_kick += numbers_at_rest(batch);
       }
     } else if (batch.law->force) {
+      if (springs == Springs::as_forces) work.first_kick += (end - begin) * numbers_at_rest(batch);
       const auto* const rates = acted(batch, begin, end);
       for (int slot = begin; slot < end; ++slot)
         work_of_springs(world, batch, slot, rates + slot * rows, of_row, time, h, work);
@@ -190,6 +121,7 @@ void work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S
       for (int slot = begin; slot < end; ++slot) work_of_bounded(batch, slot, of_row, kick, work);
     }
   }
+  return by_mass;
 }
 
 // Sweeps leave a spring at another rate than the one that gave its impulse: J v = -bias - softness lambda.
@@ -221,15 +153,15 @@ typename S::Scalar moment_of(const Island<S>& island, const typename S::Velocity
 template <class S>
 void work_of_stiffness(WorldData<S>& world, const Island<S>& island, typename S::Scalar time,
                        const typename S::Velocity* v, double h, Work& work) {
-  const auto has_springs = [](const Segment<S>& segment) { return segment.batch->law && segment.batch->law->by_mass; };
-  if (std::ranges::none_of(island.segments, has_springs)) return;
-  const Along<S> motion{time, moment_of(island, v), v};
+  std::optional<Along<S>> motion;
   for (const Segment<S>& segment : island.segments) {
-    if (!has_springs(segment)) continue;
     const Batch<S>& batch = *segment.batch;
-    for (int slot = segment.begin; slot < segment.end; ++slot)
-      if (batch.law->by_mass(batch, slot))
-        work.put(batch.source, h * power_of_stiffness(world, batch, slot, motion, world.one_slot, world.few));
+    if (!batch.law || !batch.law->by_mass) continue;
+    for (int slot = segment.begin; slot < segment.end; ++slot) {
+      if (!batch.law->by_mass(batch, slot)) continue;
+      if (!motion) motion = {time, moment_of(island, v), v};
+      work.put(batch.source, h * power_of_stiffness(world, batch, slot, *motion, world.one_slot, world.few));
+    }
   }
 }
 
@@ -293,16 +225,9 @@ constexpr Springs springs_of(Impulses impulses) {
   return impulses == Impulses::middle ? Springs::without_dampers : Springs::dampers;
 }
 
-}  // namespace
-
-template <class S>
-void begin_kick(WorldData<S>& world, const Island<S>& island) {
-  if (!works_now(world, island)) return;
-  for (int i : island.bodies) world.start_of_kick[i] = world.bodies.velocity[i];
-}
-
-template <class S>
-void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typename S::Scalar h) {
+// `impulses`, or a type that holds it: the halves of RATTLE are booked in each step, by code of their own.
+template <class S, class Kind>
+void book(WorldData<S>& world, Island<S>& island, Kind impulses, typename S::Scalar h) {
   using T = typename S::Scalar;
   if (!(impulses == Impulses::drift ? island.driven : works_now(world, island))) return;
   if (impulses == Impulses::dampers && !has_springs(island)) return;
@@ -320,7 +245,7 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
   const bool of_rows = impulses == Impulses::drift || impulses == Impulses::dampers || impulses == Impulses::end ||
                        impulses == Impulses::relaxed;
   if (!of_rows) work_on_bodies(world, island, start.data(), mean.data(), impulses != Impulses::middle, at_end, h, work);
-  work_of_rows(
+  const bool by_mass = work_of_rows(
       world, island, mean.data(), [&](const Batch<S>& batch, int i) { return impulse_of(impulses, batch, i); },
       [&](Batch<S>& batch, int begin, int end) {
         batch.ops->velocity(batch, begin, end, acted, batch.impulse.data());
@@ -328,10 +253,42 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
         return batch.impulse.data();
       },
       springs_of(impulses), impulses == Impulses::dampers, kick_of(impulses), island.evaluated_at, double(h), work);
-  if (impulses == Impulses::rattle_start || impulses == Impulses::rattle_end)
+  if (by_mass && (impulses == Impulses::rattle_start || impulses == Impulses::rattle_end))
     work_of_stiffness(world, island, island.evaluated_at, start.data(), double(h), work);
   if (!of_rows && world.driven) work_of_drives(island, double(h), work);
   add(world, work);
+}
+
+}  // namespace
+
+template <class S>
+void begin_kick(WorldData<S>& world, const Island<S>& island) {
+  if (!works_now(world, island)) return;
+  for (int i : island.bodies) world.start_of_kick[i] = world.bodies.velocity[i];
+}
+
+template <class S>
+void note_at_rest(Island<S>& island) {
+  double* to = island.flow.first_kick.data();
+  for (const auto& [batch, begin, end, whole] : island.segments) {
+    if (!batch->law || !batch->law->force) continue;
+    const int rows = batch->ops->rows;
+    const auto* from = batch->impulse.data() + begin * rows;
+    const bool stores = stores_some(*batch);
+    for (int slot = begin; slot < end; ++slot) {
+      for (int r = 0; r < rows; ++r) *to++ = double(*from++);
+      if (stores) find_unstored_at_rest(*batch, slot, to), to += rows;
+    }
+  }
+}
+
+template <class S>
+void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typename S::Scalar h) {
+  using Start = std::integral_constant<Impulses, Impulses::rattle_start>;
+  using End = std::integral_constant<Impulses, Impulses::rattle_end>;
+  if (impulses == Start::value) book(world, island, Start{}, h);
+  else if (impulses == End::value) book(world, island, End{}, h);
+  else book(world, island, impulses, h);
 }
 
 template <class S>
@@ -374,6 +331,7 @@ void book_stiffness(WorldData<S>& world, Island<S>& island) {
 
 #define CDOT_INSTANTIATE(S)                                                   \
   template void begin_kick(WorldData<S>&, const Island<S>&);                  \
+  template void note_at_rest(Island<S>&);                                     \
   template void book_kick(WorldData<S>&, Island<S>&, Impulses, S::Scalar);    \
   template void find_power(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar*); \
   template void book_stiffness(WorldData<S>&, Island<S>&);

@@ -51,7 +51,7 @@ struct FlowWorkspace {
   std::vector<T> now;               // numbers of a stage, laid out like FlowState::start
   std::vector<T> low, high;         // margins at the start of a step, then on both sides of an event
   std::vector<StartOfWay<T>> ways;  // [guarded]
-  std::vector<double> first_kick;   // [J] of rows with bounds in the first of two kicks, by balance/work.cpp
+  std::vector<double> first_kick;   // of rows under laws: [J] in the first of two kicks; by RATTLE, forces at rest
   int guarded = 0;                  // number of guarded rows
   T fixed_step = 0;                 // its length; 0: the error chooses the steps
   bool projects_stages = false;     // in steps near a loss of rank

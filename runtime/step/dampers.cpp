@@ -64,9 +64,10 @@ void find_rates_of_effects(WorldData<S>& world, const Island<S>& island) {
 }
 
 template <class S>
-void look_at_effects(WorldData<S>& world, const Island<S>& island, typename S::Scalar time) {
+void look_at_effects(WorldData<S>& world, const Island<S>& island, typename S::Scalar time, bool noted) {
   for (const auto& [batch, begin, end, whole] : island.segments) {
-    const bool books_force = batch->law && (batch->law->is_of_effect() || (is_force(*batch) && batch->explicit_time()));
+    const bool in_time = is_force(*batch) && batch->explicit_time();
+    const bool books_force = in_time || (batch->law && batch->law->is_of_effect() && !(noted && batch->law->spring));
     if (books_force) batch->ops->position(*batch, begin, end, world.bodies, time);
   }
 }
@@ -77,12 +78,12 @@ void forget_dampers(WorldData<S>& world, const Island<S>& island) {
     if (segment.batch->law && segment.batch->law->is_of_effect()) restore_drift(world, island, segment);
 }
 
-#define CDOT_INSTANTIATE(S)                                                  \
-  template void weigh_springs(const WorldData<S>&, const Island<S>&);        \
-  template void find_spring_impulses(Batch<S>&, int, int, S::Scalar);        \
-  template void push_dampers(WorldData<S>&, Island<S>&, S::Scalar);          \
-  template void find_rates_of_effects(WorldData<S>&, const Island<S>&);      \
-  template void look_at_effects(WorldData<S>&, const Island<S>&, S::Scalar); \
+#define CDOT_INSTANTIATE(S)                                                        \
+  template void weigh_springs(const WorldData<S>&, const Island<S>&);              \
+  template void find_spring_impulses(Batch<S>&, int, int, S::Scalar);              \
+  template void push_dampers(WorldData<S>&, Island<S>&, S::Scalar);                \
+  template void find_rates_of_effects(WorldData<S>&, const Island<S>&);            \
+  template void look_at_effects(WorldData<S>&, const Island<S>&, S::Scalar, bool); \
   template void forget_dampers(WorldData<S>&, const Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

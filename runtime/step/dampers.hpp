@@ -102,9 +102,9 @@ bool has_effects(const Island<S>& island) {
 // J v of effects, into Batch::rate.
 template <class S>
 void find_rates_of_effects(WorldData<S>& world, const Island<S>& island);
-// C of effects at the present poses.
+// C of effects at the present poses. `noted`: forces at rest need none (note_at_rest()).
 template <class S>
-void look_at_effects(WorldData<S>& world, const Island<S>& island, typename S::Scalar time);
+void look_at_effects(WorldData<S>& world, const Island<S>& island, typename S::Scalar time, bool noted = false);
 
 // K of the rows under a law, which the numbers of springs need.
 template <class S>

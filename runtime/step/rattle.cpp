@@ -47,6 +47,7 @@ void kick(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     find_spring_impulses(batch, segment.begin, segment.end, T(1));
     batch.ops->apply(batch, segment.begin, segment.end, all, batch.impulse.data(), all.velocity_rate.data());
   }
+  note_at_rest(island);
   for (size_t k = 0; k < island.bodies.size(); ++k) {
     const int i = island.bodies[k];
     all.velocity[i] = S::sum(island.flow.velocity[k], all.velocity_rate[i], h);
@@ -252,7 +253,7 @@ void book_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
       std::swap(world.bodies.pose[island.bodies[k]], island.flow.pose[k]);
   };
   swap_poses();
-  look_at_effects(world, island, T(world.time));
+  look_at_effects(world, island, T(world.time), true);
   book_kick(world, island, Impulses::rattle_start, h);
   swap_poses();
 }

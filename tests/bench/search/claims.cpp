@@ -2,6 +2,7 @@
 // the accuracies.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fmt/format.h>
 #include <map>
 
@@ -65,6 +66,7 @@ void study_claims(const std::vector<Scene>& scenes) {
       }
       for (const auto& [digits, price] : prices)
         if (prices.contains(4)) levels[digits].prices.push_back(price / prices[4]);
+      std::fflush(stdout);
     }
   }
   fmt::print("{} runs, {} failed, {} above their claim, the largest at {:.2f} of it\n\n", runs, failed, above, worst);

@@ -18,7 +18,8 @@ STEP, COUNTS, MOST = 0.002, (5, 20, 60, 200, 1000), 5
 PARTS = {
     "estimate": r"ErrorEstimate<.*>::(ErrorEstimate|before_step|after_step)\(",
     "balance": r":cdot::Balance cdot::balance_of<|WorstStepWatch<.*>::look\(|BalanceWatch::look\(cdot::Balance const",
-    "booking": r":void cdot::(begin_accounts|book_kick|begin_kick|book_work|book_stiffness|find_power|look_at_effects)<",
+    "booking": r":void cdot::(begin_accounts|begin_kick|note_at_rest|book_kick|book_work|book_stiffness|find_power"
+               r"|look_at_effects)<",
 }
 
 

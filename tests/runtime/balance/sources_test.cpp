@@ -44,6 +44,23 @@ TEST(WorkBySource, AMotorFeedsFrictionAndDrag) {
   }
 }
 
+// A servo has no energy of its own: its work is what the wheel's motion gains, and all of it.
+TEST(WorkBySource, AServoDoesWhatItsWheelGains) {
+  constexpr double I = 2;
+  for (const Method& method : methods()) {
+    World<double> world(method.settings());
+    const int wheel = world.add_body({.w = 1, .mass = 1, .inertia = I});
+    revolute(world, world.ground(), wheel, 0, 0, 0, 0);
+    world.add_joint(
+        {"servo", {wheel, world.ground()}, {{"target", {1.5}}, {"k", {9}}, {"d", {0.3}}, {"most", {5}}}, {}});
+    for (int k = 0; k < 500; ++k) ASSERT_TRUE(world.step(1e-3)) << method.name();
+    const double gained = I * (std::pow(world.velocity(wheel).w, 2) - 1) / 2;
+    EXPECT_GT(gained, 1) << method.name();
+    EXPECT_NEAR(work_of(world, "servo"), gained, allowed_of(method)) << method.name();
+    EXPECT_LE(std::abs(world.balance().method()), allowed_of(method)) << method.name();
+  }
+}
+
 // A crank, driven at w, takes a wheel along by a damper: wheel I u' = c (w - u). The drive puts in I w u, the damper
 // takes I w^2 (1 - exp(-2 c t / I)) / 2. The drive's share in the kick of a damper is large, as the crank is light.
 TEST(WorkBySource, ADriveFeedsADamper) {
