@@ -1,5 +1,7 @@
 // Symplectic Euler, first order: the poses advance with the new velocities. A body with a turning inertia tensor
 // rotates by its mean spin of the step. That rotation is second order and conserves the angular momentum.
+#include <cmath>
+
 #include <cdot/spaces.hpp>
 
 #include "runtime/motion/motion.hpp"
@@ -41,12 +43,27 @@ void integrate(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   island.evaluated = island.factored = false;
 }
 
+template <class S>
+bool finite(const WorldData<S>& world, const Island<S>& island) {
+  using T = typename S::Scalar;
+  T sum = 0;
+  for (int i : island.bodies) {
+    T numbers[S::pose_numbers + S::freedom];
+    S::write(world.bodies.pose[i], numbers);
+    S::write(world.bodies.velocity[i], numbers + S::pose_numbers);
+    for (T number : numbers) sum += number;
+  }
+  return std::isfinite(sum);
+}
+
 #define CDOT_INSTANTIATE(T)                                                 \
   template void turn_inertias(WorldData<Spatial<T>>&, Island<Spatial<T>>&); \
   template void set_inertias(WorldData<Spatial<T>>&, Island<Spatial<T>>&);
 CDOT_FOR_EACH_NUMBER(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
-#define CDOT_INSTANTIATE(S) template void integrate(WorldData<S>&, Island<S>&, S::Scalar);
+#define CDOT_INSTANTIATE(S)                                      \
+  template void integrate(WorldData<S>&, Island<S>&, S::Scalar); \
+  template bool finite(const WorldData<S>&, const Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

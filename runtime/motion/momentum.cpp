@@ -120,9 +120,6 @@ void restore_momentum(WorldData<S>& world, const Island<S>& island, const Moment
     all.velocity[i] = S::sum(all.velocity[i], rigid<S>(all, i, now.centre, v, w), typename S::Scalar(1));
 }
 
-namespace {
-
-// The motion of bodies against each other into Bodies::increment; its energy.
 template <class S>
 double find_own_motion(WorldData<S>& world, const Island<S>& island) {
   Bodies<S>& all = world.bodies;
@@ -137,27 +134,13 @@ double find_own_motion(WorldData<S>& world, const Island<S>& island) {
 }
 
 template <class S>
-void keep_share(WorldData<S>& world, const Island<S>& island, double left) {
+void keep_own_motion(WorldData<S>& world, const Island<S>& island, double share) {
   using T = typename S::Scalar;
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) {
-    all.velocity[i] = S::sum(all.velocity[i], all.increment[i], T(left - 1));
+    all.velocity[i] = S::sum(all.velocity[i], all.increment[i], T(share - 1));
     all.increment[i] = {};
   }
-}
-
-}  // namespace
-
-template <class S>
-void calm(WorldData<S>& world, const Island<S>& island, double energy) {
-  const double own = find_own_motion(world, island);
-  keep_share(world, island, energy < own ? std::sqrt(1 - energy / own) : 0);
-}
-
-template <class S>
-void slow_down(WorldData<S>& world, const Island<S>& island, double share) {
-  find_own_motion(world, island);
-  keep_share(world, island, share);
 }
 
 // exp(turn) with turn = h (w + w') / 2 and w' = I'^-1 L, where I' is turned and L stays.
@@ -195,8 +178,8 @@ void move_in_own_axes(WorldData<S>& world, const Island<S>& island, typename S::
 
 #define CDOT_INSTANTIATE(S)                                                   \
   template MomentumOf<S> momentum_of(const WorldData<S>&, const Island<S>&);  \
-  template void calm(WorldData<S>&, const Island<S>&, double);                \
-  template void slow_down(WorldData<S>&, const Island<S>&, double);           \
+  template double find_own_motion(WorldData<S>&, const Island<S>&);           \
+  template void keep_own_motion(WorldData<S>&, const Island<S>&, double);     \
   template void move_in_own_axes(WorldData<S>&, const Island<S>&, S::Scalar); \
   template void restore_momentum(WorldData<S>&, const Island<S>&, const MomentumOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)

@@ -29,13 +29,12 @@ MomentumOf<S> momentum_of(const WorldData<S>& world, const Island<S>& island);
 template <class S>
 void restore_momentum(WorldData<S>& world, const Island<S>& island, const MomentumOf<S>& start, typename S::Scalar h);
 
-// Takes this energy [J], or what there is, from the motion of an island's bodies against each other. Its momentum stays
-// where nothing holds the island.
+// The motion of an island's bodies against each other into Bodies::increment; its energy [J].
 template <class S>
-void calm(WorldData<S>& world, const Island<S>& island, double energy);
-// Leaves this share of that motion.
+double find_own_motion(WorldData<S>& world, const Island<S>& island);
+// Leaves this share of that motion. The island's momentum stays where nothing holds it.
 template <class S>
-void slow_down(WorldData<S>& world, const Island<S>& island, double share);
+void keep_own_motion(WorldData<S>& world, const Island<S>& island, double share);
 // Moves the bodies over h: against each other by q += h v, in axes that move with the island as one rigid body. That
 // motion is of second order and changes no distances, so fast turning loads no springs.
 template <class S>

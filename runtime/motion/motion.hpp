@@ -25,6 +25,10 @@ void halt_immovable_bodies(WorldData<S>& world, const Island<S>& island);
 template <class S>
 void integrate(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 
+// True if all poses and velocities of an island are numbers.
+template <class S>
+bool finite(const WorldData<S>& world, const Island<S>& island);
+
 // Sets the inertia tensors at the present poses, and w = I^-1 L. Call it after every change of poses, in a space with
 // gyroscopes.
 template <class S>

@@ -88,13 +88,18 @@ void factorize_rows(WorldData<S>& world, Island<S>& island) {
 }
 
 template <class S>
+void evaluate_present(WorldData<S>& world, Island<S>& island) {
+  if (island.evaluated) return;
+  island.evaluated_at = typename S::Scalar(world.time);
+  for (const Segment<S>& segment : island.segments)
+    segment.batch->ops->evaluate(*segment.batch, segment.begin, segment.end, world.bodies, island.evaluated_at);
+  island.evaluated = true;
+}
+
+template <class S>
 void evaluate_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
-  if (!island.evaluated)
-    for (const Segment<S>& segment : island.segments)
-      segment.batch->ops->evaluate(*segment.batch, segment.begin, segment.end, world.bodies, T(world.time));
-  if (!island.evaluated) island.evaluated_at = T(world.time);
-  island.evaluated = true;
+  evaluate_present(world, island);
   factorize_rows(world, island);
   const T share = T(world.settings.baumgarte) / h;
   for (const Segment<S>& segment : island.segments) {
@@ -121,6 +126,7 @@ void evaluate_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h)
   template void hold_back(WorldData<S>&, const Island<S>&);                   \
   template void stiffen_bodies(WorldData<S>&, Island<S>&, S::Scalar, double); \
   template void factorize_rows(WorldData<S>&, Island<S>&);                    \
+  template void evaluate_present(WorldData<S>&, Island<S>&);                  \
   template void evaluate_rows(WorldData<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -5,6 +5,10 @@
 
 namespace cdot {
 
+// C, J and dC/dt of every row at the present poses, if they have changed.
+template <class S>
+void evaluate_present(WorldData<S>& world, Island<S>& island);
+
 // C, J and bias of every row at the present poses; softness and bounds of rows under a law.
 template <class S>
 void evaluate_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h);

@@ -68,8 +68,8 @@ struct IslandState {
   StateNumber<bool> asleep = false;
   StateNumber<double> rested = 0.0;     // [s]
   StateNumber<int> redundant_rows = 0;  // of the last factorisation
-  StateNumber<double> gained = 0.0;     // by Drift::soft [J]; below 0: lost
-  StateNumber<double> level = 0.0;      // energy of the bodies after a step of Drift::soft [J]
+  StateNumber<double> gained = 0.0;     // from joints, by sweeps of Euler's steps [J]; below 0: lost
+  StateNumber<double> level = 0.0;      // energy of the bodies after such a step [J]
   StateNumber<bool> levelled = false;   // level is that of the present state
   StateNumber<int> slack = 0;           // further steps of Drift::soft that take the joints for slack
   // Of an island that floats: momentum (3 numbers), angular momentum about its centre of mass (3), time [s] at which

@@ -1,5 +1,10 @@
 // Symplectic Euler, plain or linearly implicit: solves the velocities with the joints, advances the poses with the new
-// velocities, corrects the drift.
+// velocities, corrects the drift. A step by sweeps that its bodies cannot pay for (step/gain.hpp) starts without
+// impulses and then does without the correction, with slower bodies.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include <cdot/spaces.hpp>
 
 #include "runtime/balance/balance.hpp"
@@ -7,6 +12,7 @@
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
+#include "runtime/step/gain.hpp"
 #include "runtime/step/integrators.hpp"
 
 namespace cdot {
@@ -36,24 +42,83 @@ void rehearse(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   island.evaluated = island.factored = false;
 }
 
+// How a step is tried.
+struct Try {
+  double last_step;  // [s] of the present impulses; 0: sweeps start without impulses
+  double speed = 1;  // of the bodies against each other while the poses move, as a share
+};
+
+template <class S>
+void advance(WorldData<S>& world, Island<S>& island, typename S::Scalar h, const Try& by) {
+  project_start(world, island);
+  begin_kick(world, island);
+  if (island.stiffened) {
+    if (by.last_step == 0) rehearse(world, island, h);
+    stiffen_bodies(world, island, h, by.last_step);
+  }
+  move_velocities(world, island, h, by.last_step);
+  book_kick(world, island, Impulses::euler, h);
+  if (by.speed < 1) move_slowly(world, island, h, by.speed);
+  else integrate(world, island, h);
+  if (island.driven) begin_kick(world, island);
+  project_step(world, island, h);
+  book_kick(world, island, Impulses::drift, h);
+}
+
+// False if the energy rises; then the state is to be restored.
+template <class S>
+bool try_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h, const Try& by) {
+  const double at_start = stored_at_start(world, island);
+  advance(world, island, h, by);
+  if (!island.evaluated) evaluate_anew(world, island, typename S::Scalar(world.time) + h);
+  island.evaluated = true;
+  book_stiffness(world, island);
+  return take_gain(world, island, double(h), stored(world, island) - at_start);
+}
+
+// Sweeps that correct no drift and start without impulses only take energy, the more the slower bodies move into
+// springs.
+template <class S>
+bool try_without_correction(WorldData<S>& world, Island<S>& island, typename S::Scalar h, const Start& start) {
+  const Drift drift = world.settings.drift;
+  world.settings.drift = Drift::none;
+  const bool paid = std::ranges::any_of(std::array{1., 1. / 4, 1. / 16, 1. / 64}, [&](double speed) {
+    go_back(world, island, start);
+    return try_step(world, island, h, {.last_step = 0, .speed = speed});
+  });
+  world.settings.drift = drift;
+  return paid;
+}
+
+template <class S>
+void step_gently(WorldData<S>& world, Island<S>& island, typename S::Scalar h, const Start& start) {
+  go_back(world, island, start);
+  if (try_step(world, island, h, {.last_step = 0})) return;
+  if (!try_without_correction(world, island, h, start)) {
+    go_back(world, island, start);
+    stand(world, island, h);
+  }
+  island.residual = find_errors(world, island, typename S::Scalar(world.time) + h);
+}
+
+template <class S>
+void step_by_sweeps(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
+  open_level(world, island, h, last_step);
+  const Start start = keep_start(world, island);
+  const bool paid = try_step(world, island, h, {last_step});
+  if (!paid && std::isfinite(start.level) && finite(world, island)) step_gently(world, island, h, start);
+}
+
 }  // namespace
 
 template <class S>
 void step_euler(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
   if (world.settings.drift == Drift::soft) return step_soft(world, island, h, last_step);
-  project_start(world, island);
-  begin_kick(world, island);
-  if (island.stiffened) {
-    if (last_step == 0) rehearse(world, island, h);
-    stiffen_bodies(world, island, h, last_step);
+  if (sweeps(world.settings.solver)) step_by_sweeps(world, island, h, last_step);
+  else {
+    advance(world, island, h, {last_step});
+    book_stiffness(world, island);
   }
-  move_velocities(world, island, h, last_step);
-  book_kick(world, island, Impulses::euler, h);
-  integrate(world, island, h);
-  if (island.driven) begin_kick(world, island);
-  project_step(world, island, h);
-  book_kick(world, island, Impulses::drift, h);
-  book_stiffness(world, island);
   island.at_work().slacken();  // tension rows act only within the step
 }
 

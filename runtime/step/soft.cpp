@@ -2,9 +2,7 @@
 // the step resolves. Afterwards sweeps without C take from the velocities what the springs gave them. (E. Catto,
 // Solver2D, 2024: soft constraints with relaxation.)
 //
-// One sweep leaves impulses that do not belong to the poses. Where they would raise the island's energy, its bodies
-// lose as much of their motion against each other. If they have less, the step goes back to its start and does without
-// the springs of its rows, then with slower bodies.
+// A step that its bodies cannot pay for (step/gain.hpp) does without the springs of its rows, then with slower bodies.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,6 +15,7 @@
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
+#include "runtime/step/gain.hpp"
 #include "runtime/step/integrators.hpp"
 
 namespace cdot {
@@ -106,55 +105,16 @@ void fill_laws(WorldData<S>& world, Island<S>& island, typename S::Scalar h, Sof
 // The relaxation of the last step has evaluated the rows, but changed dC/dt in the bias of laws.
 template <class S>
 void restore_rates(WorldData<S>& world, Island<S>& island) {
-  for (const Segment<S>& segment : island.segments) {
-    Batch<S>& batch = *segment.batch;
-    if (island.evaluated && !batch.law) continue;
-    if (island.evaluated) restore_drift(world, island, segment);
-    else batch.ops->evaluate(batch, segment.begin, segment.end, world.bodies, island.evaluated_at);
-  }
+  for (const Segment<S>& segment : island.segments)
+    if (segment.batch->law) restore_drift(world, island, segment);
 }
 
 template <class S>
 void evaluate(WorldData<S>& world, Island<S>& island) {
-  if (!island.evaluated) island.evaluated_at = typename S::Scalar(world.time);
-  restore_rates(world, island);
-  island.evaluated = true;
+  if (island.evaluated) restore_rates(world, island);
+  evaluate_present(world, island);
   if (!island.factored) factorize_rows(world, island);
   island.factored = !island.solver->exact;
-}
-
-// Of the bodies: the kinetic energy, and the energy that symplectic Euler keeps of a constant force F at the pose x,
-// H + h/2 F v. In space the work of torques is booked.
-struct Level {
-  double kinetic = 0, kept = 0;
-};
-template <class S>
-Level level_of(WorldData<S>& world, Island<S>& island, double h) {
-  using T = typename S::Scalar;
-  Bodies<S>& all = world.bodies;
-  if constexpr (S::has_gyroscopes)
-    for_each_gyroscope(world, island, [&](const auto& gyroscope, int i) { S::set_mass(gyroscope, all.mass[i]); });
-  Level level;
-  T x[S::pose_numbers];
-  for (int i : island.bodies) {
-    const auto& v = all.velocity[i];
-    const auto acceleration = S::has_gyroscopes ? S::damped(all.acceleration[i], 1, 0) : all.acceleration[i];
-    S::write(all.pose[i], x);
-    level.kinetic += 0.5 * S::dot(S::weighted(all.mass[i], v), v);
-    level.kept += S::dot(S::weighted(all.mass[i], acceleration), S::sum(S::read_velocity(x), v, T(-0.5 * h)));
-  }
-  level.kept = level.kinetic - level.kept;
-  return level;
-}
-
-// The energy of springs, less what was put in and plus what was taken.
-template <class S>
-double stored(const WorldData<S>& world, const Island<S>& island) {
-  double energy = world.accounts.taken - world.accounts.put_in;
-  for (const Segment<S>& segment : island.segments)
-    for (int slot = segment.begin; segment.batch->law && segment.batch->law->energy && slot < segment.end; ++slot)
-      energy += segment.batch->law->energy(*segment.batch, slot);
-  return energy;
 }
 
 // Impulses of the relaxation alone, into Batch::correction: `sign` -1 before it, 1 after it, 0 to end.
@@ -182,61 +142,6 @@ void relax(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   part_impulses(island, 0);
 }
 
-// Of the gaps of poses that were set: the kinetic energy of closing each in a step, (C / h)^2 / 2 K.
-template <class S>
-double energy_of_gaps(WorldData<S>& world, Island<S>& island, double h) {
-  evaluate(world, island);
-  double energy = 0;
-  typename S::Scalar error[most_rows];
-  for (const auto& [batch, begin, end, whole] : island.segments) {
-    const int rows = batch->ops->rows;
-    if (batch->law && !batch->law->error) continue;
-    for (int slot = begin; slot < end; ++slot) {
-      if (batch->law) batch->law->error(*batch, slot, error);
-      else std::copy_n(batch->C.begin() + slot * rows, rows, error);
-      for (int r = 0; r < rows; ++r) {
-        const double K = batch->factor[slot * batch->triangle() + r * (r + 1) / 2 + r], speed = double(error[r]) / h;
-        energy += 0.5 * speed * speed * inverse(K);
-      }
-    }
-  }
-  return energy;
-}
-
-// False for a gain of a step by which springs throw bodies about: more energy than the bodies had, and more than
-// moves all of them by a tenth of the island.
-template <class S>
-bool moderate(const WorldData<S>& world, const Island<S>& island, double h, double gain, double kinetic) {
-  if (gain < 0.1 * kinetic || gain + island.gained <= 0) return true;
-  const double speed = 0.1 * double(island.size) / h;
-  double most = 0;
-  for (size_t k = 0; k < island.bodies.size(); ++k) {
-    const int i = island.bodies[k];
-    const auto& v = island.flow.velocity[k];
-    most += 0.5 *
-            (S::dot(S::weighted(world.bodies.mass[i], v), v) + speed * speed / double(world.bodies.inverse_mass[i].m));
-  }
-  return gain <= most;
-}
-
-// Books the energy that the joints gave to the island, or took, and takes out a gain since the start of the run. False
-// if the bodies cannot pay for it: then the poses or the momentum hold energy that the joints made up.
-template <class S>
-bool take_gain(WorldData<S>& world, Island<S>& island, double h, double stored) {
-  constexpr double noise = by_precision<typename S::Scalar>(1e-5, 1e-9);
-  const Level end = level_of(world, island, h);
-  const double gain = end.kept - island.level + stored, gained = island.gained + gain;
-  if (!moderate(world, island, h, gain, end.kinetic)) return false;
-  island.gained = gained, island.level = end.kept;
-  if (!(gained > 0)) return true;
-  calm(world, island, gained);
-  const Level calmed = level_of(world, island, h);
-  const double unpaid = gained - (end.kinetic - calmed.kinetic);
-  island.gained = unpaid > 0 ? 0.0 : gained + calmed.kept - end.kept;
-  island.level = calmed.kept;
-  return unpaid <= noise * (calmed.kinetic + std::abs(calmed.kept));
-}
-
 // How a step is tried.
 template <class T>
 struct Try {
@@ -245,24 +150,13 @@ struct Try {
   double speed = 1;        // of the bodies against each other while the poses move, as a share
 };
 
-// The poses at the end of the step, where `speed` is left of the motion of bodies against each other.
-template <class S>
-void move_slowly(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double speed) {
-  slow_down(world, island, speed);
-  const auto momentum = island.floats ? momentum_of(world, island) : MomentumOf<S>{};
-  move_in_own_axes(world, island, h);
-  if constexpr (S::has_gyroscopes) set_inertias(world, island);
-  if (island.floats) restore_momentum(world, island, momentum, typename S::Scalar(0));
-  island.evaluated = island.factored = false;
-}
-
 // False if the energy rises; then the state is to be restored.
 template <class S>
 bool try_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h, const Try<typename S::Scalar>& by) {
   using T = typename S::Scalar;
   evaluate(world, island);
   begin_kick(world, island);
-  const double stored_at_start = stored(world, island);
+  const double at_start = stored(world, island);
   stiffen(world, island, h, by.last_step);
   if (!island.factored) factorize_rows(world, island);
   fill_laws(world, island, h, by.rows);
@@ -276,73 +170,10 @@ bool try_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h, cons
   book_stiffness(world, island);
   factorize_rows(world, island);
   relax(world, island, h);
-  const bool paid = take_gain(world, island, double(h), stored(world, island) - stored_at_start);
+  const bool paid = take_gain(world, island, double(h), stored(world, island) - at_start);
   island.evaluated = true;
   island.factored = !island.solver->exact;
   return paid;
-}
-
-// Adds `sign` times the energy of springs that time drives to what time put in.
-template <class S>
-void book_driven(WorldData<S>& world, const Island<S>& island, double sign) {
-  for (const auto& [batch, begin, end, whole] : island.segments)
-    for (int slot = begin; batch->explicit_time() && batch->law && batch->law->energy && slot < end; ++slot)
-      put_in(world, static_cast<Source>(batch->source), sign * batch->law->energy(*batch, slot));
-}
-
-// No row acts: the bodies stand against each other.
-template <class S>
-void stand(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
-  using T = typename S::Scalar;
-  evaluate(world, island);
-  const double stored_at_start = stored(world, island);
-  book_driven(world, island, -1);
-  apply_forces(world, island, h);
-  move_slowly(world, island, h, 0);
-  evaluate_anew(world, island, T(world.time) + h);
-  book_driven(world, island, 1);
-  book_stiffness(world, island);
-  factorize_rows(world, island);
-  for (const auto& [batch, begin, end, whole] : island.segments)
-    std::fill(batch->lambda.begin() + begin * batch->ops->rows, batch->lambda.begin() + end * batch->ops->rows, T(0));
-  take_gain(world, island, double(h), stored(world, island) - stored_at_start);
-  island.evaluated = true;
-  island.factored = !island.solver->exact;
-}
-
-// The start of a step: poses, velocities and whole turns in Flow, and the accounts.
-struct Start {
-  double put_in, taken, gained, level;
-};
-template <class S>
-Start keep(WorldData<S>& world, Island<S>& island) {
-  const Bodies<S>& all = world.bodies;
-  const std::vector<int>& bodies = island.bodies;
-  const auto count = static_cast<std::ptrdiff_t>(bodies.size());
-  if (count > 0 && bodies.back() - bodies.front() == count - 1) {  // in a row, mostly
-    std::copy_n(all.pose.begin() + bodies.front(), count, island.flow.pose.begin());
-    std::copy_n(all.velocity.begin() + bodies.front(), count, island.flow.velocity.begin());
-  } else
-    for (size_t k = 0; k < bodies.size(); ++k)
-      island.flow.pose[k] = all.pose[bodies[k]], island.flow.velocity[k] = all.velocity[bodies[k]];
-  if (!island.flow.start_turns.empty()) keep_turns(island);
-  std::copy(world.accounts.by_source.begin(), world.accounts.by_source.end(), world.kept_by_source.begin());
-  return {world.accounts.put_in, world.accounts.taken, island.gained, island.level};
-}
-template <class S>
-void go_back(WorldData<S>& world, Island<S>& island, const Start& start) {
-  for (size_t k = 0; k < island.bodies.size(); ++k) {
-    world.bodies.pose[island.bodies[k]] = island.flow.pose[k];
-    world.bodies.velocity[island.bodies[k]] = island.flow.velocity[k];
-  }
-  restore_turns(island);
-  halt_immovable_bodies(world, island);
-  if constexpr (S::has_gyroscopes) set_inertias(world, island);
-  restore_masses(world, island);
-  island.evaluated = island.factored = false;
-  std::copy(world.kept_by_source.begin(), world.kept_by_source.end(), world.accounts.by_source.begin());
-  world.accounts.put_in = start.put_in, world.accounts.taken = start.taken;
-  island.gained = start.gained, island.level = start.level;
 }
 
 // Without springs sweeps take energy only, the more the slower bodies move into the springs of joints and coordinates.
@@ -362,12 +193,8 @@ template <class S>
 void step_soft(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
   using T = typename S::Scalar;
   island.flow.longest = std::max(h, T(fading) * island.flow.longest);
-  if (!island.levelled) {
-    if (!island.evaluated) island.gained = island.gained - energy_of_gaps(world, island, double(h));
-    island.level = level_of(world, island, double(last_step > 0 ? T(last_step) : h)).kept;
-    island.levelled = true;
-  }
-  const Start start = keep(world, island);
+  open_level(world, island, h, last_step);
+  const Start start = keep_start(world, island);
   const Try<T> usual{soft_sweep(h, double(island.flow.longest)), last_step};
   if (!try_step(world, island, h, usual) && std::isfinite(start.level)) step_without_gain(world, island, h, start);
 }

@@ -6,6 +6,7 @@
 #include <cdot/world.hpp>
 
 #include "runtime/balance/balance.hpp"
+#include "runtime/motion/motion.hpp"
 #include "runtime/solve/pieces.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/step/integrators.hpp"
@@ -14,19 +15,6 @@
 
 namespace cdot {
 namespace {
-
-template <class S>
-bool finite(const WorldData<S>& world, const Island<S>& island) {
-  using T = typename S::Scalar;
-  T sum = 0;
-  for (int i : island.bodies) {
-    T numbers[S::pose_numbers + S::freedom];
-    S::write(world.bodies.pose[i], numbers);
-    S::write(world.bodies.velocity[i], numbers + S::pose_numbers);
-    for (T number : numbers) sum += number;
-  }
-  return std::isfinite(sum);
-}
 
 // One step of all awake islands. Stops at the first one that fails.
 template <class S>

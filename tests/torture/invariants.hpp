@@ -43,9 +43,9 @@ struct Asked {
   bool forces = false;   // a force on each body that is a function of time
   bool hurry = false;    // ends a run that rescued_in_vain()
   int refinements = 4;   // how often a step is divided by four after a violation
-  // Nothing else is judged: runs by sweeps with Drift::soft, of numbers of sweeps and substeps and of steps that this
-  // seed draws, up to 30 times the scene's. No energy may appear.
-  std::optional<std::uint64_t> soft = {};
+  // Nothing else is judged: a run by sweeps, of a drift correction, numbers of sweeps and substeps and of steps that
+  // this seed draws, up to 30 times the scene's. No energy may appear.
+  std::optional<std::uint64_t> swept = {};
   Sabotage sabotage;
 };
 

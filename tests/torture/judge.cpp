@@ -6,7 +6,7 @@
 #include <cdot/methods.hpp>
 
 #include "tests/methods.hpp"
-#include "tests/runtime/tool/soft_rise.hpp"
+#include "tests/runtime/tool/swept_rise.hpp"
 #include "tests/torture/draw/random.hpp"
 #include "tests/torture/laws.hpp"
 #include "tests/torture/motion.hpp"
@@ -50,21 +50,24 @@ bool has_torques_in_space(const Scene& scene) {
   });
 }
 
-test::SoftWay drawn_way(const Scene& scene, std::uint64_t seed) {
+test::SweptWay drawn_way(const Scene& scene, std::uint64_t seed) {
   constexpr std::uint64_t other_than_the_scene = 0x50f7;
+  constexpr auto soft = Drift::soft, projection = Drift::projection, baumgarte = Drift::baumgarte, none = Drift::none;
   Random random(seed ^ other_than_the_scene);
-  test::SoftWay way;
+  test::SweptWay way;
   way.sweeps = random.of<int>({1, 1, 1, 2, 4, 10, 30}), way.substeps = random.of<int>({1, 1, 2, 4, 8});
   way.jitter = random.chance(0.5) ? test::Jitter{1, 1} : test::Jitter{random.log_between(0.1, 1), 1};
   way.unit = scene.step * random.log_between(0.3, 30), way.duration = 60 * way.unit;
+  way.drift = random.of<Drift>({soft, soft, soft, projection, projection, baumgarte, baumgarte, none});
+  if (way.drift != soft && random.chance(0.3)) way.integrator = Integrator::implicit;
   return way;
 }
 
-Verdict judge_soft(const Scene& scene, std::uint64_t seed) {
-  const test::SoftWay way = drawn_way(scene, seed);
-  const test::SoftRise seen = test::soft_rise(scene, way);
+Verdict judge_swept(const Scene& scene, std::uint64_t seed) {
+  const test::SweptWay way = drawn_way(scene, seed);
+  const test::SweptRise seen = test::swept_rise(scene, way);
   const auto limited = [](const char* why) {
-    return verdict(Outcome::limited, fmt::format("soft steps: {}", why), "");
+    return verdict(Outcome::limited, fmt::format("steps by sweeps: {}", why), "");
   };
   if (!seen.starts) return limited("the start is off its joints or beyond an end");
   if (seen.fails) return limited("the World says that one failed");
@@ -73,16 +76,17 @@ Verdict judge_soft(const Scene& scene, std::uint64_t seed) {
     return limited("an effect has no energy at a pose, which cdot-run tells");
   if (has_torques_in_space(scene)) return limited("torques in space put in work of first order");
   if (unresolved(scene, way.unit / way.substeps)) return limited("no step resolves the force of an effect");
-  const std::string words = fmt::format("{} sweeps, {} substeps, steps of {:.3g} to {:.3g} s", way.sweeps, way.substeps,
-                                        way.jitter.shortest * way.unit, way.unit);
-  return verdict(Outcome::broken, "energy of soft steps", words, seen.risen, seen.bound);
+  const std::string words =
+      fmt::format("{} {}, {} sweeps, {} substeps, steps of {:.3g} to {:.3g} s", name_of(integrators, way.integrator),
+                  name_of(drifts, way.drift), way.sweeps, way.substeps, way.jitter.shortest * way.unit, way.unit);
+  return verdict(Outcome::broken, "energy of steps by sweeps", words, seen.risen, seen.bound);
 }
 
 }  // namespace
 
 Verdict judge(const Scene& scene, const Asked& asked) {
   try {
-    if (asked.soft) return judge_soft(scene, *asked.soft);
+    if (asked.swept) return judge_swept(scene, *asked.swept);
   } catch (const Error& error) {
     return verdict(Outcome::refused, error.what(), "");
   }

@@ -132,11 +132,11 @@ double speed_across(BasicWorld<S>& world, const Scene& scene) {
   return speed_across(system, v, counts);
 }
 
-// The same, where steps leave it: sweeps and Baumgarte's correction do.
+// The same, where steps leave it and do not pay for the work along it: with the direct solver, Baumgarte's correction.
 template <class S>
 double speed_left_across(BasicWorld<S>& world, const Scene& scene) {
-  const bool exact = scene.settings.solver == Solver::direct && scene.settings.drift == Drift::projection;
-  return exact ? 0 : speed_across(world, scene);
+  const bool paid = scene.settings.solver == Solver::iterative || scene.settings.drift == Drift::projection;
+  return paid ? 0 : speed_across(world, scene);
 }
 
 // The bounds of energy and angular momentum after the steps so far; see README.md.

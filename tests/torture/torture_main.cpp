@@ -24,7 +24,7 @@ struct Options {
   std::uint64_t seed = 1;
   int count = 1000, every = 0;
   double seconds = 0;
-  std::optional<std::uint64_t> soft;
+  std::optional<std::uint64_t> swept;
   Wish wish;
   std::string method, keep, scene;
   int dimension = 0;
@@ -34,7 +34,7 @@ struct Options {
   Asked asked() const {
     Asked asked;
     asked.bits = !no_bits, asked.varying = varying, asked.changes = changes, asked.forces = forces, asked.hurry = hurry;
-    asked.soft = soft;
+    asked.swept = swept;
     return asked;
   }
 };
@@ -79,7 +79,7 @@ void report(const Options& options, std::uint64_t seed, const Scene& scene, cons
   fmt::print(
       "  again: torture --seed {:#x} --count 1 --steps {}; the small one: torture --scene {}{}; cdot-run simulate "
       "{}\n\n{}\n",
-      seed, options.wish.steps, name, asked.soft ? fmt::format(" --soft {:#x}", *asked.soft) : "", name, text);
+      seed, options.wish.steps, name, asked.swept ? fmt::format(" --sweeps {:#x}", *asked.swept) : "", name, text);
   if (!options.keep.empty()) keep(options, name, text);
 }
 
@@ -113,10 +113,10 @@ int torture(const Options& options) {
     Verdict verdict = judged(options, mechanism.scene);
     Asked asked = options.asked();
     if (verdict.outcome != Outcome::refused && !verdict.broken() && !options.misfit && !options.advice) {
-      asked.soft = seed;
-      const Verdict soft = judge(mechanism.scene, asked);
-      if (soft.broken()) verdict = soft;
-      else asked.soft.reset();
+      asked.swept = seed;
+      const Verdict by_sweeps = judge(mechanism.scene, asked);
+      if (by_sweeps.broken()) verdict = by_sweeps;
+      else asked.swept.reset();
     }
     const double took = double(std::clock() - began) / CLOCKS_PER_SEC;
     if (took > slow)
@@ -153,8 +153,8 @@ int main(int count, char** arguments) {
                  "solver, integrator, drift correction, precision: any of them, as in \"direct float\"");
   app.add_option("--keep", options.keep, "a folder for the scenes in which something breaks");
   app.add_option("--scene", options.scene, "judge this scene and no other");
-  app.add_option("--soft", options.soft,
-                 "judge soft steps alone, drawn by this seed; each run has one beside the rest");
+  app.add_option("--sweeps", options.swept,
+                 "judge steps by sweeps alone, drawn by this seed; each run has one beside the rest");
   app.add_flag("--varying", options.varying, "the lengths of the steps vary");
   app.add_flag("--changes", options.changes, "impulses, forces and the loss of a joint, while running");
   app.add_flag("--forces", options.forces, "a force on each body that is a function of time");

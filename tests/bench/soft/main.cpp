@@ -1,19 +1,22 @@
-// bench_soft: whether energy rises without a source under Drift::soft, over all scenes, numbers of sweeps and substeps,
-// and steps that vary. Exit 1: it did.
+// bench_soft [DRIFT [INTEGRATOR]]: whether energy rises without a source in steps by sweeps (soft euler), over all
+// scenes, numbers of sweeps and substeps, and steps that vary. Exit 1: it did.
 #include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
+#include <string>
 
-#include "tests/runtime/tool/soft_rise.hpp"
+#include <cdot/methods.hpp>
+
 #include "tests/runtime/tool/support.hpp"
+#include "tests/runtime/tool/swept_rise.hpp"
 
 namespace cdot::test {
 namespace {
 
 struct Case {
   std::string scene;
-  SoftWay way;
-  SoftRise seen;
+  SweptWay way;
+  SweptRise seen;
 };
 
 std::string steps_in_words(const Jitter& jitter) {
@@ -22,7 +25,7 @@ std::string steps_in_words(const Jitter& jitter) {
 }
 
 // One line for each way: the worst of its scenes.
-void print_way(const SoftWay& way, const std::vector<Case>& cases) {
+void print_way(const SweptWay& way, const std::vector<Case>& cases) {
   int runs = 0, fail = 0, rise = 0;
   const Case* worst = nullptr;
   for (const Case& run : cases) {
@@ -34,20 +37,21 @@ void print_way(const SoftWay& way, const std::vector<Case>& cases) {
   std::fflush(stdout);
 }
 
-int study() {
+int study(Drift drift, Integrator integrator) {
   std::vector<std::pair<std::string, Scene>> scenes;
   for (const auto& file : all_scene_files())
     scenes.emplace_back((file.parent_path().filename() / file.stem()).string(), read_scene(file.string()));
   int rising = 0;
+  fmt::print("{}, drift {}\n\n", name_of(integrators, integrator), name_of(drifts, drift));
   fmt::print(
       "| steps [1/60 s] | substeps | sweeps | runs | fail aloud | rise | risen | at most | in |\n"
       "|---|---|---|---|---|---|---|---|---|\n");
   for (const Jitter& jitter : {Jitter{1, 1}, {0.9, 1.1}, {0.5, 1.5}, {0.1, 2}})
     for (const int substeps : {1, 2, 4, 8})
       for (const int sweeps : {1, 2, 4, 10, 30}) {
-        const SoftWay way{sweeps, substeps, jitter};
+        const SweptWay way{sweeps, substeps, jitter, drift, integrator};
         std::vector<Case> cases;
-        for (const auto& [name, scene] : scenes) cases.push_back({name, way, soft_rise(scene, way)});
+        for (const auto& [name, scene] : scenes) cases.push_back({name, way, swept_rise(scene, way)});
         print_way(way, cases);
         for (const Case& run : cases) {
           if (run.seen.holds()) continue;
@@ -63,4 +67,8 @@ int study() {
 }  // namespace
 }  // namespace cdot::test
 
-int main() { return cdot::test::study(); }
+int main(int count, char** arguments) {
+  using namespace cdot;
+  const std::string drift = count > 1 ? arguments[1] : "soft", integrator = count > 2 ? arguments[2] : "euler";
+  return test::study(method_called(drifts, drift), method_called(integrators, integrator));
+}

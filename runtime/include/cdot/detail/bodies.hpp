@@ -51,7 +51,7 @@ struct BodiesWorkspace {
   std::vector<Velocity> displacement;            // of the drift correction in this step
   std::vector<Velocity> increment;               // 0 between its uses
   std::vector<typename S::Stiffness> stiffness;  // of the last step's impulses
-  std::vector<typename S::InverseMass> mass;     // M, for the energy of Drift::soft
+  std::vector<typename S::InverseMass> mass;     // M, for the energy of steps by sweeps
 };
 
 template <class S>

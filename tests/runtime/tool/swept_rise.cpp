@@ -1,4 +1,4 @@
-#include "tests/runtime/tool/soft_rise.hpp"
+#include "tests/runtime/tool/swept_rise.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -70,10 +70,10 @@ double energy_of_round_off(const BasicWorld<S>& world, double h) {
 }
 
 template <class S>
-SoftRise watch(const Scene& scene, const SoftWay& way) {
+SweptRise watch(const Scene& scene, const SweptWay& way) {
   BasicWorld<S> world = build_world_in<S>(scene);
   if (scene.project) world.project(by_precision<typename S::Scalar>(1e-5, 1e-12));
-  SoftRise seen;
+  SweptRise seen;
   seen.bound = slight;
   seen.starts = world.worst_position_error().value <= 1e-3 && world.worst_passed_end().by <= 1e-6;
   if (!seen.starts) return seen;
@@ -96,15 +96,16 @@ SoftRise watch(const Scene& scene, const SoftWay& way) {
 
 }  // namespace
 
-SoftRise soft_rise(Scene scene, const SoftWay& way) {
+SweptRise swept_rise(Scene scene, const SweptWay& way) {
   scene.settings = {.solver = Solver::iterative,
-                    .drift = Drift::soft,
+                    .integrator = way.integrator,
+                    .drift = way.drift,
                     .iterations = way.sweeps,
                     .substeps = way.substeps,
                     .gravity_x = scene.settings.gravity_x,
                     .gravity_y = scene.settings.gravity_y,
                     .gravity_z = scene.settings.gravity_z};
-  SoftRise seen;
+  SweptRise seen;
   const auto run = [&](auto space) { seen = watch<decltype(space)>(scene, way); };
   if (scene.single) in_space_of<float>(scene, run);
   else in_space_of<double>(scene, run);

@@ -1,4 +1,4 @@
-// The energy that appears in a scene without a source under Drift::soft, by sweeps.
+// The energy that appears in a scene without a source in steps of Euler's by sweeps.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace cdot::test {
 
-// The shortest and the longest step of a run, in units of SoftWay::unit.
+// The shortest and the longest step of a run, in units of SweptWay::unit.
 struct Jitter {
   double shortest, longest;
   // The length of step k: between both, in no order.
@@ -16,13 +16,15 @@ struct Jitter {
   }
 };
 
-struct SoftWay {
+struct SweptWay {
   int sweeps, substeps;
   Jitter jitter;
+  Drift drift = Drift::soft;
+  Integrator integrator = Integrator::euler;
   double unit = 1. / 60, duration = 3;  // [s]
 };
 
-struct SoftRise {
+struct SweptRise {
   bool starts = false;         // on its joints and within its ends: closing the gaps of a start may lift bodies
   bool fails = false;          // a step, and says so
   double risen = 0, time = 0;  // BalanceWatch::risen, as a share, and when [s]
@@ -32,7 +34,6 @@ struct SoftRise {
   bool holds() const { return risen < bound; }
 };
 
-// Of a run by Euler's steps.
-SoftRise soft_rise(Scene scene, const SoftWay& way);
+SweptRise swept_rise(Scene scene, const SweptWay& way);
 
 }  // namespace cdot::test
