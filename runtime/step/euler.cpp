@@ -1,5 +1,5 @@
 // Symplectic Euler, plain or linearly implicit: solves the velocities with the joints, advances the poses with the new
-// velocities, corrects the drift. A step by sweeps that its bodies cannot pay for (step/gain.hpp) starts without
+// velocities, corrects the drift. A step by sweeps that its bodies cannot pay for (sweeps/gain.hpp) starts without
 // impulses and then does without the correction, with slower bodies.
 #include <algorithm>
 #include <array>
@@ -12,8 +12,9 @@
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
-#include "runtime/step/gain.hpp"
 #include "runtime/step/integrators.hpp"
+#include "runtime/sweeps/gain.hpp"
+#include "runtime/sweeps/soft.hpp"
 
 namespace cdot {
 namespace {

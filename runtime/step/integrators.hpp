@@ -41,8 +41,4 @@ void step_midpoint_from(WorldData<S>& world, Island<S>& island, typename S::Scal
 template <class S>
 void prepare_midpoint(Island<S>& island);
 
-// With Drift::soft.
-template <class S>
-void step_soft(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step);
-
 }  // namespace cdot

@@ -2,21 +2,21 @@
 // the step resolves. Afterwards sweeps without C take from the velocities what the springs gave them. (E. Catto,
 // Solver2D, 2024: soft constraints with relaxation.)
 //
-// A step that its bodies cannot pay for (step/gain.hpp) does without the springs of its rows, then with slower bodies.
+// A step that its bodies cannot pay for (sweeps/gain.hpp) does without the springs of its rows, then with slower
+// bodies.
+#include "runtime/sweeps/soft.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <cdot/spaces.hpp>
 
 #include "runtime/balance/balance.hpp"
-#include "runtime/motion/momentum.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
-#include "runtime/step/gain.hpp"
-#include "runtime/step/integrators.hpp"
+#include "runtime/sweeps/gain.hpp"
 
 namespace cdot {
 namespace {

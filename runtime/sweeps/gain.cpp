@@ -1,5 +1,5 @@
 // The energy that an island's joints gave to it in steps of Euler's by sweeps.
-#include "runtime/step/gain.hpp"
+#include "runtime/sweeps/gain.hpp"
 
 #include <algorithm>
 #include <cmath>
