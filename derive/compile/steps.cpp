@@ -239,7 +239,7 @@ long state_bytes_of(const Mechanism& mechanism, const Equations& equations, cons
   return long{sizeof(double)} *
          (1 + of_bodies + of_rows + long(mechanism.bounded.size()) +
           (has.midpoint || has.weighs ? long(mechanism.bounded.size()) : 0) +
-          (has.weighs && has.loads ? 2 * long(mechanism.bounded.size()) + long(equations.rows.size()) : 0) +
+          (has.carries_over() ? 2 * long(mechanism.bounded.size()) + long(equations.rows.size()) : 0) +
           (has.repeats() ? long(mechanism.bounded.size()) : 0) + long(equations.constants.inputs.size()) +
           2 * mechanism.angles);
 }
@@ -255,7 +255,7 @@ std::string begin_of(Method method, const Contents& has) {
   if (has.strides()) text += "    s.modes = {};\n";
   if (has.events) text += "    latch(s);\n";
   if (has.rows) text += "    for (int i = 0; i < rows; ++i) s.lambda[i] = T(0);\n";
-  if (has.weighs && has.loads) {
+  if (has.carries_over()) {
     text += "    for (T& of_row : s.load) of_row = T(0);\n    for (T& of_row : s.before) of_row = T(0);\n";
     if (has.rows) text += "    for (T& of_row : s.drawn) of_row = T(0);\n";
   }

@@ -1,6 +1,7 @@
 #include "runtime/solve/loads.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include <cdot/spaces.hpp>
 
@@ -180,7 +181,8 @@ typename S::Scalar find_load_changes(Island<S>& island) {
     island.load_changes[k] = change;
     worst = std::max(worst, std::abs(change)), largest = std::max(largest, std::abs(found));
   }
-  return worst * inverse(largest);
+  if (largest > T(0)) return worst / largest;
+  return worst > T(0) ? std::numeric_limits<T>::infinity() : T(0);  // a contact that is lost has no load
 }
 
 namespace {

@@ -294,7 +294,9 @@ constexpr const char* collocates = R"(
 {0}  }}
 
   // Radau IIA of order 5, on accelerations; its parts are halves, quarters or less where a longer one does not settle.
-  // A lane whose sixteenth does not settle stays there, and returns 1e30. One that is done waits for the others.
+  // A lane whose sixteenth does not settle stays there, and returns 1e30. One that is done waits for the others. It
+  // estimates no error: the World also halves steps by theirs, or where a projection undoes the motion, and finishes by
+  // the midpoint rule what does not settle.
   static T {1} {{
     T left = h, part = h, residual = T(0);
     for (Mask goes_on = T(0) < T(1); any(goes_on);) {{

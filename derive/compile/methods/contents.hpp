@@ -31,6 +31,7 @@ struct Contents {
   bool projects() const { return rows || modes; }                        // velocities
   bool repeats() const { return weighs && exerts && bounded; }           // forces of rows that prescribe a rate
   bool corrects_loads() const { return loads && (weighs || midpoint); }  // by impulses beside those found
+  bool carries_over() const { return loads && weighs && !rattle; }       // impulses of the last corrections
   bool weighs_joints() const { return weighs && (bonds || loads) && rows; }
   bool closes() const { return rows || ends; }
   bool stiffens() const { return midpoint && (rows || bounded); }            // by tension

@@ -217,8 +217,7 @@ constexpr const char* start_with_bounds = R"(    Bounded B;
     T mu[bounded], hold[bounded];
 {0}    exert($ss.q, s.time, s.v, {1}pull, B);
     for (int i = 0; i < bounded; ++i) hold[i] = s.hold[i];
-    settle(B, hold, mu);
-)";
+{2})";
 constexpr const char* start_holds =
     "    for (int i = 0; i < bounded; ++i) s.hold[i] = select(begins[group_of_bound[i]], hold[i], s.hold[i]);\n";
 constexpr const char* start_ends =
@@ -261,7 +260,7 @@ std::string finishing(const Contents& has) {
                       has.looks ? "given, end, " : "", has.rows ? "s.lambda, " : "", has.pulls() ? "s.pull" : "pull",
                       has.bounded ? ", B" : "");
   if (has.bounded) {
-    text += "    settle(B, s.hold, mu);\n";
+    text += has.loads ? settles_end_with_loads(has) : "    settle(B, s.hold, mu);\n";
     text += weighs_bounds(has);
     text += fmt::format(sums_pulls, "next[i] = next[i] + mu[e] * B.g[e][i], ",
                         has.rows ? fmt::format(sums_lambda, "s.") : "", "s.");
@@ -279,7 +278,8 @@ std::string start_of(const Contents& has) {
   std::string text = start_begins;
   if (has.bounded)
     text +=
-        fmt::format(start_with_bounds, has.rows ? "    T lambda[rows];\n" : "", has.rows ? "s.J, h, lambda, " : "h, ") +
+        fmt::format(start_with_bounds, has.rows ? "    T lambda[rows];\n" : "", has.rows ? "s.J, h, lambda, " : "h, ",
+                    has.loads ? settles_start_with_loads(has) : "    settle(B, hold, mu);\n") +
         fmt::format(sums_pulls, "", has.rows ? fmt::format(sums_lambda, "") : "", "") + start_holds;
   else text += start_by_joints;
   return text + fmt::format(start_ends, has.rows ? start_lambda : "", repeats_at_start(has));

@@ -49,7 +49,7 @@ std::string of_rows(const Mechanism& mechanism, const Contents& has) {
   if (has.bounded)
     text += "    T hold[bounded];  // of the rows with bounds: -1 at the lower one, 1 at the upper one, 0 between\n";
   if (has.bounded && (has.midpoint || has.weighs)) text += "    T force[bounded];  // of these\n";
-  if (has.weighs && has.loads) {
+  if (has.carries_over()) {
     text +=
         "    T load[bounded];    // impulses with which bounds grew\n    T before[bounded];  // forces of "
         "corrections\n";

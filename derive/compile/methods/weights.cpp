@@ -78,6 +78,25 @@ constexpr const char* settles_euler_joints = R"(    T drawn[rows];
     for (int i = 0; i < rows; ++i) drawn[i] = h * s.drawn[i];
 )";
 
+// Loads are those of the whole step. The other half of what they bound acts at the start of the next one.
+constexpr const char* settles_rattle = R"(    T of_first[bounded], load[bounded];
+    for (int i = 0; i < bounded; ++i) {{
+      of_first[i] = {0}half * s.repeats[i], load[i] = h * magnitude(s.force[i]);
+      B.by_low[i] = T(0.5) * B.by_low[i], B.by_high[i] = T(0.5) * B.by_high[i];
+    }}
+{1}    settle_loads($ss.q, s.time, {2}of_first, B, mu, load, [&](T (&now)[bounded]) {{ settle(B, s.hold, now); }});
+)";
+constexpr const char* settles_rattle_joints = R"(    T drawn[rows];
+    for (int i = 0; i < rows; ++i) drawn[i] = half * found[i];
+)";
+constexpr const char* settles_rattle_start = R"(    T before[bounded], load[bounded];
+    for (int i = 0; i < bounded; ++i) before[i] = T(0), load[i] = T(0);
+{0}    settle_loads($ss.q, s.time, {1}before, B, mu, load, [&](T (&now)[bounded]) {{ settle(B, hold, now); }});
+)";
+constexpr const char* settles_rattle_start_joints = R"(    T drawn[rows];
+    for (T& of_row : drawn) of_row = T(0);
+)";
+
 std::string snaps_with_loads(const Contents& has) {
   if (!has.bonds) return {};
   return std::string("    snap(s") + (has.rows ? ", carried" : "") + (has.bounded ? ", s.force" : "") + ");\n";
@@ -142,7 +161,17 @@ std::string weighs_bounds(const Contents& has) {
 }
 
 std::string rattle_weighs(const Contents& has) {
-  return has.weighs ? (has.weighs_joints() ? carries_rows : "") + snaps_with_loads(has) : "";
+  return has.weighs ? (has.weighs_joints() && has.bonds ? carries_rows : "") + snaps_with_loads(has) : "";
+}
+
+std::string settles_end_with_loads(const Contents& has) {
+  return fmt::format(settles_rattle, has.ends ? "total[i] + " : "", has.rows ? settles_rattle_joints : "",
+                     has.rows ? "s.J, s.lambda, drawn, " : "");
+}
+
+std::string settles_start_with_loads(const Contents& has) {
+  return fmt::format(settles_rattle_start, has.rows ? settles_rattle_start_joints : "",
+                     has.rows ? "s.J, lambda, drawn, " : "");
 }
 
 std::string repeats_at_start(const Contents& has) { return has.repeats() ? start_repeats : ""; }

@@ -30,5 +30,8 @@ std::string weighs_failures(const Contents& has);
 std::string weighs_bounds(const Contents& has);
 std::string rattle_weighs(const Contents& has);
 std::string repeats_at_start(const Contents& has);
+// Rows whose bounds grow with loads: at the end, and at the start of a run.
+std::string settles_end_with_loads(const Contents& has);
+std::string settles_start_with_loads(const Contents& has);
 
 }  // namespace cdot::compile

@@ -115,8 +115,11 @@ void BoundedSystem::output_forces(const Values& a, int h) {
   const int per_half = algebra_.function(Fn::inverse, {algebra_.times(algebra_.value(0.5), h)});
   const int zero = algebra_.value(0);
   for (std::size_t b = 0; b < rows_.size(); ++b) {
+    if (blocks_.mechanism().has_loads()) rows_[b].output_by_load();
     if (!prescribes_rate(blocks_, b)) {
-      output_row(b, zero, {zero, zero, zero, zero});
+      const bool may_carry = blocks_.mechanism().has_loads();
+      output_row(b, may_carry ? algebra_.sum({{rows_[b].gamma(), rows_[b].along(a)}, {1, -1}}) : zero,
+                 may_carry ? rows_[b].while_it_is_met() : BoundWriter::Kick{zero, zero, zero, zero});
       continue;
     }
     const BoundWriter::Kick forces = rows_[b].kick(algebra_.value(1));

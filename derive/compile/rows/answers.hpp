@@ -66,6 +66,7 @@ class BoundedSystem {
   void output_accelerations(const Values& a);
   // Forces by which rates become those prescribed in the time h/2, from accelerations a:
   //   J a - gamma + (J v + dC/dt - rate) / (h/2) = 0
+  // Ends that are met carry loads.
   void output_forces(const Values& a, int h);
 
  private:

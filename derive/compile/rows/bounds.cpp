@@ -237,6 +237,18 @@ BoundWriter::Guard BoundWriter::guard() const {
   return guard;
 }
 
+// As the World does it at the start of a run: runtime/step/kick_drift.cpp.
+BoundWriter::Kick BoundWriter::while_it_is_met() const {
+  constexpr double foreign = 1e-8;
+  const Guard at = guard();
+  const int zero = algebra_.value(0);
+  if (algebra_.is_zero(nearest_while_it_acts().side)) return {zero, zero, zero, zero};  // a lock
+  const int within = algebra_.value(foreign * std::min(1.0, 10 * effect_.size));
+  const int off = algebra_.sum({{algebra_.function(Fn::abs, {at.off}), within}, {1, -1}});
+  return {zero, zero, algebra_.function(Fn::select, {off, zero, at.low}),
+          algebra_.function(Fn::select, {off, zero, at.high})};
+}
+
 BoundWriter::ByLoad BoundWriter::by_load() const {
   const int zero = algebra_.value(0);
   if (!effect_.is_loaded()) return {zero, zero};

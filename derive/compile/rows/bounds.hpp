@@ -39,6 +39,8 @@ class BoundWriter {
   ByLoad by_load() const;
   void output_by_load() const;  // to B.by_low and B.by_high
   Guard guard() const;
+  // Bounds of its force, of a row with ends: none where it is off its end.
+  Kick while_it_is_met() const;
   // Resolutions below which its value, its rate and its force count as 0, in units of the relative one.
   struct Resolution {
     int value, rate, force;

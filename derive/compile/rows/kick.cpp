@@ -210,7 +210,8 @@ Program exert_of(const RowBlocks& blocks, const JointRows& joints, Constants& co
   if (blocks.mechanism().bounded.empty()) return algebra.finish();
   BoundedSystem bounded(blocks, algebra);
   bounded.answer(
-      accelerated.answers, joints.system().size(), [&](std::size_t b) { return prescribes_rate(blocks, b); },
+      accelerated.answers, joints.system().size(),
+      [&](std::size_t b) { return prescribes_rate(blocks, b) || blocks.mechanism().has_loads(); },
       BoundedSystem::Outputs::pulls);
   bounded.output_forces(accelerated.end.velocities, algebra.input("h"));
   return algebra.finish();

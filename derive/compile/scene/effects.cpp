@@ -113,8 +113,6 @@ class EffectReader {
   void add_bounded(const SceneJoint& source, const Effect& effect, const Place& place) {
     const auto& law = *batch_of(place).law;
     if (law.cone_rows > 0) refuse_(source, fmt::format("{}: one force along several coordinates", effect.name));
-    else if (law.by_load && !mechanism_.on_accelerations() && mechanism_.method == Method::rattle)
-      refuse_(source, fmt::format("{}: bounds that grow with a load by {}", effect.name, mechanism_.method_name));
     else if (law.by_load && !effect.is_loaded())
       refuse_(source, fmt::format("{}: bounds that grow with the load of a joint that is soft", effect.name));
     else if (law.error && !effect.in_time.empty())

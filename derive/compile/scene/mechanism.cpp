@@ -191,7 +191,8 @@ void refuse_counters(const Scene& scene, BasicWorld<S>& world) {
   refusals.throw_any();
 }
 
-// There the first half of a step finds the forces of the other rows alone.
+// There the first half of a step finds the forces of the other rows alone, as the World does: rows of velocities are
+// free in it. Without rows with bounds they are not.
 void refuse_rates_beside_bounds(const Scene& scene, const Mechanism& mechanism) {
   if (mechanism.method != Method::rattle || mechanism.bounded.empty()) return;
   Refusals refusals(scene);
