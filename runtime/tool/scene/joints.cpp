@@ -49,11 +49,12 @@ const JointType* type_named(Entry& joint, Dimension dimension) {
   for (const JointType& other : joint_types(dimension)) known.emplace_back(other.name);
   const bool in_space = dimension == Dimension::spatial;
   const bool elsewhere = find_joint_type(in_space ? Dimension::planar : Dimension::spatial, *name) != nullptr;
+  const std::string here = called_here(*name, known);
   joint.error(joint.where("type"),
               elsewhere ? fmt::format("\"{}\" is a joint {}, and this scene is {}", *name,
                                       in_space ? "of the plane" : "in space", in_space ? "in space" : "planar")
                         : fmt::format("no joint is called \"{}\"", *name),
-              elsewhere ? "`cdot-run list` shows the joints of both" : did_you_mean(*name, known));
+              elsewhere && here.empty() ? "`cdot-run list` shows the joints of both" : did_you_mean(*name, known));
   return nullptr;
 }
 
@@ -86,6 +87,23 @@ std::optional<std::vector<double>> read_two_axes(Entry& joint, const std::string
   return numbers;
 }
 
+// { world = [[x, y, z], [x, y, z]] }: the same axes in the world at the start.
+bool has_two_axes_in_world(Entry& joint, const std::string& key) {
+  return joint.is_table(key) && joint.table(key)->is_array_of_arrays("world");
+}
+
+std::optional<std::vector<double>> read_two_axes_in_world(Entry& joint, const std::string& key, int body,
+                                                          const BodyNames& names) {
+  Entry table = *joint.table(key);
+  std::optional<std::vector<double>> axes = read_two_axes(table, "world");
+  table.close();
+  for (std::size_t k = 0; axes && k < axes->size(); k += 3) {
+    const Vec3 turned = names.turned_to_body(body, {(*axes)[k], (*axes)[k + 1], (*axes)[k + 2]});
+    std::copy(turned.begin(), turned.end(), axes->begin() + static_cast<std::ptrdiff_t>(k));
+  }
+  return axes;
+}
+
 // A type may have a number of its own that is called `start`, as rolling has: a table then gives the coordinates, a
 // number the parameter.
 bool means_coordinates(Entry& joint, const JointType& type, const std::string& key) {
@@ -110,6 +128,10 @@ std::optional<NamedValue> read_parameter(Entry& joint, const ParameterInfo& para
     const auto axes = read_two_axes(joint, key);
     return axes ? std::optional(NamedValue{key, *axes}) : std::nullopt;
   }
+  if (in_space && parameter.kind == ParameterKind::frame && has_two_axes_in_world(joint, key)) {
+    const auto axes = read_two_axes_in_world(joint, key, body, names);
+    return axes ? std::optional(NamedValue{key, *axes}) : std::nullopt;
+  }
   std::optional<Vec3> place;
   if (parameter.kind == ParameterKind::point) {
     place = read_of_body(joint, key, body, names, &BodyNames::to_body);
@@ -126,6 +148,18 @@ std::optional<NamedValue> read_parameter(Entry& joint, const ParameterInfo& para
   return NamedValue{key, {place->begin(), place->begin() + (in_space ? 3 : 2)}};
 }
 
+// Many engines take an axis. The direction of a spec may be another one, as the normal of a line in the plane.
+void refuse_axis(Entry& joint, const JointType& type) {
+  const auto is_axis = [](const ParameterInfo& info) { return info.name == "axis"; };
+  const auto is_direction = [](const ParameterInfo& info) {
+    return info.kind == ParameterKind::unit || info.kind == ParameterKind::frame;
+  };
+  const auto direction = std::ranges::find_if(type.parameters, is_direction);
+  if (direction == type.parameters.end() || std::ranges::any_of(type.parameters, is_axis) || !joint.has("axis")) return;
+  joint.error(joint.where("axis"), fmt::format("unknown key `axis` in {}", joint.what()),
+              fmt::format("{} takes {}: \"{}\"", type.name, described(*direction), type.title));
+}
+
 // `at` and the parameters of the type. `at` gives the points that have no key of their own.
 void read_parameters(Entry& joint, const char* key, JointReading& to) {
   const BodyNames& names = to.names;
@@ -134,6 +168,7 @@ void read_parameters(Entry& joint, const char* key, JointReading& to) {
   const std::optional<Vec3> at = read_vector(joint, key, names.dimension());
   const bool in_space = names.dimension() == Dimension::spatial;
   bool has_point = false;
+  refuse_axis(joint, type);
   for (const ParameterInfo& parameter : type.parameters) {
     const bool on_body = parameter.body >= 0;
     const int body = on_body ? definition.bodies[static_cast<std::size_t>(parameter.body)] : world_body;
@@ -146,7 +181,9 @@ void read_parameters(Entry& joint, const char* key, JointReading& to) {
     if (value) {
       definition.parameters.push_back(*value);
     } else if (!given && !parameter.has_default) {
-      joint.error(joint.header(), fmt::format("{} has no `{}`: {}", joint.what(), parameter.name, described(parameter)),
+      joint.error(joint.header(),
+                  fmt::format("{} has no `{}`: {}. {}: \"{}\"", joint.what(), parameter.name, described(parameter),
+                              type.name, type.title),
                   point    ? fmt::format("{0} = [{1}] in the frame of its body, {0} = {{ world = [{1}] }}, "
                                             "or at = [{1}]",
                                          parameter.name, in_space ? "x, y, z" : "x, y")

@@ -45,30 +45,56 @@ bool same_start(std::string_view word, std::string_view candidate) {
   return common >= 4 && 2 * common >= candidate.size();
 }
 
-// Words of other engines, and the word that a scene uses.
-std::string_view called_here(std::string_view word) {
-  constexpr std::pair<std::string_view, std::string_view> words[] = {
-      {"omega", "spin"},       {"angular_velocity", "spin"},
-      {"w", "spin"},           {"rotation", "angle"},
-      {"theta", "angle"},      {"dt", "step"},
-      {"timestep", "step"},    {"h", "step"},
-      {"time_step", "step"},   {"time", "duration"},
-      {"until", "duration"},   {"t_end", "duration"},
-      {"bodies", "body"},      {"joints", "joint"},
-      {"springs", "spring"},   {"g", "gravity"},
-      {"anchor", "at"},        {"anchor_a", "pa"},
-      {"anchor_b", "pb"},      {"axis", "t"},
-      {"length", "l"},         {"rest_length", "rest"},
-      {"m", "mass"},           {"I", "inertia"},
-      {"kinematic", "static"}, {"fixed", "static"},
-      {"count", "repeat"},     {"max_force", "max"},
-      {"max_torque", "max"},   {"break", "breaking"},
-      {"radius", "shape"}};
-  for (const auto& [elsewhere, here] : words) {
-    if (word == elsewhere) return here;
-  }
-  return {};
-}
+// Words of other engines, and the words that a scene uses.
+constexpr std::pair<std::string_view, std::string_view> words_elsewhere[] = {
+    {"omega", "spin"},
+    {"angular_velocity", "spin"},
+    {"w", "spin"},
+    {"rotation", "angle"},
+    {"theta", "angle"},
+    {"dt", "step"},
+    {"timestep", "step"},
+    {"h", "step"},
+    {"time_step", "step"},
+    {"time", "duration"},
+    {"until", "duration"},
+    {"t_end", "duration"},
+    {"bodies", "body"},
+    {"joints", "joint"},
+    {"springs", "spring"},
+    {"g", "gravity"},
+    {"anchor", "at"},
+    {"anchor_a", "pa"},
+    {"anchor_b", "pb"},
+    {"length", "l"},
+    {"rest_length", "rest"},
+    {"m", "mass"},
+    {"I", "inertia"},
+    {"kinematic", "static"},
+    {"fixed", "static"},
+    {"count", "repeat"},
+    {"max_force", "max"},
+    {"max_torque", "max"},
+    {"break", "breaking"},
+    {"radius", "shape"},
+    {"weld", "fixed"},
+    {"fixed", "weld"},
+    {"lock", "weld"},
+    {"lock", "fixed"},
+    {"hinge", "revolute"},
+    {"pin", "revolute"},
+    {"slider", "prismatic"},
+    {"piston", "prismatic"},
+    {"ball", "spherical"},
+    {"ball_socket", "spherical"},
+    {"point_to_point", "spherical"},
+    {"spherical", "revolute"},
+    {"cardan", "universal"},
+    {"rod", "distance"},
+    {"line", "point_on_line"},
+    {"point_on_line", "line"},
+    {"mouse", "target"},
+};
 
 }  // namespace
 
@@ -112,10 +138,15 @@ std::string Mistakes::paragraph(std::string_view kind, Span where, std::string_v
   return head + text::numbered(where.line, text::excerpt(line, {{begin, std::max(end, begin + 1)}}, look)) + last;
 }
 
+std::string called_here(std::string_view word, std::span<const std::string> known) {
+  for (const auto& [elsewhere, here] : words_elsewhere)
+    if (word == elsewhere && std::ranges::find(known, here) != known.end())
+      return fmt::format("a scene calls it `{}`", here);
+  return {};
+}
+
 std::string did_you_mean(std::string_view word, std::span<const std::string> known) {
-  const std::string_view elsewhere = called_here(word);
-  if (std::find(known.begin(), known.end(), elsewhere) != known.end())
-    return fmt::format("a scene calls it `{}`", elsewhere);
+  if (std::string here = called_here(word, known); !here.empty()) return here;
   // Words of one or two letters resemble everything.
   std::string best = text::nearest(word, known, word.size() < 2 ? 0 : word.size() < 3 ? 1 : 1 + word.size() / 4);
   for (auto k = known.begin(); best.empty() && k != known.end(); ++k)

@@ -41,7 +41,10 @@ class Mistakes {
   std::vector<Mistake> found_;
 };
 
-// "did you mean `angle`?" for the known word nearest to `word`; else the list of known words, if there are any.
+// "a scene calls it `spin`" for a word of other engines that means a known one; else empty.
+std::string called_here(std::string_view word, std::span<const std::string> known);
+// The same, or "did you mean `angle`?" for the known word nearest to `word`; else the list of known words, if there are
+// any.
 std::string did_you_mean(std::string_view word, std::span<const std::string> known);
 
 }  // namespace cdot

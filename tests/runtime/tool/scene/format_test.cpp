@@ -31,6 +31,17 @@ TEST(Format, EverySceneOfTheCatalogueIsRead) {
   EXPECT_GE(scenes, 20);
 }
 
+// A body turned by a third of a turn about (1, 1, 1): its x, y, z are the world's y, z, x.
+TEST(Format, TwoAxesOfAFrameAreGivenInTheWorld) {
+  const Scene scene = scene_of("dimension = 3\n" + body("inertia = 1\norientation = [1, 1, 1, 1]") +
+                               "[[joint]]\ntype = \"universal\"\nbodies = [\"rod\", \"world\"]\nat = [0, 0, 0]\n"
+                               "fa = { world = [[1, 0, 0], [1, 2, 0]] }\n");
+  const std::vector<double>& fa = parameter(scene, 0, "fa");
+  const double expected[] = {0, 0, 1, 2, 0, 1};
+  ASSERT_EQ(fa.size(), 6u);
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(fa[k], expected[k], 1e-15) << k;
+}
+
 // TOML calls 9107011641597973 a whole number, and a double rounds it.
 TEST(Format, AWholeNumberBeyondTheDoublesIsRounded) {
   EXPECT_EQ(scene_of("duration = 9107011641597973\n" + body("inertia = 1")).duration, 9107011641597972.0);
