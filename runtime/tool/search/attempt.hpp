@@ -23,7 +23,8 @@ struct Attempt {
   double price = 0;
   bool full = false;                                          // it has the outputs asked for
   bool whole = false;                                         // it has ended in time and well
-  double achieved = std::numeric_limits<double>::infinity();  // as the distance from a coarser run makes sure
+  double apart = std::numeric_limits<double>::infinity();     // distance from a coarser run
+  double achieved = std::numeric_limits<double>::infinity();  // as that distance makes sure
   double claimed = std::numeric_limits<double>::infinity();   // Choice::achieved
   double holds_until = 0;
   bool reached = false;

@@ -176,7 +176,7 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool 
 // Measures a run by a coarser one.
 void Search::judge(const Attempt& coarse, Attempt& fine) const {
   const auto [apart, agree_until] = distance(yardstick_, coarse, fine);
-  fine.holds_until = agree_until;
+  fine.apart = apart, fine.holds_until = agree_until;
   const double gained = sure_gain(coarse, fine, apart);
   const double between_looks = local_errors * fine.knob.local_error;
   fine.achieved =
@@ -185,10 +185,12 @@ void Search::judge(const Attempt& coarse, Attempt& fine) const {
                      (fine.result.counts.rescued == 0 && !same_steps(coarse.result.counts, fine.result.counts));
   const bool seems_to_converge = fine.knob.adaptive() || fine.achieved < surely * yardstick_.asked() ||
                                  (std::isfinite(coarse.achieved) && fine.achieved * converges < coarse.achieved);
-  fine.reached = known && seems_to_converge && balanced(fine) && fine.achieved <= yardstick_.asked();
+  // Two runs may agree by chance on steps that were left to another method: no gain is sure there.
+  const bool rescued = fine.result.counts.rescued > 0;
+  fine.reached = known && seems_to_converge && balanced(fine) &&
+                 std::max(fine.achieved, rescued ? apart : 0) <= yardstick_.asked();
   if (fine.reached) fine.holds_until = scene_.duration;
-  // Steps that were left to another method err alike in both runs.
-  const double claim = fine.result.counts.rescued > 0 ? apart : std::max(margin * fine.achieved, between_looks);
+  const double claim = rescued ? std::max(apart, coarse.apart) : std::max(margin * fine.achieved, between_looks);
   fine.claimed = std::max(fine.achieved, std::min(claim, yardstick_.asked()));
 }
 
