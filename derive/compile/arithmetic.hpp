@@ -33,9 +33,10 @@ inline T magnitude(const T& x) {
 inline bool any(bool condition) { return condition; }
 template <class Mask>
 inline bool any(const Mask& condition) {
-  for (unsigned i = 0; i < sizeof condition.lanes / sizeof condition.lanes[0]; ++i)
-    if (condition.lanes[i]) return true;
-  return false;
+  unsigned long long words[(sizeof condition.lanes + 7) / 8] = {}, some = 0;
+  __builtin_memcpy(words, &condition.lanes, sizeof condition.lanes);
+  for (const unsigned long long word : words) some |= word;
+  return some != 0;
 }
 
 // Angles to sine and cosine, without branches: the same bits in a lane as alone, within 2 units in the last place up to
@@ -95,13 +96,106 @@ inline void sin_cos_beside(const T& s_0, const T& c_0, const T& d, const T& angl
   sin_cos(angle, far_s, far_c);
   s = select(is_near, s, far_s), c = select(is_near, c, far_c);
 }
-// A pose moved by a displacement, number by number: wide copies would wait for numbers just stored.
+template <int... places>
+struct Places {};
+// Four numbers side by side, where processors take them at once. Their operations are those of one.
+template <class T>
+struct WideOf {
+  using type = T;
+  static constexpr bool exists = false;
+};
+#if defined(__SSE2__) || defined(__aarch64__)
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+struct Four {
+  struct Mask {
+    typedef long long Lanes __attribute__((vector_size(32)));
+    Lanes lanes;
+    friend Mask operator&&(const Mask& a, const Mask& b) { return {a.lanes & b.lanes}; }
+    friend Mask operator||(const Mask& a, const Mask& b) { return {a.lanes | b.lanes}; }
+    friend Mask operator!(const Mask& a) { return {~a.lanes}; }
+  };
+  typedef double Lanes __attribute__((vector_size(32)));
+  Lanes lanes;
+
+  Four() = default;
+  Four(const Lanes& x) : lanes(x) {}
+  explicit Four(double x) : lanes(Lanes{} + x) {}
+  Four(double a, double b, double c, double d) : lanes{a, b, c, d} {}
+  void store(double& a, double& b, double& c, double& d) const { a = lanes[0], b = lanes[1], c = lanes[2], d = lanes[3]; }
+
+  friend Four operator+(const Four& a, const Four& b) { return a.lanes + b.lanes; }
+  friend Four operator-(const Four& a, const Four& b) { return a.lanes - b.lanes; }
+  friend Four operator*(const Four& a, const Four& b) { return a.lanes * b.lanes; }
+  friend Four operator-(const Four& a) { return -a.lanes; }
+  friend Four operator/(const Four& a, const Four& b) { return a.lanes / b.lanes; }
+  friend Mask operator<(const Four& a, const Four& b) { return {a.lanes < b.lanes}; }
+  friend Mask operator<=(const Four& a, const Four& b) { return {a.lanes <= b.lanes}; }
+  friend Mask operator>(const Four& a, const Four& b) { return {a.lanes > b.lanes}; }
+  friend Mask operator>=(const Four& a, const Four& b) { return {a.lanes >= b.lanes}; }
+  friend Four select(const Mask& condition, const Four& a, const Four& b) {
+    return condition.lanes ? a.lanes : b.lanes;
+  }
+  friend Four root(const Four& a) {
+    return {__builtin_sqrt(a.lanes[0]), __builtin_sqrt(a.lanes[1]), __builtin_sqrt(a.lanes[2]),
+            __builtin_sqrt(a.lanes[3])};
+  }
+};
+template <>
+struct NumberOf<Four> {
+  using type = double;
+};
+// Numbers of four structs at these places, as those of one wide struct, and back.
+template <class Wide, class Narrow, int... places>
+inline void gather(Places<places...>, Wide& to, const Narrow& a, const Narrow& b, const Narrow& c, const Narrow& d) {
+  Four* const all = reinterpret_cast<Four*>(&to);
+  const double *const i = reinterpret_cast<const double*>(&a), *const j = reinterpret_cast<const double*>(&b);
+  const double *const k = reinterpret_cast<const double*>(&c), *const l = reinterpret_cast<const double*>(&d);
+  ((all[places] = Four{i[places], j[places], k[places], l[places]}), ...);
+}
+template <class Wide, class Narrow, int... places>
+inline void scatter(Places<places...>, const Wide& from, Narrow& a, Narrow& b, Narrow& c, Narrow& d) {
+  const Four* const all = reinterpret_cast<const Four*>(&from);
+  double *const i = reinterpret_cast<double*>(&a), *const j = reinterpret_cast<double*>(&b);
+  double *const k = reinterpret_cast<double*>(&c), *const l = reinterpret_cast<double*>(&d);
+  (all[places].store(i[places], j[places], k[places], l[places]), ...);
+}
+template <>
+struct WideOf<double> {
+  using type = Four;
+  static constexpr bool exists = true;
+};
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
+#endif
+
+// Sines and cosines of four poses; one may be named twice.
+template <class Pose, int n>
+inline void sin_cos_of(Pose (&q)[n], int i, int j, int k, int l) {
+  using Wide = typename WideOf<decltype(Pose::angle)>::type;
+  Wide s, c;
+  sin_cos(Wide{q[i].angle, q[j].angle, q[k].angle, q[l].angle}, s, c);
+  s.store(q[i].s, q[j].s, q[k].s, q[l].s), c.store(q[i].c, q[j].c, q[k].c, q[l].c);
+}
+// Those of the angles, which are beside those of other poses.
+template <bool slight, class Pose, int n, class Wide>
+inline void sin_cos_near(Pose (&q)[n], const Pose (&from)[n], const Wide& angle, int i, int j, int k, int l) {
+  const Pose &e = from[i], &f = from[j], &g = from[k], &h = from[l];
+  const Wide s_0{e.s, f.s, g.s, h.s}, c_0{e.c, f.c, g.c, h.c}, before{e.angle, f.angle, g.angle, h.angle};
+  Wide s, c;
+  sin_cos_beside<slight>(s_0, c_0, angle - before, angle, s, c);
+  s.store(q[i].s, q[j].s, q[k].s, q[l].s), c.store(q[i].c, q[j].c, q[k].c, q[l].c);
+}
+
+// The same of one pose before it turns by d.
 template <class Pose, class Displacement>
-inline void shift(Pose& q, const Displacement& d) {
+inline void sin_cos_after(Pose& q, const Displacement& d) {
   using T = decltype(q.angle + q.angle);
-  const T s_0 = q.s, c_0 = q.c, angle = q.angle + d.w, turn = angle - q.angle;
-  q.x = q.x + d.x, q.y = q.y + d.y, q.angle = angle;
-  sin_cos_beside<true>(s_0, c_0, turn, angle, q.s, q.c);
+  const T s_0 = q.s, c_0 = q.c, angle = q.angle + d.w;
+  sin_cos_beside<true>(s_0, c_0, angle - q.angle, angle, q.s, q.c);
 }
 
 }  // namespace cdot::scenes

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "derive/compile/gyroscopes.hpp"
+#include "derive/compile/texts.hpp"
 #include "derive/program/print.hpp"
 
 namespace cdot::compile {
@@ -15,6 +16,10 @@ std::string pushed(const std::string& v, double drag, const std::string& a) {
   if (!a.empty()) text += fmt::format("    {0} = {0} + h * {1};\n", v, a);
   return text;
 }
+
+constexpr const char* begin_shift = R"(  // Moves poses by displacements, and turns them.
+  static void shift(Pose (&q)[bodies], const Velocity (&d)[bodies]) {
+)";
 
 std::string number(double x) { return x == 0 ? "" : fmt::format("T({})", x); }
 
@@ -40,31 +45,38 @@ std::string BodyTexts::start() const {
 }
 
 std::string BodyTexts::turn(const std::set<std::string>& turning) const {
+  std::vector<Named> all, of_them;
   std::string text = "\n  static void turn(Pose (&q)[bodies]) {\n";
   each([&](const Body&, const std::string& name) {
-    if (mechanism.spatial()) text += fmt::format("    orient(q[{}]);\n", name);
-    else if (turning.contains(name)) text += fmt::format("    sin_cos(q[{0}].angle, q[{0}].s, q[{0}].c);\n", name);
-    else text += fmt::format("    q[{0}].c = T(1), q[{0}].s = T(0);  // read by no joint\n", name);
+    all.push_back({name, 0});
+    if (turning.contains(name)) of_them.push_back({name, 0});
+    else if (!mechanism.spatial())
+      text += fmt::format("    q[{0}].c = T(1), q[{0}].s = T(0);  // read by no joint\n", name);
   });
-  return text + "  }\n" + (mechanism.spatial() ? "" : turn_beside(turning));
+  if (mechanism.spatial())
+    return text + by_fours(all, "orient_four<Wide>(q, {4})", "orient(q[{0}])") + "  }\n" + begin_shift +
+           by_fours(all, "shift_four<Wide>(q, d, {4})", "move(q[{0}], q[{0}], d[{0}]), orient(q[{0}])") + "  }\n";
+  text +=
+      by_fours(of_them, "sin_cos_of(q, {4})", "sin_cos(q[{0}].angle, q[{0}].s, q[{0}].c)") + "  }\n" +
+      turn_beside(of_them) + begin_shift +
+      by_fours(of_them,
+               "sin_cos_near<true>(q, q, typename WideOf<T>::type{{q[{0}].angle + d[{0}].w, q[{1}].angle + d[{1}].w, "
+               "q[{2}].angle + d[{2}].w, q[{3}].angle + d[{3}].w}}, {4})",
+               "sin_cos_after(q[{0}], d[{0}])");
+  for (const Named& body : all) text += fmt::format("    move(q[{0}], q[{0}], d[{0}]);\n", body.name);
+  return text + "  }\n";
 }
 
-std::string BodyTexts::turn_beside(const std::set<std::string>& turning) const {
-  std::string text =
-      "  // Those of poses beside others.\n  static void turn(Pose (&q)[bodies], const Pose (&from)[bodies]) {\n";
-  each([&](const Body&, const std::string& name) {
-    if (turning.contains(name))
-      text += fmt::format(
-          "    sin_cos_beside<{1}>(from[{0}].s, from[{0}].c, q[{0}].angle - from[{0}].angle, q[{0}].angle, q[{0}].s, "
-          "q[{0}].c);\n",
-          name, mechanism.method == Method::rattle);
-  });
-  text += "    (void)q, (void)from;\n  }\n  static void shift(Pose (&q)[bodies], const Velocity (&d)[bodies]) {\n";
-  each([&](const Body&, const std::string& name) {
-    if (turning.contains(name)) text += fmt::format("    scenes::shift(q[{0}], d[{0}]);\n", name);
-    else text += fmt::format("    move(q[{0}], q[{0}], d[{0}]);\n", name);
-  });
-  return text + "  }\n";
+std::string BodyTexts::turn_beside(const std::vector<Named>& turning) const {
+  const std::string slight = mechanism.method == Method::rattle ? "true" : "false";
+  return "  // Those of poses beside others.\n  static void turn(Pose (&q)[bodies], const Pose (&from)[bodies]) {\n" +
+         by_fours(turning,
+                  "sin_cos_near<" + slight +
+                      ">(q, from, typename WideOf<T>::type{{q[{0}].angle, q[{1}].angle, q[{2}].angle, q[{3}].angle}}, "
+                      "{4})",
+                  "sin_cos_beside<" + slight +
+                      ">(from[{0}].s, from[{0}].c, q[{0}].angle - from[{0}].angle, q[{0}].angle, q[{0}].s, q[{0}].c)") +
+         "    (void)q, (void)from;\n  }\n";
 }
 
 std::string BodyTexts::push() const {

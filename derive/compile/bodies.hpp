@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "derive/compile/scene/mechanism.hpp"
+#include "derive/compile/texts.hpp"
 
 namespace cdot::compile {
 
@@ -15,7 +16,7 @@ struct BodyTexts {
 
   // Lines that set poses and velocities of the start.
   std::string start() const;
-  // turn(): sine and cosine of the bodies in `turning`; rotation matrices.
+  // turn(): sine and cosine of the bodies in `turning`; rotation matrices. shift(): moves and turns.
   std::string turn(const std::set<std::string>& turning) const;
   // push(): forces other than the joints' for a step of Euler's method.
   std::string push() const;
@@ -28,7 +29,7 @@ struct BodyTexts {
   std::string dragged() const;
 
   // turn() of poses beside turned ones, in the plane: by their angles apart.
-  std::string turn_beside(const std::set<std::string>& turning) const;
+  std::string turn_beside(const std::vector<Named>& turning) const;
 
   // f(body, its name) for those that move.
   template <class F>

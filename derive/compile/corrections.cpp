@@ -144,8 +144,7 @@ constexpr const char* moves_poses_in_space = R"(      if (is_pack) {
         turn(next);
         for (int i = 0; i < bodies; ++i) s.q[i] = choose(goes_on, next[i], s.q[i]);
       } else {
-        for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], d[i]);
-        turn(s.q);
+        shift(s.q, d);
       }
 )";
 
@@ -333,7 +332,8 @@ std::string corrections_of(double tolerance, const Contents& has, const std::str
     text += fmt::format(close_begins, has.foresees ? " and multipliers to those foreseen" : "",
                         has.foresees ? "Mask foreseen, " : "",
                         (has.foresees ? ", T (&total)[rows]" : "") + parameters_of_gained(has));
-    text += has.foresees ? moves_as_foreseen : "    for (int i = 0; i < bodies; ++i) moves[i] = still();\n";
+    text +=
+        has.foresees ? moves_as_foreseen(has.spatial) : "    for (int i = 0; i < bodies; ++i) moves[i] = still();\n";
     text += when(has.ends,
                  "    Bounded B;\n    bool reached = false;  // B is that of `at`\n    Mask active[bounded];\n"
                  "    for (int i = 0; i < bounded; ++i) ") +

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "derive/compile/texts.hpp"
+
 namespace cdot::compile {
 namespace {
 
@@ -24,32 +26,6 @@ std::string turned_by(const std::string& pose, const Tensor& S) {
   return fmt::format("turned<{}, T>({}, T({}), T({}), T({}))", axis, pose, S[axis], S[(axis + 1) % 3] - S[axis],
                      S[(axis + 2) % 3] - S[axis]);
 }
-
-// Bodies of one inertia are of one kind, whose functions know it.
-class Kinds {
- public:
-  std::string of(const Body& body) {
-    const std::string functions =
-        fmt::format("      static Tensor<T> I(const Pose& q) {{ return {}; }}\n", turned_by("q", body.inertia)) +
-        fmt::format("      static Tensor<T> inverse(const Pose& q) {{ return {}; }}\n",
-                    turned_by("q", body.inverse_inertia));
-    const auto known = std::ranges::find(kinds_, functions);
-    const auto place = static_cast<std::size_t>(known - kinds_.begin());
-    if (known == kinds_.end()) kinds_.push_back(functions);
-    return fmt::format("typename Kinds::Kind_{}", place);
-  }
-
-  std::string text() const {
-    std::string text =
-        "\n  // Inertias and their inverses in the axes of the world, by kinds of bodies.\n  struct Kinds {\n";
-    for (std::size_t k = 0; k < kinds_.size(); ++k)
-      text += fmt::format("    struct Kind_{} {{\n{}    }};\n", k, kinds_[k]);
-    return text + "  };\n";
-  }
-
- private:
-  std::vector<std::string> kinds_;
-};
 
 // The axis about which the body is symmetric, as mean_spin() of the runtime finds it; -1: none.
 int symmetry_axis(const Tensor& I) {
@@ -75,11 +51,49 @@ std::string turning_of(const Body& body) {
   return fmt::format("{}, T({}), {}", e, 0.5 * unit * (I[0] + I[1] + I[2] - along), text_of(I, unit));
 }
 
-// Lines of drift() for one body.
-std::string drifted(const Body& body, const std::string& name) {
-  if (!body.inertia_turns) return fmt::format("    move(s.q[{0}], q[{0}], h * s.v[{0}]);\n", name);
-  return fmt::format("    spin(s.q[{0}], q[{0}], s.v[{0}], {1}, h);\n", name, turning_of(body));
-}
+// Bodies of one inertia are of one kind, whose functions know it.
+class Kinds {
+ public:
+  std::string of(const Body& body, const std::string& name) {
+    const std::string functions =
+        fmt::format("      static Tensor<T> I(const Pose& q) {{ return {}; }}\n", turned_by("q", body.inertia)) +
+        fmt::format("      static Tensor<T> inverse(const Pose& q) {{ return {}; }}\n",
+                    turned_by("q", body.inverse_inertia)) +
+        fmt::format(
+            "      static void drift(Pose& to, const Pose& q, const Velocity& v, const T& h) {{\n"
+            "        spin(to, q, v, {}, h);\n      }}\n",
+            turning_of(body));
+    const auto known = std::ranges::find(kinds_, functions);
+    const auto place = static_cast<std::size_t>(known - kinds_.begin());
+    if (known == kinds_.end()) kinds_.push_back(functions), bodies_.emplace_back();
+    bodies_[place].push_back({name, count_++});
+    return fmt::format("typename Kinds::Kind_{}", place);
+  }
+  // Lines for the bodies of each kind; "KIND" in `four` is the kind of four numbers side by side, in `one` of one.
+  std::string lines(const std::string& four, const std::string& one) const {
+    std::string text;
+    for (std::size_t k = 0; k < kinds_.size(); ++k) {
+      const auto of_kind = [&](std::string line, const char* prefix) {
+        return line.replace(line.find("KIND"), 4, fmt::format("{}Kinds::Kind_{}", prefix, k));
+      };
+      text += by_fours(bodies_[k], of_kind(four, "Wide::"), of_kind(one, ""));
+    }
+    return text;
+  }
+
+  std::string text() const {
+    std::string text =
+        "\n  // Inertias and their inverses in the axes of the world, by kinds of bodies.\n  struct Kinds {\n";
+    for (std::size_t k = 0; k < kinds_.size(); ++k)
+      text += fmt::format("    struct Kind_{} {{\n{}    }};\n", k, kinds_[k]);
+    return text + "  };\n";
+  }
+
+ private:
+  std::vector<std::string> kinds_;
+  std::vector<std::vector<Named>> bodies_;  // by kinds
+  int count_ = 0;
+};
 
 // Lines of find_mean_spins() for one body.
 std::string mean_of(const Body& body, const std::string& name) {
@@ -141,6 +155,39 @@ constexpr const char* momentum_functions = R"(
   }
 )";
 
+// Four bodies of one kind side by side. 7 to 15 are the places of the rotation matrix in a Pose, 16 to 21 those of I, 3
+// to 5 those of the spin in a Velocity.
+constexpr const char* four_functions = R"(
+  template <class Kind>
+  static void drift_four(Pose (&to)[bodies], const Pose (&from)[bodies], const Velocity (&v)[bodies], const T& h,
+                         int i, int j, int k, int l) {
+    const Places<0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15> places;
+    typename Wide::Pose q;
+    typename Wide::Velocity by;
+    gather(places, q, from[i], from[j], from[k], from[l]);
+    gather(Places<0, 1, 2, 3, 4, 5>(), by, v[i], v[j], v[k], v[l]);
+    Kind::drift(q, q, by, typename WideOf<T>::type(h));
+    orient(q);
+    scatter(places, q, to[i], to[j], to[k], to[l]);
+  }
+  template <class Kind>
+  static void follow_four(Pose (&q)[bodies], Velocity (&v)[bodies], Gyroscope* g, int i, int j, int k, int l, int m,
+                          int n, int o, int p) {
+    const Places<0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11> places;
+    const Places<3, 4, 5> spin;
+    typename Wide::Pose pose;
+    typename Wide::Velocity velocity;
+    typename Wide::Gyroscope gyroscope;
+    gather(Places<7, 8, 9, 10, 11, 12, 13, 14, 15>(), pose, q[i], q[j], q[k], q[l]);
+    gather(spin, velocity, v[i], v[j], v[k], v[l]);
+    gather(places, gyroscope, g[m], g[n], g[o], g[p]);
+    Wide::template follow<Kind>(pose, velocity, gyroscope);
+    scatter(Places<16, 17, 18, 19, 20, 21>(), pose, q[i], q[j], q[k], q[l]);
+    scatter(spin, velocity, v[i], v[j], v[k], v[l]);
+    scatter(places, gyroscope, g[m], g[n], g[o], g[p]);
+  }
+)";
+
 constexpr const char* weighs_in_lanes = R"(  }
   static void weigh(Pose (&q)[bodies], const Mask& now) {
     Tensor<T> before[bodies];
@@ -177,30 +224,35 @@ std::string pose_argument(const Mechanism& mechanism) {
 
 std::string gyroscopes_of(const Mechanism& mechanism, const std::vector<std::string>& names) {
   if (!mechanism.has_gyroscopes()) return {};
-  std::string weigh, wind, follow, drift, carry;
+  std::string weigh, wind, drift, carry;
   Kinds kinds;
   int count = 0;
   for (std::size_t b = 0; b < names.size(); ++b) {
     const Body& body = mechanism.bodies[b];
     if (!body.moves) continue;
-    drift += drifted(body, names[b]);
-    if (!body.inertia_turns) continue;
-    const std::string kind = kinds.of(body);
-    const std::string I = moments(body.inertia);
+    if (!body.inertia_turns) {
+      drift += fmt::format("    move(s.q[{0}], q[{0}], h * s.v[{0}]), orient(s.q[{0}]);\n", names[b]);
+      continue;
+    }
+    const std::string kind = kinds.of(body, names[b]);
     weigh += fmt::format("    q[{0}].I = {1};\n", names[b], turned_by("q[" + names[b] + "]", body.inverse_inertia));
-    wind += fmt::format("    wind<{2}>(s.q[{0}], s.v[{0}], s.g[{1}]);\n", names[b], count, kind);
-    carry += fmt::format("    carry(to[{0}], v[{0}], turned<T>(from[{0}], {1}));\n", names[b], I);
-    follow += fmt::format("    follow<{2}>(s.q[{0}], s.v[{0}], s.g[{1}]);\n", names[b], count++, kind);
+    wind += fmt::format("    wind<{2}>(s.q[{0}], s.v[{0}], s.g[{1}]);\n", names[b], count++, kind);
+    carry += fmt::format("    carry(to[{0}], v[{0}], turned<T>(from[{0}], {1}));\n", names[b], moments(body.inertia));
   }
   if (mechanism.on_accelerations())
     return "\n  // Inverse inertias at the poses.\n  static void weigh(Pose (&q)[bodies]) {\n" + weigh +
            weighs_in_lanes;
-  return kinds.text() + momentum_functions + ("  static void wind(State& s) {\n" + wind + "  }\n") +
-         "  static void follow(State& s) {\n" + follow + follows_in_lanes +
+  return kinds.text() + momentum_functions + four_functions + ("  static void wind(State& s) {\n" + wind + "  }\n") +
+         "  static void follow(State& s) {\n" +
+         kinds.lines("follow_four<typename KIND>(s.q, s.v, s.g, {4}, {5})",
+                     "follow<typename KIND>(s.q[{0}], s.v[{0}], s.g[{1}])") +
+         follows_in_lanes +
          "  // Velocities at one pose as those of the same angular momentum at another.\n"
          "  static void carry(const Pose (&from)[bodies], const Pose (&to)[bodies], Velocity (&v)[bodies]) {\n" +
          carry + "  }\n  static void drift(State& s, const Pose (&q)[bodies], const T& h) {\n" + drift +
-         "    turn(s.q);\n  }\n";
+         kinds.lines("drift_four<typename KIND>(s.q, q, s.v, h, {4})",
+                     "KIND::drift(s.q[{0}], q[{0}], s.v[{0}], h), orient(s.q[{0}])") +
+         "  }\n";
 }
 
 std::string mean_spins_of(const Mechanism& mechanism, const std::vector<std::string>& names) {

@@ -102,7 +102,7 @@ class HeaderWriter {
     line(fmt::format("  static constexpr double default_step = {};  // [s]", mechanism_.step));
     for (const auto& [name, value] : equations_.constants.named)
       line(fmt::format("  static constexpr double {} = {};", name, value));
-    text_ += types_of(mechanism_);
+    text_ += types_of(mechanism_, name_);
     if (has().rows) {
       line("  // The numbers of J, and K = J M^-1 J^T = L D L^T with the rows numbered in the order of elimination.");
       line("  struct Jacobian {");

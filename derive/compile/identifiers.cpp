@@ -17,6 +17,8 @@ std::set<std::string> taken_names() {
       "to pull scenes std still choose rate_of larger foresee remember exert apply aim Aim Multipliers is_pack "
       "orient weigh wind follow drift spin dot cross times root half_turn turned to_world to_body turn_by free_turn "
       "inverse_root wide_half_turn add trace turn_within newton_step mean_spin sin_cos sin_cos_beside magnitude any "
+      "Four WideOf Wide Places gather scatter sin_cos_of sin_cos_near sin_cos_after orient_four shift_four drift_four "
+      "follow_four "
       "single epsilon "
       "smallest is_rate "
       "settle part_and_settle Guards Modes modes guard resolve force slight smaller gap stride replace furthest "

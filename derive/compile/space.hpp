@@ -171,6 +171,26 @@ inline void orient(Pose& q) {
   q.zz = T(1) - two * (q.e1 * q.e1 + q.e2 * q.e2);
 }
 
+// Four poses side by side; one may be named twice. 0 to 2 are the places of the centre of mass in a Pose, 3 to 6 those
+// of e, 7 to 15 of the rotation matrix.
+template <class Wide, class Pose, int n>
+inline void orient_four(Pose (&q)[n], int i, int j, int k, int l) {
+  typename Wide::Pose to;
+  gather(Places<3, 4, 5, 6>(), to, q[i], q[j], q[k], q[l]);
+  orient(to);
+  scatter(Places<3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15>(), to, q[i], q[j], q[k], q[l]);
+}
+template <class Wide, class Pose, class Displacement, int n>
+inline void shift_four(Pose (&q)[n], const Displacement (&d)[n], int i, int j, int k, int l) {
+  typename Wide::Pose to;
+  typename Wide::Velocity by;
+  gather(Places<0, 1, 2, 3, 4, 5, 6>(), to, q[i], q[j], q[k], q[l]);
+  gather(Places<0, 1, 2, 3, 4, 5>(), by, d[i], d[j], d[k], d[l]);
+  Wide::move(to, to, by);
+  orient(to);
+  scatter(Places<0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15>(), to, q[i], q[j], q[k], q[l]);
+}
+
 // The rotation of a free body during h that is symmetric about its axis e, in its own axes: it precesses about L at the
 // rate L / I and turns about e by the rest. I: the moment across e.
 template <class T>

@@ -86,7 +86,7 @@ constexpr const char* euler_corrects_as_foreseen =
     if (any(!fits)) {{
       for (int i = 0; i < rows; ++i) total[i] = select(fits, total[i], T(0));
     }}
-    remember(s, fits, h * h, total, foreseen);
+    remember(s, fits, error <= T(single ? 1e10 * {0} : 1e3 * {0}), h * h, total, foreseen);
     // A displacement beyond the motion of the step, or of an error older than it, would add energy.
     auto is_slight = {1};
     const auto keep = (is_foreseen || left <= T(0.1) * error) && is_slight;

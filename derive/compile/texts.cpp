@@ -1,5 +1,6 @@
 #include "derive/compile/texts.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <fmt/format.h>
 #include <sstream>
@@ -8,6 +9,7 @@
 
 #include "derive/compile/arithmetic.hpp"
 #include "derive/compile/space.hpp"
+#include "derive/program/print.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -93,6 +95,27 @@ bool reads(const std::string& arguments, const std::string& argument) {
   }
   const std::string before = arguments.substr(0, array);
   return before.find("const", before.rfind(',') + 1) != std::string::npos;
+}
+
+std::string by_fours(const std::vector<Named>& things, const std::string& four, const std::string& one) {
+  const auto lines = [&](std::size_t begin, std::size_t end, std::size_t width) {
+    std::string text;
+    for (std::size_t i = begin; i < end; i += width) {
+      const auto at = [&](std::size_t k) { return things[std::min(i + k, end - 1)]; };
+      const std::string line =
+          width == 1
+              ? fmt::format(fmt::runtime(one), at(0).name, at(0).number)
+              : fmt::format(fmt::runtime(four), at(0).name, at(1).name, at(2).name, at(3).name,
+                            fmt::format("{}, {}, {}, {}", at(0).name, at(1).name, at(2).name, at(3).name),
+                            fmt::format("{}, {}, {}, {}", at(0).number, at(1).number, at(2).number, at(3).number));
+      for (const std::string& wrapped : derive::wrapped("      " + line + ";")) text += wrapped + "\n";
+    }
+    return text;
+  };
+  const std::size_t count = things.size(), wide = count % 4 < 3 ? count - count % 4 : count;
+  if (wide == 0) return lines(0, count, 1);
+  return "    if constexpr (WideOf<T>::exists) {\n" + lines(0, wide, 4) + lines(wide, count, 1) + "    } else {\n" +
+         lines(0, count, 1) + "    }\n";
 }
 
 }  // namespace cdot::compile

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "derive/compile/scene/mechanism.hpp"
 
@@ -19,6 +20,15 @@ constexpr std::size_t few_rates = 24;
 // The text with a line for each body, row or rate in place of a line "for (int i = 0; i < bodies; ++i) …;", where there
 // are few. The wide loads of a compiler's vector loop would wait for the stores of single numbers before them.
 std::string unrolled(const std::string& text, const Counts& counts);
+
+// Lines for things of one kind, four at a time where numbers have wide ones: in `four`, {0} to {3} are their names and
+// {4} lists them; {5} lists their numbers. In `one`, {0} is a name and {1} its number. Three stand for four, if one of
+// them is named twice.
+struct Named {
+  std::string name;
+  int number;
+};
+std::string by_fours(const std::vector<Named>& things, const std::string& four, const std::string& one);
 
 // Functions take the inputs, the angles, events and bonds: "$d" declares them, "$s" passes those of a State, "$p" those
 // of the caller; "$C" counts the turns of the angles. Functions that weigh take poses where inertias turn: "$g"

@@ -153,11 +153,11 @@ std::string slope_of(bool spatial) {
 
 }  // namespace
 
-std::string types_of(const Mechanism& mechanism) {
+std::string types_of(const Mechanism& mechanism, const std::string& name) {
   const std::string slope = mechanism.on_accelerations() ? slope_of(mechanism.spatial()) : "";
   if (!mechanism.spatial()) return planar_types + slope;
   const bool gyroscopes = mechanism.has_gyroscopes();
-  std::string text = spatial_pose;
+  std::string text = fmt::format("  using Wide = {}<typename WideOf<T>::type>;\n", name) + spatial_pose;
   if (gyroscopes) text += spatial_inertia;
   text += fmt::format(spatial_types, gyroscopes ? "    one.I = scenes::choose(now, q.I, p.I);\n" : "");
   if (mechanism.on_accelerations()) text += spatial_rates + slope;

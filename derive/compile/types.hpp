@@ -7,8 +7,8 @@
 
 namespace cdot::compile {
 
-// Pose, Velocity and Rate, that of a pose; choose(), move(), rate_of().
-std::string types_of(const Mechanism& mechanism);
+// Pose, Velocity and Rate, that of a pose; choose(), move(), rate_of(), in the struct of that name.
+std::string types_of(const Mechanism& mechanism, const std::string& name);
 
 // Numbers of a State for each body that moves: with its accelerations or, of a step at velocities, its momentum; pulls:
 // the accelerations are those by joints.

@@ -36,15 +36,21 @@ constexpr const char* foresees = R"(
     const T {5};
     {6};
   }}
-  // The ones found instead. Where they were not much better foreseen than by the last ones, a series begins.
-  static void remember(State& s, const Mask& fits, const T& unit, const T (&found)[rows], const T (&foreseen)[rows]) {{
-    T now[rows], misses[rows], changes[rows];
+  // The ones found instead. Where they were not much better foreseen than by the last ones, a series begins; not if
+  // `well`, when all were foreseen almost to the goal.
+  static void remember(State& s, const Mask& fits, const Mask& well, const T& unit, const T (&found)[rows],
+                       const T (&foreseen)[rows]) {{
+    T now[rows];
     const T rate = T(1) / unit;
     for (int i = 0; i < rows; ++i) now[i] = rate * found[i];
-    for (int i = 0; i < rows; ++i) misses[i] = now[i] - rate * foreseen[i];
-    for (int i = 0; i < rows; ++i) changes[i] = now[i] - s.past[0].of[i];
+    auto goes_on = fits && (well || s.known < T(1.5));
+    if (any(!goes_on)) {{
+      T misses[rows], changes[rows];
+      for (int i = 0; i < rows; ++i) misses[i] = now[i] - rate * foreseen[i];
+      for (int i = 0; i < rows; ++i) changes[i] = now[i] - s.past[0].of[i];
+      goes_on = goes_on || (fits && T(2) * largest(misses) < largest(changes));
+    }}
     for (int i = 0; i < rows; ++i) append(now[i]{3});
-    const auto goes_on = fits && (s.known < T(1.5) || T(2) * largest(misses) < largest(changes));
     s.known = select(goes_on, select(s.known < T({0}.5), s.known + T(1), s.known), T(1));
   }}
 )";
@@ -89,6 +95,14 @@ std::string foresight(bool rattle) {
     if (k > 0) differences += fmt::format("{0}d_{1} = d_{2} - past_{2}", k == 1 ? "" : ", ", k, k - 1);
   }
   return solves_either + fmt::format(foresees, count - 1, known, all, numbers, members, differences, stores);
+}
+
+// In the plane sines come from their angles, so that no round-off gathers over the steps.
+std::string moves_as_foreseen(bool spatial) {
+  return std::string("    Pose free[bodies];\n    for (int i = 0; i < bodies; ++i) free[i] = s.q[i];\n") +
+         (spatial ? "    shift(s.q, moves);\n"
+                  : "    for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], moves[i]);\n    turn(s.q);\n") +
+         "    Aim B;\n    Mask aimed = T(1) < T(0);\n";
 }
 
 // In space the way of the rounds counts for large angles, which are not foreseen: they take those of the World.

@@ -16,13 +16,7 @@ std::string foresight(bool rattle);
 // --- in close() ---
 
 // Moves the poses as foreseen.
-inline constexpr const char* moves_as_foreseen = R"(    Pose free[bodies];
-    for (int i = 0; i < bodies; ++i) free[i] = s.q[i];
-    for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], moves[i]);
-    turn(s.q);
-    Aim B{};
-    Mask aimed = T(1) < T(0);
-)";
+std::string moves_as_foreseen(bool spatial);
 
 // Foreseen moves that leave slow rounds are taken back: rounds without them decide whether J is to be renewed.
 inline constexpr const char* takes_back = R"(      const auto astray = goes_on && foreseen && worst > slow * before;

@@ -46,7 +46,7 @@ constexpr const char* closing_begins = R"(    Evaluated at;
 
 constexpr const char* series_begins = R"(    T last = T(1e30);
     auto by_series = s.known > T(0.5);
-    Aim B{};
+    Aim B;
     Mask aimed = T(1) < T(0);
 )";
 
@@ -168,7 +168,7 @@ constexpr const char* joints_end = R"(    T rate[rows];
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] - d[i], s.pull[i] = (T(-1) / half) * d[i];
 )";
 constexpr const char* remembers = R"(    for (int i = 0; i < rows; ++i) found[i] = select(fails, s.lambda[i], found[i]);
-    remember(s, !fails, T(1), found, foreseen);
+    remember(s, !fails, T(1) < T(0), T(1), found, foreseen);
 )";
 
 constexpr const char* looks = R"(    T C_now[damped], rate_now[damped], K_now[triangles], given[damped], end[damped];

@@ -24,21 +24,41 @@ RowSystem::RowSystem(const RowBlocks& rows, std::vector<RowBlock> blocks) : rows
   dense_.resize(blocks_.size());
   K_.assign(size(), std::vector<int>(size(), -1));
   L_.assign(size(), std::vector<bool>(size(), false));
-  order_rows();
 }
 
-void RowSystem::order_rows() {
-  std::vector<int> rows;
-  for (const RowBlock& block : blocks_) rows.push_back(static_cast<int>(block.rows->count()));
-  std::vector<std::vector<int>> neighbours(blocks_.size());
-  for (std::size_t i = 0; i < blocks_.size(); ++i)
-    for (std::size_t k = 0; k < blocks_.size(); ++k)
-      if (i != k && share_a_body(i, k)) neighbours[i].push_back(static_cast<int>(k));
+// Blocks of constants that are coupled to one other at most come first: their elimination costs nothing, so no pivot
+// waits for them.
+void RowSystem::order_rows(const Algebra& algebra) {
+  std::vector<int> left, rows;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) left.push_back(static_cast<int>(i));
+  const auto at = [](int block) { return static_cast<std::size_t>(block); };
+  const auto couples = [&](int i, int k) { return i != k && share_a_body(at(i), at(k)); };
+  const auto take = [&](int block) {
+    for (std::size_t r = 0; r < blocks_[at(block)].rows->count(); ++r) order_.push_back(first_[at(block)] + r);
+  };
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    const int block = left[i];
+    const auto of_it = [&](int other) { return couples(block, other); };
+    if (!is_constant(algebra, at(block)) || std::ranges::count_if(left, of_it) > 1) continue;
+    take(block);
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(i--));
+  }
+  std::vector<std::vector<int>> neighbours(left.size());
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    rows.push_back(static_cast<int>(blocks_[at(left[i])].rows->count()));
+    for (std::size_t k = 0; k < left.size(); ++k)
+      if (couples(left[i], left[k])) neighbours[i].push_back(static_cast<int>(k));
+  }
   for (const Elimination& one : minimum_degree_order(rows, neighbours, 1))
-    for (const int taken : one.blocks) {
-      const auto block = static_cast<std::size_t>(taken);
-      for (std::size_t r = 0; r < blocks_[block].rows->count(); ++r) order_.push_back(first_[block] + r);
-    }
+    for (const int taken : one.blocks) take(left[at(taken)]);
+}
+
+// Its rows of K.
+bool RowSystem::is_constant(const Algebra& algebra, std::size_t block) const {
+  for (std::size_t r = 0; r < blocks_[block].rows->count(); ++r)
+    for (std::size_t i = 0; i < size(); ++i)
+      if (const int entry = K(first_[block] + r, i); entry >= 0 && !algebra.constant(entry)) return false;
+  return true;
 }
 
 bool RowSystem::share_a_body(std::size_t i, std::size_t k) const {
@@ -215,6 +235,7 @@ int RowSystem::inverse_second_pivot(Algebra& algebra, std::size_t j, int d, int 
 }
 
 void RowSystem::factor(Algebra& algebra, const Store& store) {
+  order_rows(algebra);
   const std::size_t n = order_.size();
   std::vector<double> noise(n);  // of the pivots at the start
   std::vector<std::vector<int>> U(n, std::vector<int>(n, -1)), L(U);

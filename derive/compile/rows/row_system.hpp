@@ -60,7 +60,8 @@ class RowSystem {
     int sign;
   };
 
-  void order_rows();
+  void order_rows(const Algebra& algebra);
+  bool is_constant(const Algebra& algebra, std::size_t block) const;
   bool share_a_body(std::size_t i, std::size_t k) const;
   void note_pulls(const Algebra& algebra, std::size_t block);
   std::optional<Pull> pull_of(const Algebra& algebra, std::size_t block, std::size_t row, std::size_t body) const;
@@ -77,7 +78,7 @@ class RowSystem {
   std::vector<RowBlock> blocks_;
   std::vector<std::size_t> first_;
   std::vector<std::string> names_;
-  std::vector<std::size_t> order_;                    // of elimination
+  std::vector<std::size_t> order_;                    // of elimination, from factor() on
   std::vector<Values> dense_;                         // by block
   std::map<std::array<std::size_t, 3>, Pull> pulls_;  // by block, row and body of the block
   std::vector<std::vector<int>> K_;                   // lower triangle; -1: zero

@@ -76,7 +76,7 @@ TEST(Foresight, ContinuesPolynomials) {
       if (step == 3 || step == 4) continue;
       EXPECT_NEAR(foreseen[row], step < 3 ? by_order[step] : now, 2e-13) << "step " << step;
     }
-    Chain::remember(state, true, unit, found, foreseen);
+    Chain::remember(state, true, false, unit, found, foreseen);
     EXPECT_EQ(state.known, std::min(step + 1, 5));
   }
 }

@@ -76,15 +76,16 @@ TEST(CompiledLanes, OfFloatsAreAsAlone) {
   lanes_are_as_alone<slider_crank_rk4, float, 4>();
 }
 
-// Of an angle in both halves of the turn, from one beside it and from one too far for the series. A pose that is
-// shifted by that much has the same.
+struct Pose {
+  double angle, c, s;
+};
+struct Move {
+  double w;
+};
+
+// Of an angle in both halves of the turn, from one beside it and from one too far for the series. A pose that turns by
+// that much has the same.
 TEST(CompiledArithmetic, TurnsBesideAnotherAngle) {
-  struct Pose {
-    double x, y, angle, c, s;
-  };
-  struct Move {
-    double x, y, w;
-  };
   for (int k = -400; k < 400; ++k) {
     const double from = 0.37 * k, to = from + 0.001 * k;
     double s = 0, c = 0;
@@ -94,12 +95,34 @@ TEST(CompiledArithmetic, TurnsBesideAnotherAngle) {
     sin_cos_beside<true>(std::sin(from), std::cos(from), to - from, to, s, c);
     EXPECT_NEAR(s, std::sin(to), 4e-16) << from << ", " << to;
     EXPECT_NEAR(c, std::cos(to), 4e-16) << from << ", " << to;
-    Pose pose{1, 2, from, std::cos(from), std::sin(from)};
-    shift(pose, Move{0.5, 0.25, to - from});
-    EXPECT_TRUE(pose.x == 1.5 && pose.y == 2.25 && pose.s == s && pose.c == c) << from << ", " << to;
-    EXPECT_DOUBLE_EQ(pose.angle, to);
+    Pose pose{from, std::cos(from), std::sin(from)};
+    sin_cos_after(pose, Move{to - from});
+    EXPECT_TRUE(pose.s == s && pose.c == c) << from << ", " << to;
   }
 }
+
+#if defined(__SSE2__) || defined(__aarch64__)
+// Four angles side by side have the bits that each has alone.
+TEST(CompiledArithmetic, TurnsFourPosesAsOne) {
+  for (int k = -400; k < 400; ++k) {
+    Pose poses[4], turned[4];
+    for (int i = 0; i < 4; ++i) {
+      poses[i].angle = 0.37 * k + i, turned[i].angle = poses[i].angle + 0.001 * k * i;
+      sin_cos(poses[i].angle, turned[i].s, turned[i].c);
+    }
+    sin_cos_of(poses, 0, 1, 2, 3);
+    for (int i = 0; i < 4; ++i) EXPECT_TRUE(poses[i].s == turned[i].s && poses[i].c == turned[i].c) << k << ", " << i;
+    const Four angles{turned[0].angle, turned[1].angle, turned[2].angle, turned[3].angle};
+    sin_cos_near<true>(turned, poses, angles, 0, 1, 2, 3);
+    for (int i = 0; i < 4; ++i) {
+      double s = 0, c = 0;
+      sin_cos_beside<true>(poses[i].s, poses[i].c, turned[i].angle - poses[i].angle, turned[i].angle, s, c);
+      EXPECT_TRUE(turned[i].s == s && turned[i].c == c) << k << ", " << i;
+    }
+  }
+}
+
+#endif
 
 // A State is a snapshot: its bytes are the whole run.
 TEST(CompiledState, IsASnapshot) {
