@@ -25,7 +25,18 @@ class Aim {
   Grid assembled(Algebra& algebra) const;
   int coupling(Algebra& algebra, std::size_t i, std::size_t r, const Values& of_i, std::size_t k, std::size_t s,
                const Values& of_k) const;
-  void store(Algebra& algebra, Constants& constants, const std::string& name, int op);
+  // L and DU are found place by place.
+  struct Factoring {
+    Algebra& algebra;
+    Constants& constants;
+    Grid B, L, DU;
+  };
+  int left(Factoring& f, std::size_t i, std::size_t j, std::size_t k, const std::string& name) const;
+  int own(Factoring& f, std::size_t j) const;
+  void eliminate(Factoring& f, std::size_t j);
+  // Two places that are one block of D, as in K.
+  void eliminate_pair(Factoring& f, std::size_t j);
+  void store(Factoring& f, const std::string& name, int op);
   const RowSystem& system() const { return joints_.system(); }
 
   const RowBlocks& blocks_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <tuple>
 
 #include "derive/compile/rows/components.hpp"
 #include "derive/kernel/factor.hpp"
@@ -24,6 +25,7 @@ RowSystem::RowSystem(const RowBlocks& rows, std::vector<RowBlock> blocks) : rows
   dense_.resize(blocks_.size());
   K_.assign(size(), std::vector<int>(size(), -1));
   L_.assign(size(), std::vector<bool>(size(), false));
+  is_second_.assign(size(), false);
 }
 
 // Blocks of constants that are coupled to one other at most come first: their elimination costs nothing, so no pivot
@@ -220,64 +222,104 @@ int RowSystem::inverse_pivot(Algebra& algebra, std::size_t j, int D, int diagona
                           name);
 }
 
-// In the plane, where most blocks have two rows: of the second one, without waiting for the division of the first: with
-// D_1 = det / d,
-//   det = d S - U^2,   1/D_1 = d (1 / det).
-// S: its diagonal entry after the rows before both. Where d is round-off, 1/D_1 = 1/S.
-int RowSystem::inverse_second_pivot(Algebra& algebra, std::size_t j, int d, int U, int S) const {
-  const int one = algebra.value(1), before = K(order_[j - 1], order_[j - 1]), diagonal = K(order_[j], order_[j]);
-  const int counts = algebra.sum({{d, algebra.times(algebra.input("T(64 * epsilon)"), before)}, {1, -1}});
-  const int determinant = algebra.sum({{algebra.times(d, S), algebra.product({U}, {2})}, {1, -1}});
-  const int scale = algebra.function(Fn::select, {counts, d, one});
-  const int pivot = algebra.function(Fn::select, {counts, determinant, S});
-  return algebra.times(scale, algebra.function(Fn::pivot, {pivot, algebra.times(diagonal, scale)}),
-                       "inv_D_" + std::to_string(j));
+// U of a row, and of its own pivot, less what the places before m take of it.
+int RowSystem::reduced(Factoring& f, std::size_t i, std::size_t j, std::size_t m, const std::string& name) const {
+  Summands terms;
+  if (const int k = K(order_[i], order_[j]); k >= 0) terms.add(1, k);
+  for (std::size_t k = 0; k < m; ++k)
+    if (f.U[i][k] >= 0 && f.L[j][k] >= 0) terms.add(-1, f.algebra.times(f.U[i][k], f.L[j][k]));
+  return f.algebra.sum(terms, name);
+}
+
+bool RowSystem::is_noise(Factoring& f, std::size_t j, double pivot, double noise) const {
+  return !(pivot > noise + dense::pivot_noise<double> * f.algebra.at_start(K(order_[j], order_[j])));
+}
+
+// In the plane, where most blocks have two rows, both are eliminated at once: no number waits for the division of the
+// first one, and the solution of one not for that of the other.
+bool RowSystem::begins_pair(Factoring& f, std::size_t j, int D) const {
+  if (rows_.mechanism().spatial() || j + 1 == order_.size() || redundant_[j]) return false;
+  if (order_[j + 1] != order_[j] + 1 || std::ranges::find(first_, order_[j + 1]) != first_.end()) return false;
+  const int U = reduced(f, j + 1, j, j, "");
+  if (f.algebra.is_zero(U)) return false;
+  const double of_U = f.algebra.at_start(U), share = of_U / f.algebra.at_start(D);
+  const double second = f.algebra.at_start(reduced(f, j + 1, j + 1, j, "")) - share * of_U;
+  return !is_noise(f, j + 1, second, f.noise[j + 1] + share * share * f.noise[j]);
 }
 
 void RowSystem::factor(Algebra& algebra, const Store& store) {
   order_rows(algebra);
   const std::size_t n = order_.size();
-  std::vector<double> noise(n);  // of the pivots at the start
-  std::vector<std::vector<int>> U(n, std::vector<int>(n, -1)), L(U);
-  std::vector<int> D(n, -1);  // of rows whose pivot is not that of a second row
-  // K_ij without what the places before m take of it.
-  const auto reduced = [&](std::size_t i, std::size_t j, std::size_t m, const std::string& name) {
-    Summands terms;
-    if (const int k = K(order_[i], order_[j]); k >= 0) terms.add(1, k);
-    for (std::size_t k = 0; k < m; ++k)
-      if (U[i][k] >= 0 && L[j][k] >= 0) terms.add(-1, algebra.times(U[i][k], L[j][k]));
-    return algebra.sum(terms, name);
-  };
-  for (std::size_t j = 0; j < n; ++j) {
-    const std::string at = std::to_string(j);
-    int inverse = -1;
-    for (std::size_t i = j; i < n; ++i) {
-      const std::string place = i == j ? at : fmt::format("{}_{}", i, j);
-      const int entry = reduced(i, j, j, (i == j ? "D_" : "U_") + place);
-      if (i == j) {
-        const int diagonal = K(order_[j], order_[j]);
-        noise[j] += dense::pivot_noise<double> * algebra.at_start(diagonal);
-        redundant_.push_back(!(algebra.at_start(entry) > noise[j]));
-        const bool second = !rows_.mechanism().spatial() && j > 0 && D[j - 1] >= 0 && U[j][j - 1] >= 0 &&
-                            !redundant_[j - 1] && !redundant_[j] && order_[j] == order_[j - 1] + 1 &&
-                            std::ranges::find(first_, order_[j]) == first_.end();
-        if (second) {
-          inverse = inverse_second_pivot(algebra, j, D[j - 1], U[j][j - 1], reduced(j, j, j - 1, ""));
-        } else {
-          D[j] = entry;
-          inverse = inverse_pivot(algebra, j, entry, diagonal);
-        }
-        store("inv_D_" + at, inverse);
-        continue;
-      }
-      if (algebra.is_zero(entry)) continue;
-      U[i][j] = entry;
-      L[i][j] = algebra.times(entry, inverse, "L_" + place);
-      L_[i][j] = true;
-      const double share = algebra.at_start(L[i][j]);
-      noise[i] += share * share * noise[j];
-      store("L_" + place, L[i][j]);
+  Factoring f{algebra, store, std::vector<std::vector<int>>(n, std::vector<int>(n, -1)), {}, std::vector<double>(n)};
+  f.L = f.U;
+  while (redundant_.size() < n) {
+    const std::size_t j = redundant_.size();
+    const int D = reduced(f, j, j, j, fmt::format("D_{}", j));
+    redundant_.push_back(is_noise(f, j, algebra.at_start(D), f.noise[j]));
+    f.noise[j] += dense::pivot_noise<double> * algebra.at_start(K(order_[j], order_[j]));
+    if (begins_pair(f, j, D)) eliminate_pair(f, j, D);
+    else eliminate(f, j, D);
+  }
+}
+
+void RowSystem::eliminate(Factoring& f, std::size_t j, int D) {
+  const int inverse = inverse_pivot(f.algebra, j, D, K(order_[j], order_[j]));
+  f.store(fmt::format("inv_D_{}", j), inverse);
+  for (std::size_t i = j + 1; i < order_.size(); ++i) {
+    const std::string place = fmt::format("{}_{}", i, j);
+    const int entry = reduced(f, i, j, j, "U_" + place);
+    if (f.algebra.is_zero(entry)) continue;
+    f.U[i][j] = entry;
+    f.L[i][j] = f.algebra.times(entry, inverse, "L_" + place);
+    L_[i][j] = true;
+    const double share = f.algebra.at_start(f.L[i][j]);
+    f.noise[i] += share * share * f.noise[j];
+    f.store("L_" + place, f.L[i][j]);
+  }
+}
+
+// The inverse of (a b; c d) is (d -b; -c a) / (a d - b c), but (1/a 0; 0 0) or (0 0; 0 1/d) where a row depends on
+// others.
+std::array<int, 4> RowSystem::inverse_block(Algebra& algebra, std::size_t j, const std::array<int, 4>& block,
+                                            const std::array<int, 2>& diagonal) const {
+  const auto [a, b, c, d] = block;
+  const int zero = algebra.value(0), one = algebra.value(1);
+  const int counts = algebra.sum({{a, algebra.times(algebra.input("T(64 * epsilon)"), diagonal[0])}, {1, -1}});
+  const int determinant = algebra.sum({{algebra.times(a, d), algebra.times(b, c)}, {1, -1}});
+  const int scale = algebra.function(Fn::select, {counts, a, one});
+  const int pivot = algebra.function(Fn::select, {counts, determinant, d});
+  const int rest = algebra.function(Fn::pivot, {pivot, algebra.times(diagonal[1], scale)});
+  const int of_both = algebra.function(Fn::select, {counts, rest, zero});
+  const int alone = algebra.function(Fn::pivot, {a, diagonal[0]});
+  return {algebra.function(Fn::select, {of_both, algebra.times(d, of_both), alone}, fmt::format("inv_D_{}", j)),
+          algebra.sum({{algebra.times(b, of_both)}, {-1}}), algebra.sum({{algebra.times(c, of_both)}, {-1}}),
+          algebra.times(scale, rest, fmt::format("inv_D_{}", j + 1))};
+}
+
+void RowSystem::eliminate_pair(Factoring& f, std::size_t j, int D) {
+  Algebra& algebra = f.algebra;
+  const int U = reduced(f, j + 1, j, j, fmt::format("U_{}_{}", j + 1, j)), S = reduced(f, j + 1, j + 1, j, "");
+  const auto [first, beside, same, second] =
+      inverse_block(algebra, j, {D, U, U, S}, {K(order_[j], order_[j]), K(order_[j + 1], order_[j + 1])});
+  f.store(fmt::format("inv_D_{}", j), first), f.store(fmt::format("inv_D_{}", j + 1), second);
+  f.store(fmt::format("L_{}_{}", j + 1, j), beside);
+  redundant_.push_back(false), is_second_[j + 1] = true;
+  const double share = algebra.at_start(U) / algebra.at_start(D);
+  f.noise[j + 1] +=
+      share * share * f.noise[j] + dense::pivot_noise<double> * algebra.at_start(K(order_[j + 1], order_[j + 1]));
+  for (std::size_t i = j + 2; i < order_.size(); ++i) {
+    const int a = reduced(f, i, j, j, fmt::format("U_{}_{}", i, j)),
+              b = reduced(f, i, j + 1, j, fmt::format("U_{}_{}", i, j + 1));
+    if (algebra.is_zero(a) && algebra.is_zero(b)) continue;
+    f.U[i][j] = a, f.U[i][j + 1] = b;
+    for (const auto& [place, of_a, of_b] : {std::tuple(j, first, beside), std::tuple(j + 1, beside, second)}) {
+      const std::string name = fmt::format("L_{}_{}", i, place);
+      f.L[i][place] = algebra.sum({{algebra.times(a, of_a), algebra.times(b, of_b)}, {1, 1}}, name);
+      L_[i][place] = true;
+      f.store(name, f.L[i][place]);
     }
+    const double of_b = algebra.at_start(f.L[i][j + 1]), of_a = algebra.at_start(a) / algebra.at_start(D);
+    f.noise[i] += of_a * of_a * f.noise[j] + of_b * of_b * f.noise[j + 1];
   }
 }
 
@@ -293,6 +335,8 @@ std::vector<int> RowSystem::solve(Algebra& algebra, const std::vector<int>& b, c
   }
   for (std::size_t i = n; i-- > 0;) {
     Summands terms{{algebra.times(read("inv_D_" + std::to_string(i)), y[i])}, {1}};
+    if (i > 0 && is_second_[i]) terms.add(1, algebra.times(L(i, i - 1), y[i - 1]));
+    if (i + 1 < n && is_second_[i + 1]) terms.add(1, algebra.times(L(i + 1, i), y[i + 1]));
     for (std::size_t k = i + 1; k < n; ++k)
       if (L_[k][i]) terms.add(-1, algebra.times(L(k, i), x[k]));
     lambda[order_[i]] = x[i] = algebra.sum(terms, "lambda_" + names_[order_[i]]);

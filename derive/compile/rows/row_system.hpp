@@ -31,7 +31,8 @@ class RowSystem {
   void couple(Algebra& algebra);
   // Row and column times `by`, and 1 on the diagonal.
   void soften(Algebra& algebra, std::size_t row, int by);
-  // K = L D L^T, U = L D. The numbers in names are places in the order. store("L_5_4", operation) gives what solve()
+  // K = L D L^T, U = L D. In the plane a block of two rows is one of D; L_1_0 is then the number of its inverse beside
+  // inv_D_0 and inv_D_1. The numbers in names are places in the order. store("L_5_4", operation) gives what solve()
   // reads. A row that depends on others at the start is redundant by design, as in the World: it takes no part until
   // its pivot exceeds a share of its diagonal, else round-off of its pivot would magnify that of C.
   using Store = std::function<void(const std::string& name, int op)>;
@@ -39,6 +40,10 @@ class RowSystem {
 
   // 1/D of the place j in the order, in this factor or in one of a matrix beside K, where its diagonal entry is that.
   int inverse_pivot(Algebra& algebra, std::size_t j, int D, int diagonal) const;
+  // The same of two places at once, those from which a block begins: of (a b; c d), row by row.
+  bool begins_block(std::size_t j) const { return j + 1 < is_second_.size() && is_second_[j + 1]; }
+  std::array<int, 4> inverse_block(Algebra& algebra, std::size_t j, const std::array<int, 4>& block,
+                                   const std::array<int, 2>& diagonal) const;
 
   // --- in that Algebra or another one ---
 
@@ -71,7 +76,18 @@ class RowSystem {
   int turning(Algebra& algebra, int body, const Pull& x, const Pull& y) const;
   int entry(Algebra& algebra, std::size_t i, std::size_t r, std::size_t k, std::size_t s) const;
   void couple(Algebra& algebra, std::size_t i, std::size_t k);
-  int inverse_second_pivot(Algebra& algebra, std::size_t j, int d, int U, int S) const;
+  // U = L D, of which L is found place by place; noise: of the pivots at the start.
+  struct Factoring {
+    Algebra& algebra;
+    const Store& store;
+    std::vector<std::vector<int>> U, L;
+    std::vector<double> noise;
+  };
+  int reduced(Factoring& f, std::size_t i, std::size_t j, std::size_t m, const std::string& name) const;
+  bool is_noise(Factoring& f, std::size_t j, double pivot, double noise) const;
+  bool begins_pair(Factoring& f, std::size_t j, int D) const;
+  void eliminate(Factoring& f, std::size_t j, int D);
+  void eliminate_pair(Factoring& f, std::size_t j, int D);
   int K(std::size_t i, std::size_t j) const { return K_[std::max(i, j)][std::min(i, j)]; }
 
   const RowBlocks& rows_;
@@ -84,6 +100,7 @@ class RowSystem {
   std::vector<std::vector<int>> K_;                   // lower triangle; -1: zero
   std::vector<std::vector<bool>> L_;                  // which entries are not zero
   std::vector<bool> redundant_;                       // at the start, by places in the order
+  std::vector<bool> is_second_;                       // places whose block of D has two rows, the one before included
 };
 
 }  // namespace cdot::compile
