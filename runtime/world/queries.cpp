@@ -153,7 +153,7 @@ bool BasicWorld<S>::broken(int joint) const {
 template <class S>
 std::vector<double> BasicWorld<S>::position_error(int joint) const {
   Probe<S>& probe = probe_of(*data_);
-  probe.look_at(data_->joints.at(joint));
+  probe.look_at_C(data_->joints.at(joint));
   std::vector<double> C;
   for (int r = 0; r < probe.rows(); ++r) C.push_back(probe.C(r));
   return C;
