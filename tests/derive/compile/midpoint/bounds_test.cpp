@@ -64,7 +64,10 @@ TEST(CompiledMidpoint, TellsTheForcesOfBounds) {
   EXPECT_NEAR(std::abs(state.force[Scene::shaft_slide_motor] + state.force[Scene::shaft_slide_limit]), 3 * 9.81, 1e-9);
 }
 
-TEST(CompiledMidpoint, SnapshotsKeepBounds) { cdot::snapshot_keeps<events_implicit<double>>(0.001); }
+TEST(CompiledMidpoint, SnapshotsKeepBounds) {
+  cdot::snapshot_keeps<events_implicit<double>>(0.001);
+  cdot::snapshot_keeps<bounds_implicit<double>>(0.001);
+}
 
 TEST(CompiledMidpoint, LanesWithinBoundsAreAsAlone) {
   cdot::lanes_are_as_alone<bounds_implicit>();
