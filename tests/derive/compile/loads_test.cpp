@@ -10,7 +10,6 @@
 #include "rough_rail_dop853.hpp"
 #include "rough_rail_rk4.hpp"
 #include "tests/derive/compile/beside_world.hpp"
-#include "tests/derive/compile/command.hpp"
 
 namespace {
 
@@ -66,14 +65,6 @@ TEST(CompiledLoads, StopARodThatJamsAtOnce) {
 TEST(CompiledLoads, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<rough_pins_rk4>();
   cdot::lanes_are_as_alone<rough_ball_dop853>();
-}
-
-TEST(CompiledLoads, OtherMethodsRefuseThem) {
-  const cdot::ShellResult refused = cdot::compile(scenes + "rough_ball.toml --integrator rattle");
-  EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.text.find("error: floor: cdot compile does not know floor: bounds that grow with a load by rattle"),
-            std::string::npos)
-      << refused.text;
 }
 
 }  // namespace
