@@ -27,7 +27,9 @@ template <class S>
 double small_energy(const WorldData<S>& world);
 template <class S>
 double kinetic_energy(const WorldData<S>& world, const Island<S>& island);
-// Of the rows of one joint that are springs, at the present poses and at `time` [s].
+// Of the rows of a slot, or of one joint, that are springs, at the present poses and at `time` [s].
+template <class S>
+double potential_of(const WorldData<S>& world, const Batch<S>& batch, int slot, double time, Batch<S>& one_slot);
 template <class S>
 double potential_of(const WorldData<S>& world, const JointRecord& joint, double time, Batch<S>& one_slot);
 // Where, and along which motion, a rate of change is found by the difference over 2 `epsilon` seconds.

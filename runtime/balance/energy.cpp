@@ -10,15 +10,6 @@
 namespace cdot {
 namespace {
 
-template <class S>
-double potential_of(const WorldData<S>& world, const Batch<S>& batch, int slot, double time, Batch<S>& one_slot) {
-  if (!batch.law || !batch.law->energy) return 0;
-  copy_slot(batch, slot, one_slot);
-  batch.ops->evaluate(one_slot, 0, 1, world.bodies, typename S::Scalar(time));
-  batch.ops->effective_mass(one_slot, 0, 1, world.bodies);
-  return batch.law->energy(one_slot, 0);
-}
-
 // M^-1 of a body at another pose, to which its inertia tensor turns with it.
 template <class S>
 typename S::InverseMass inverse_mass_at(const WorldData<S>& world, int body, const typename S::Pose& pose) {
@@ -39,6 +30,15 @@ typename S::Velocity moved_along(const Bodies<S>& all, int body, const typename 
 }
 
 }  // namespace
+
+template <class S>
+double potential_of(const WorldData<S>& world, const Batch<S>& batch, int slot, double time, Batch<S>& one_slot) {
+  if (!batch.law || !batch.law->energy) return 0;
+  copy_slot(batch, slot, one_slot);
+  batch.ops->evaluate(one_slot, 0, 1, world.bodies, typename S::Scalar(time));
+  batch.ops->effective_mass(one_slot, 0, 1, world.bodies);
+  return batch.law->energy(one_slot, 0);
+}
 
 template <class S>
 double power_of_stiffness(const WorldData<S>& world, const Batch<S>& batch, int slot, const Along<S>& motion,
@@ -136,6 +136,7 @@ Energy energy_of(const WorldData<S>& world, Batch<S>& one_slot) {
   template double power_of_stiffness(const WorldData<S>&, const Batch<S>&, int, const Along<S>&, Batch<S>&, \
                                      Bodies<S>&);                                                           \
   template void reserve(const WorldData<S>&, Batch<S>&);                                                    \
+  template double potential_of(const WorldData<S>&, const Batch<S>&, int, double, Batch<S>&);               \
   template double potential_of(const WorldData<S>&, const JointRecord&, double, Batch<S>&);                 \
   template double small_energy(const WorldData<S>&);                                                        \
   template double kinetic_energy(const WorldData<S>&, const Island<S>&);                                    \

@@ -6,7 +6,25 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/balance/balance.hpp"
+
 namespace cdot {
+namespace {
+
+// The numbers of a slot go on within the span `next`. Where they jump, their mover puts in the energy that rows gain.
+template <class S>
+void begin_span(WorldData<S>& world, Island<S>& island, Batch<S>& batch, int slot, double time,
+                const ProfileSpan& next) {
+  const bool jumps = batch.spans[2 * slot + 1] <= next.from;
+  const double before = jumps ? potential_of(world, batch, slot, time, world.one_slot) : 0;
+  batch.spans[2 * slot] = next.from, batch.spans[2 * slot + 1] = next.until;
+  if (!jumps) return;
+  island.evaluated = island.factored = false;  // the rows of the last step hold the numbers before the jump
+  const double after = potential_of(world, batch, slot, time, world.one_slot);
+  put_in(world, static_cast<Source>(batch.source), after - before);
+}
+
+}  // namespace
 
 template <class S>
 double begin_piece(WorldData<S>& world, Island<S>& island, double time, double h, int order) {
@@ -23,9 +41,7 @@ double begin_piece(WorldData<S>& world, Island<S>& island, double time, double h
         const int lowest = effect || drive.of_row ? 0 : 1;
         slot_until = std::min(slot_until, drive.profile.next_break(time + near, std::max(order, lowest)));
       }
-      // The rows of the last step hold the numbers before the jump.
-      if (batch->spans[2 * slot + 1] <= time + near) island.evaluated = island.factored = false;
-      batch->spans[2 * slot] = time + near, batch->spans[2 * slot + 1] = slot_until;
+      begin_span(world, island, *batch, slot, time, {time + near, slot_until});
       until = std::min(until, slot_until);
     }
   }

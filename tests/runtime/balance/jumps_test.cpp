@@ -1,0 +1,46 @@
+// A number of a spring jumps: who moves it puts in the energy that the spring gains at that moment.
+#include "tests/methods.hpp"
+#include "tests/runtime/effects/generated_effects.hpp"
+
+namespace cdot::test {
+namespace {
+
+using effects::ball;
+using effects::with;
+
+// A spring of 50 N/m holds a ball at rest until its rest length jumps from 1 m to 2 m: 50/2 1^2 = 25 J.
+World<double> world_of_a_jump(Settings settings, double at) {
+  World<double> world(settings);
+  const int body = ball(world, 1, 0, 0, 0, 2);
+  const Profile rest = Profile::table({.times = {0, at}, .values = {1, 2}, .interpolation = Interpolation::step});
+  world.add_joint(
+      {"spring", {body, world.ground()}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"k", {50}}, in_time("rest", {rest})}, {}});
+  return world;
+}
+
+TEST(Jumps, OfASpringPutInItsEnergy) {
+  for (const IntegratorRow& row : integrator_rows)
+    for (const double at : {0.37, 0.3712}) {  // at a step's end, and within one
+      World<double> world = world_of_a_jump(with(row.integrator), at);
+      for (int k = 0; k < 50; ++k) ASSERT_TRUE(world.step(0.01));
+      const Balance balance = world.balance();
+      EXPECT_NEAR(balance.put_in, 25, 1e-9) << row.name << ", jump at " << at;
+      EXPECT_NEAR(balance.taken, 0, 1e-9) << row.name << ", jump at " << at;
+      EXPECT_NEAR(world.energy(), 25, row.order == 1 ? 1 : 0.05) << row.name << ", jump at " << at;
+    }
+}
+
+// Runge-Kutta methods that choose their steps reject some on the way: each jump counts once.
+TEST(Jumps, CountOnceBesideRejectedSteps) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::dop853, Integrator::radau5}) {
+    Settings settings = with(integrator);
+    settings.local_error = 1e-9;
+    World<double> world = world_of_a_jump(settings, 0.3712);
+    for (int k = 0; k < 5; ++k) ASSERT_TRUE(world.step(0.2));
+    EXPECT_NEAR(world.balance().put_in, 25, 1e-9) << name_of(integrators, integrator);
+    EXPECT_NEAR(world.energy(), 25, 1e-6) << name_of(integrators, integrator);
+  }
+}
+
+}  // namespace
+}  // namespace cdot::test
