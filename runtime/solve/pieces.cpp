@@ -19,7 +19,8 @@ void begin_span(WorldData<S>& world, Island<S>& island, Batch<S>& batch, int slo
   const double before = jumps ? potential_of(world, batch, slot, time, world.one_slot) : 0;
   batch.spans[2 * slot] = next.from, batch.spans[2 * slot + 1] = next.until;
   if (!jumps) return;
-  island.evaluated = island.factored = false;  // the rows of the last step hold the numbers before the jump
+  // The rows and the accelerations of the last step hold the numbers before the jump.
+  island.evaluated = island.factored = island.flow.known = false;
   const double after = potential_of(world, batch, slot, time, world.one_slot);
   put_in(world, static_cast<Source>(batch.source), after - before);
 }

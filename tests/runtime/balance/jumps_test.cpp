@@ -6,6 +6,7 @@ namespace cdot::test {
 namespace {
 
 using effects::ball;
+using effects::wheel;
 using effects::with;
 
 // A spring of 50 N/m holds a ball at rest until its rest length jumps from 1 m to 2 m: 50/2 1^2 = 25 J.
@@ -39,6 +40,27 @@ TEST(Jumps, CountOnceBesideRejectedSteps) {
     for (int k = 0; k < 5; ++k) ASSERT_TRUE(world.step(0.2));
     EXPECT_NEAR(world.balance().put_in, 25, 1e-9) << name_of(integrators, integrator);
     EXPECT_NEAR(world.energy(), 25, 1e-6) << name_of(integrators, integrator);
+  }
+}
+
+// The torque on a wheel jumps at each tenth step's end, up to round-off: the sum of steps lies just before or after it.
+// Accelerations kept from the end of a step belong to the torque before.
+TEST(Jumps, AtStepEndsUpToRoundOffLeaveMotionsExact) {
+  constexpr double h = 0.001, I = 2;
+  const Profile torque = Profile::table(
+      {.times = {0, 0.01, 0.02}, .values = {4, -3, 4}, .interpolation = Interpolation::step, .beyond = Beyond::repeat});
+  double angle = 0, w = 0;
+  for (int k = 0; k < 400; ++k) {
+    const double acceleration = (k % 2 == 0 ? 4 : -3) / I, t = 10 * h;
+    angle += w * t + acceleration * t * t / 2, w += acceleration * t;
+  }
+  for (const Integrator integrator : {Integrator::rk4, Integrator::dop853, Integrator::radau5}) {
+    World<double> world(with(integrator));
+    const int body = wheel(world, I);
+    add_effect(world, 0, "angle", SpecEffect{"load", {in_time("push", {torque})}});
+    for (int k = 0; k < 4000; ++k) ASSERT_TRUE(world.step(h));
+    EXPECT_NEAR(world.place(body).angle, angle, 1e-10) << name_of(integrators, integrator);
+    EXPECT_NEAR(world.velocity(body).w, w, 1e-11) << name_of(integrators, integrator);
   }
 }
 
