@@ -165,6 +165,7 @@ TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunRes
   RunOptions trial_options;
   trial_options.from = options.from;
   if (share < 1) {
+    if (result.failed_step) return advice;  // shorter trials would not reach the step that failed
     advice.until = result.start + share * (result.time - result.start);
     // A cure of what is not yet ill is none.
     Scene begun = scene;

@@ -146,6 +146,29 @@ TEST(Balance, AJammingRodThatSlidesBySweepsIsTold) {
   EXPECT_TRUE(follow(file, options));
 }
 
+// A rod shrinks to nothing at 0.5 s, from a start that does not shrink yet. The search for an accuracy takes more than
+// a trial may, so no trial would reach the step that fails.
+TEST(Balance, ATrialThatEndsBeforeTheStepThatFailedIsNoAdvice) {
+  const TemporaryFolder folder;
+  const std::string file = written(folder, R"(
+duration = 1
+[[body]]
+name = "rod"
+mass = 1
+shape = { rod = 1 }
+[[joint]]
+type = "distance"
+bodies = ["world", "rod"]
+pa = [0, 1]
+pb = [0, 0]
+l = "1 [m] - 2 [m/s] * time"
+)");
+  const CommandResult run = cdot_run("simulate '" + file + "'");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.out.find("at t = 0.5 s failed"), std::string::npos) << run.out;
+  EXPECT_EQ(run.out.find("Tried"), std::string::npos) << run.out;
+}
+
 // Two pendulums: one hardly moves, the other turns by half a radian in a step of Euler's method.
 TEST(Balance, NamesTheJointOfTheWorstStep) {
   const TemporaryFolder folder;
