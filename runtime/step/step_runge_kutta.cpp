@@ -337,7 +337,6 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
     }
     flow.longest = std::max<T>(flow.longest, flow.length);
     flow.slivers = flow.length < T(sliver) * flow.longest ? flow.slivers + 1 : 0;
-    if (flow.length == way.to_break) flow.known = false;  // the forces jump there
     if (passed_event(flow)) {
       flow.length = go_to_event(world, island, method, time, flow.length);
       ++world.counts->events;

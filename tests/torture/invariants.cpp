@@ -383,13 +383,6 @@ Verdict judge_in(const Scene& scene, const Asked& asked) {
   }
 }
 
-// f(S{}) with the scene's space S.
-template <class F>
-auto in_space_of(const Scene& scene, F f) {
-  if (scene.dimension == Dimension::planar) return scene.single ? f(Planar<float>{}) : f(Planar<double>{});
-  return scene.single ? f(Spatial<float>{}) : f(Spatial<double>{});
-}
-
 }  // namespace
 
 Verdict judge_once(const Scene& scene, const Asked& asked) {

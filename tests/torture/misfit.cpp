@@ -11,15 +11,8 @@ namespace {
 
 constexpr double creeping = 0.01;  // of the misfit, in half of the run
 
-// f(S{}) with the scene's space S in doubles, or in its precision.
-template <class F>
-auto in_space(const Scene& scene, F f) {
-  if (scene.dimension == Dimension::planar) return scene.single ? f(Planar<float>{}) : f(Planar<double>{});
-  return scene.single ? f(Spatial<float>{}) : f(Spatial<double>{});
-}
-
 double length_of(const Scene& scene) {
-  return in_space(scene, [&](auto space) {
+  return in_space_of(scene, [&](auto space) {
     auto world = build_world_in<decltype(space)>(scene);
     return row_sizes(world).length;
   });
@@ -143,7 +136,7 @@ Mechanism nearly_misfitting(std::uint64_t seed, Wish wish) {
 
 Verdict judge_misfit(const Scene& scene) {
   try {
-    return in_space(scene, [&](auto space) { return judge_in<decltype(space)>(scene); });
+    return in_space_of(scene, [&](auto space) { return judge_in<decltype(space)>(scene); });
   } catch (const SceneError& error) {
     return verdict(Outcome::refused, error.what(), "");
   } catch (const Error& error) {

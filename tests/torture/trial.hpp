@@ -20,6 +20,13 @@ inline Verdict verdict(Outcome outcome, std::string what, std::string detail, do
   return v;
 }
 
+// f(S{}) with the scene's space S.
+template <class F>
+auto in_space_of(const Scene& scene, F f) {
+  if (scene.dimension == Dimension::planar) return scene.single ? f(Planar<float>{}) : f(Planar<double>{});
+  return scene.single ? f(Spatial<float>{}) : f(Spatial<double>{});
+}
+
 // True for bounds that hold only for short steps, by the order of the method.
 inline bool judged_by_order(const std::string& what) {
   return what.starts_with("energy") || what == "angular momentum";

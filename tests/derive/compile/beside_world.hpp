@@ -142,4 +142,23 @@ void lanes_are_as_alone() {
   EXPECT_NE(q.back()[0], q.back()[lanes - 1]);
 }
 
+template <class Compiled>
+typename Compiled::State state_after(int steps) {
+  typename Compiled::State state;
+  Compiled::reset(state);
+  for (int k = 0; k < steps; ++k) Compiled::step(state);
+  return state;
+}
+
+// solve(b, lambda, d) gives d = M^-1 J^T lambda with K lambda = b: then J d = b, whatever the way to K.
+template <class Compiled, class Solve>
+void solves_for_rows(const auto& J, double within, Solve solve) {
+  double b[Compiled::rows], lambda[Compiled::rows], rate[Compiled::rows];
+  for (int row = 0; row < Compiled::rows; ++row) b[row] = 0.2 + 0.1 * ((7 * row) % 11);
+  typename Compiled::Velocity d[Compiled::bodies];
+  solve(b, lambda, d);
+  Compiled::rates(J, d, rate);
+  for (int row = 0; row < Compiled::rows; ++row) EXPECT_NEAR(rate[row], b[row], within) << "row " << row;
+}
+
 }  // namespace cdot

@@ -105,29 +105,21 @@ TEST(Foresight, FollowsChangesOfTheStep) {
   changes_its_step<chain_10_space_rattle<double>>("specs/scenes/spatial/chain_10.toml", Integrator::rattle, 1e-10);
 }
 
-// With d = M^-1 J^T lambda, K lambda = b is J d = b, and of the matrix that aims J' d = b, J' of another pose.
+// Of K, and of the matrix that aims: J of another pose in place of J.
 template <class Compiled>
 void solves_for_its_rows() {
-  typename Compiled::State state;
-  Compiled::reset(state);
-  for (int k = 0; k < 150; ++k) Compiled::step(state);
-  double b[Compiled::rows], lambda[Compiled::rows], rate[Compiled::rows];
-  for (int row = 0; row < Compiled::rows; ++row) b[row] = 0.2 + 0.1 * ((7 * row) % 11);
-  typename Compiled::Velocity d[Compiled::bodies];
-  Compiled::solve(state.J, b, lambda, d);
-  Compiled::rates(state.J, d, rate);
-  for (int row = 0; row < Compiled::rows; ++row) EXPECT_NEAR(rate[row], b[row], 1e-12) << "row " << row;
-
+  const auto state = cdot::state_after<Compiled>(150);
+  cdot::solves_for_rows<Compiled>(state.J, 1e-12,
+                                  [&](auto& b, auto& lambda, auto& d) { Compiled::solve(state.J, b, lambda, d); });
   typename Compiled::Pose at[Compiled::bodies];
   for (int k = 0; k < Compiled::bodies; ++k) at[k] = state.q[k], at[k].angle += 0.1 * k;
   Compiled::turn(at);
   typename Compiled::Aim aim;
   Compiled::aim(at, state.time, state.J, aim);
-  Compiled::solve(state.J, aim, b, lambda, d);
   typename Compiled::Jacobian J;
   Compiled::evaluate(at, state.time, J);
-  Compiled::rates(J, d, rate);
-  for (int row = 0; row < Compiled::rows; ++row) EXPECT_NEAR(rate[row], b[row], 1e-12) << "row " << row;
+  cdot::solves_for_rows<Compiled>(J, 1e-12,
+                                  [&](auto& b, auto& lambda, auto& d) { Compiled::solve(state.J, aim, b, lambda, d); });
 }
 
 TEST(Foresight, SolvesForItsRows) {

@@ -118,18 +118,11 @@ TEST(CompiledSpace, RotationsAreExactToRoundOff) {
       EXPECT_NEAR(cdot::scenes::inverse_root(length) * std::sqrt(length), 1, 4e-16) << length;
 }
 
-// With d = M^-1 J^T K^-1 b, J d = b, whatever the way to K.
 template <class Compiled>
 void solves_for_its_rows(double within) {
-  typename Compiled::State state;
-  Compiled::reset(state);
-  for (int k = 0; k < 150; ++k) Compiled::step(state);
-  double b[Compiled::rows], lambda[Compiled::rows], rate[Compiled::rows];
-  for (int row = 0; row < Compiled::rows; ++row) b[row] = 0.2 + 0.1 * ((7 * row) % 11);
-  typename Compiled::Velocity d[Compiled::bodies];
-  Compiled::solve(state.q, state.J, b, lambda, d);
-  Compiled::rates(state.J, d, rate);
-  for (int row = 0; row < Compiled::rows; ++row) EXPECT_NEAR(rate[row], b[row], within) << "row " << row;
+  const auto state = cdot::state_after<Compiled>(150);
+  cdot::solves_for_rows<Compiled>(
+      state.J, within, [&](auto& b, auto& lambda, auto& d) { Compiled::solve(state.q, state.J, b, lambda, d); });
 }
 
 TEST(CompiledSpace, SolvesForItsRows) {
