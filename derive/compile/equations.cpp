@@ -54,7 +54,7 @@ class EquationWriter {
     if (!mechanism_.bonds.empty()) write_bonds();
     if (mechanism_.method == Method::rattle && (out_.exerts || !mechanism_.bounded.empty())) list_groups();
     // Ends that a guess passes are other ones than those that the step passes. By RATTLE forces that change with rates
-    // pull beside the joints.
+    // pull beside the joints. Rows of velocities have no error by which a wrong guess is taken back.
     if (system().size() > 0 && foresees()) write_foreseen();
     drop_unread();
     check_inputs();
@@ -110,7 +110,7 @@ class EquationWriter {
 
   bool foresees() const {
     const Method method = mechanism_.method;
-    return mechanism_.foresees && mechanism_.bonds.empty() && !mechanism_.has_loads() &&
+    return mechanism_.foresees && mechanism_.bonds.empty() && !mechanism_.has_loads() && !mechanism_.has_rates() &&
            (method == Method::euler || method == Method::rattle) && !out_.has_ends && !out_.finishes && !out_.exerts;
   }
 
