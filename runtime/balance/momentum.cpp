@@ -19,12 +19,6 @@ Vector doubles(const spatial::Vector<R>& a) {
   return {double(a.x), double(a.y), double(a.z)};
 }
 
-template <class S>
-bool pushed(const WorldData<S>& world, const Island<S>& island) {
-  return std::any_of(island.bodies.begin(), island.bodies.end(),
-                     [&](int i) { return norm(twist<double>(world.bodies.force[i]).linear) > 0; });
-}
-
 // A rigid motion of all bodies: along or about the axis `c`.
 template <class S>
 typename S::Velocity rigid_motion(const typename S::Pose& pose, int c) {
@@ -110,9 +104,12 @@ void find_free_motions(const WorldData<S>& world, Island<S>& island, Bodies<S>& 
   scatter(island, at);
   for (const Segment<S>& segment : island.segments) {
     for (int slot = segment.begin; segment.batch->ops->rows > 0 && slot < segment.end; ++slot) {
-      island.floats = island.floats && lets_move(*segment.batch, slot, at, T(world.time), 0, S::lengths);
-      island.spins_freely =
-          island.spins_freely && lets_move(*segment.batch, slot, world.bodies, T(world.time), S::lengths, S::freedom);
+      const Batch<S>& batch = *segment.batch;
+      // Springs on the rows of one vector pull along it if they are equally stiff. Those by frequency are not.
+      const bool unequal = batch.law && batch.law->by_mass && batch.law->by_mass(batch, slot);
+      island.floats = island.floats && lets_move(batch, slot, at, T(world.time), 0, S::lengths);
+      island.spins_freely = island.spins_freely &&
+                            lets_move(batch, slot, unequal ? at : world.bodies, T(world.time), S::lengths, S::freedom);
     }
   }
   for (int i : island.bodies) at.pose[i] = world.bodies.pose[i];
@@ -144,7 +141,6 @@ void compare_momentum(const WorldData<S>& world, const Island<S>& island, Balanc
     if (worst.body < 0 || !(mine.error * worst.scale <= worst.error * mine.scale)) worst = mine;
   };
   compare(island.momentum.data(), now.linear, now.force, now.linear_size + least, balance.linear);
-  // Constant forces at moving places have a torque that is not constant.
   if (island.spins_freely && !pushed(world, island))
     compare(island.momentum.data() + 3, now.spin, now.torque, now.spin_size + least_spin, balance.angular);
 }

@@ -88,13 +88,15 @@ MomentumOf<S> momentum_of(const WorldData<S>& world, const Island<S>& island) {
 
 namespace {
 
-// The motion of a free island as one rigid body with its momentum. Others stand.
+// The motion of a free island as one rigid body with its momentum. Others stand; where forces turn it, it does not
+// turn.
 template <class S>
 RigidMotion<ExactNumber<typename S::Scalar>> rigid_part(const WorldData<S>& world, const Island<S>& island) {
   if (!island.floats) return {};
   const MomentumOf<S> now = momentum_of(world, island);
   using Vector = spatial::Vector<ExactNumber<typename S::Scalar>>;
-  const Vector w = island.spins_freely ? turn_of<S>(now.inertia, now.spin) : Vector{};
+  const bool spins = island.spins_freely && !pushed(world, island);
+  const Vector w = spins ? turn_of<S>(now.inertia, now.spin) : Vector{};
   return {now.centre, inverse(now.mass) * now.linear, w, now.spin, now.inertia};
 }
 
@@ -162,7 +164,8 @@ void move_in_own_axes(WorldData<S>& world, const Island<S>& island, typename S::
   using R = ExactNumber<T>;
   Bodies<S>& all = world.bodies;
   const auto moves = rigid_part(world, island);
-  const auto turn = island.spins_freely ? turn_of_rigid<S>(moves, R(h)) : spatial::Vector<R>{};
+  const bool spins = norm(moves.w) > 0;
+  const auto turn = spins ? turn_of_rigid<S>(moves, R(h)) : spatial::Vector<R>{};
   const auto axes = spatial::turned_by(spatial::oriented<R>(0, 0, 0, 1, 0, 0, 0), turn);
   for (int i : island.bodies) {
     const auto own = S::sum(all.velocity[i], rigid<S>(all, i, moves.centre, moves.v, moves.w), T(-1));
@@ -176,11 +179,23 @@ void move_in_own_axes(WorldData<S>& world, const Island<S>& island, typename S::
   }
 }
 
+template <class S>
+void move_along(WorldData<S>& world, const Island<S>& island, typename S::Scalar h) {
+  using R = ExactNumber<typename S::Scalar>;
+  const auto way = velocity<S>(Twist<R>{R(h) * rigid_part(world, island).v, {}});
+  for (int i : island.bodies) {
+    auto& pose = world.bodies.pose[i];
+    pose.x += way.x, pose.y += way.y;
+    if constexpr (S::dimension == Dimension::spatial) pose.z += way.z;
+  }
+}
+
 #define CDOT_INSTANTIATE(S)                                                   \
   template MomentumOf<S> momentum_of(const WorldData<S>&, const Island<S>&);  \
   template double find_own_motion(WorldData<S>&, const Island<S>&);           \
   template void keep_own_motion(WorldData<S>&, const Island<S>&, double);     \
   template void move_in_own_axes(WorldData<S>&, const Island<S>&, S::Scalar); \
+  template void move_along(WorldData<S>&, const Island<S>&, S::Scalar);       \
   template void restore_momentum(WorldData<S>&, const Island<S>&, const MomentumOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -2,6 +2,8 @@
 // wrench on a mechanism that is free in space; restore_momentum() takes it back as a rigid motion.
 #pragma once
 
+#include <algorithm>
+
 #include <cdot/precision.hpp>
 
 #include "runtime/motion/vectors.hpp"
@@ -21,6 +23,13 @@ struct Momentum {
 template <class S>
 using MomentumOf = Momentum<ExactNumber<typename S::Scalar>>;
 
+// True if constant forces act on its bodies: at moving places they have a torque that is not constant.
+template <class S>
+bool pushed(const WorldData<S>& world, const Island<S>& island) {
+  return std::any_of(island.bodies.begin(), island.bodies.end(),
+                     [&](int i) { return norm(twist<double>(world.bodies.force[i]).linear) > 0; });
+}
+
 template <class S>
 MomentumOf<S> momentum_of(const WorldData<S>& world, const Island<S>& island);
 
@@ -39,5 +48,8 @@ void keep_own_motion(WorldData<S>& world, const Island<S>& island, double share)
 // motion is of second order and changes no distances, so fast turning loads no springs.
 template <class S>
 void move_in_own_axes(WorldData<S>& world, const Island<S>& island, typename S::Scalar h);
+// Moves them along with the island's linear momentum alone: their orientations keep each bit.
+template <class S>
+void move_along(WorldData<S>& world, const Island<S>& island, typename S::Scalar h);
 
 }  // namespace cdot

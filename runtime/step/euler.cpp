@@ -66,11 +66,20 @@ void advance(WorldData<S>& world, Island<S>& island, typename S::Scalar h, const
   book_kick(world, island, Impulses::drift, h);
 }
 
+// A spring by frequency stores energy by the masses without their stiffness.
+template <class S>
+void relieve(WorldData<S>& world, Island<S>& island) {
+  if (!island.stiffened) return;
+  restore_masses(world, island);
+  island.factored = false;
+}
+
 // False if the energy rises; then the state is to be restored.
 template <class S>
 bool try_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h, const Try& by) {
   const double at_start = stored_at_start(world, island);
   advance(world, island, h, by);
+  relieve(world, island);
   if (!island.evaluated) evaluate_anew(world, island, typename S::Scalar(world.time) + h);
   island.evaluated = true;
   book_stiffness(world, island);
@@ -95,11 +104,9 @@ template <class S>
 void step_gently(WorldData<S>& world, Island<S>& island, typename S::Scalar h, const Start& start) {
   go_back(world, island, start);
   if (try_step(world, island, h, {.last_step = 0})) return;
-  if (!try_without_correction(world, island, h, start)) {
-    go_back(world, island, start);
-    stand(world, island, h);
-  }
+  if (!try_without_correction(world, island, h, start)) stand(world, island, h, start);
   island.residual = find_errors(world, island, typename S::Scalar(world.time) + h);
+  island.evaluated = false;  // C alone is rounded otherwise, by radians near a pose without direction
 }
 
 template <class S>
@@ -118,6 +125,7 @@ void step_euler(WorldData<S>& world, Island<S>& island, typename S::Scalar h, do
   if (sweeps(world.settings.solver)) step_by_sweeps(world, island, h, last_step);
   else {
     advance(world, island, h, {last_step});
+    relieve(world, island);
     book_stiffness(world, island);
   }
   island.at_work().slacken();  // tension rows act only within the step

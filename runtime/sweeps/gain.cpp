@@ -40,26 +40,14 @@ Energies level_of(WorldData<S>& world, Island<S>& island, double h) {
   return level;
 }
 
-// Of the gaps of poses that were set: the kinetic energy of closing each in a step, (C / h)^2 / 2 K.
+// Of the gaps of poses that were set.
 template <class S>
 double energy_of_gaps(WorldData<S>& world, Island<S>& island, double h) {
   evaluate_present(world, island);
   island.factored = false;
   double energy = 0;
-  typename S::Scalar error[most_rows];
-  for (const auto& [batch, begin, end, whole] : island.segments) {
-    const int rows = batch->ops->rows;
-    if (batch->law && !batch->law->error) continue;
-    batch->ops->effective_mass(*batch, begin, end, world.bodies);
-    for (int slot = begin; slot < end; ++slot) {
-      if (batch->law) batch->law->error(*batch, slot, error);
-      else std::copy_n(batch->C.begin() + slot * rows, rows, error);
-      for (int r = 0; r < rows; ++r) {
-        const double K = batch->factor[slot * batch->triangle() + r * (r + 1) / 2 + r], speed = double(error[r]) / h;
-        energy += 0.5 * speed * speed * inverse(K);
-      }
-    }
-  }
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    energy += energy_of_gaps(*batch, begin, end, world.bodies, h);
   return energy;
 }
 
@@ -106,6 +94,24 @@ void book_driven(WorldData<S>& world, const Island<S>& island, double sign) {
 }  // namespace
 
 template <class S>
+double energy_of_gaps(Batch<S>& batch, int begin, int end, const Bodies<S>& bodies, double h) {
+  const int rows = batch.ops->rows;
+  if (batch.law && !batch.law->error) return 0;
+  batch.ops->effective_mass(batch, begin, end, bodies);
+  double energy = 0;
+  typename S::Scalar error[most_rows];
+  for (int slot = begin; slot < end; ++slot) {
+    if (batch.law) batch.law->error(batch, slot, error);
+    else std::copy_n(batch.C.begin() + slot * rows, rows, error);
+    for (int r = 0; r < rows; ++r) {
+      const double K = batch.factor[slot * batch.triangle() + r * (r + 1) / 2 + r], speed = double(error[r]) / h;
+      energy += 0.5 * speed * speed * inverse(K);
+    }
+  }
+  return energy;
+}
+
+template <class S>
 double stored(const WorldData<S>& world, const Island<S>& island) {
   double energy = world.accounts.taken - world.accounts.put_in;
   for (const Segment<S>& segment : island.segments)
@@ -124,10 +130,16 @@ double stored_at_start(WorldData<S>& world, Island<S>& island) {
 
 template <class S>
 void open_level(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
-  if (island.levelled) return;
-  if (!island.evaluated) island.gained = island.gained - energy_of_gaps(world, island, double(h));
-  island.level = level_of(world, island, double(last_step > 0 ? typename S::Scalar(last_step) : h)).kept;
-  island.levelled = true;
+  const auto of_level = last_step > 0 ? typename S::Scalar(last_step) : h;
+  if (!island.levelled) {
+    if (!island.evaluated) island.gained = island.gained - energy_of_gaps(world, island, double(h));
+    island.level = level_of(world, island, double(of_level)).kept;
+    island.levelled = true;
+  }
+  if (of_level == h) return;
+  // A step of another length keeps another energy. A debt that is due to h/2 F v pays for nothing.
+  const double level = level_of(world, island, double(h)).kept;
+  island.gained = island.gained + level - island.level, island.level = level;
 }
 
 template <class S>
@@ -146,11 +158,12 @@ bool take_gain(WorldData<S>& world, Island<S>& island, double h, double stored) 
 }
 
 template <class S>
-void move_slowly(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double speed) {
+void move_slowly(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double speed, bool turning) {
   find_own_motion(world, island);
   keep_own_motion(world, island, speed);
   const auto momentum = island.floats ? momentum_of(world, island) : MomentumOf<S>{};
-  move_in_own_axes(world, island, h);
+  if (turning) move_in_own_axes(world, island, h);
+  else move_along(world, island, h);
   if constexpr (S::has_gyroscopes) set_inertias(world, island);
   if (island.floats) restore_momentum(world, island, momentum, typename S::Scalar(0));
   island.evaluated = island.factored = false;
@@ -187,33 +200,45 @@ void go_back(WorldData<S>& world, Island<S>& island, const Start& start) {
   island.gained = start.gained, island.level = start.level;
 }
 
+// True if the bodies stand at no more energy than they had. They turn with the island, unless `turning` is false.
 template <class S>
-void stand(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+bool try_to_stand(WorldData<S>& world, Island<S>& island, typename S::Scalar h, bool turning) {
   using T = typename S::Scalar;
   const double at_start = stored_at_start(world, island);
   book_driven(world, island, -1);
   apply_forces(world, island, h);
-  move_slowly(world, island, h, 0);
+  move_slowly(world, island, h, 0, turning);
   evaluate_anew(world, island, T(world.time) + h);
   book_driven(world, island, 1);
   book_stiffness(world, island);
   factorize_rows(world, island);
   for (const auto& [batch, begin, end, whole] : island.segments)
     std::fill(batch->lambda.begin() + begin * batch->ops->rows, batch->lambda.begin() + end * batch->ops->rows, T(0));
-  take_gain(world, island, double(h), stored(world, island) - at_start);
+  const bool paid = take_gain(world, island, double(h), stored(world, island) - at_start);
   island.evaluated = true;
   island.factored = !island.solver->exact;
+  return paid;
 }
 
-#define CDOT_INSTANTIATE(S)                                                \
-  template double stored(const WorldData<S>&, const Island<S>&);           \
-  template double stored_at_start(WorldData<S>&, Island<S>&);              \
-  template void open_level(WorldData<S>&, Island<S>&, S::Scalar, double);  \
-  template bool take_gain(WorldData<S>&, Island<S>&, double, double);      \
-  template void move_slowly(WorldData<S>&, Island<S>&, S::Scalar, double); \
-  template Start keep_start(WorldData<S>&, Island<S>&);                    \
-  template void go_back(WorldData<S>&, Island<S>&, const Start&);          \
-  template void stand(WorldData<S>&, Island<S>&, S::Scalar);
+// Near a pose without direction the round-off of a common rotation turns the angle of a spring by radians.
+template <class S>
+void stand(WorldData<S>& world, Island<S>& island, typename S::Scalar h, const Start& start) {
+  for (const bool turning : {true, false}) {
+    go_back(world, island, start);
+    if (try_to_stand(world, island, h, turning)) return;
+  }
+}
+
+#define CDOT_INSTANTIATE(S)                                                      \
+  template double energy_of_gaps(Batch<S>&, int, int, const Bodies<S>&, double); \
+  template double stored(const WorldData<S>&, const Island<S>&);                 \
+  template double stored_at_start(WorldData<S>&, Island<S>&);                    \
+  template void open_level(WorldData<S>&, Island<S>&, S::Scalar, double);        \
+  template bool take_gain(WorldData<S>&, Island<S>&, double, double);            \
+  template void move_slowly(WorldData<S>&, Island<S>&, S::Scalar, double, bool); \
+  template Start keep_start(WorldData<S>&, Island<S>&);                          \
+  template void go_back(WorldData<S>&, Island<S>&, const Start&);                \
+  template void stand(WorldData<S>&, Island<S>&, S::Scalar, const Start&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

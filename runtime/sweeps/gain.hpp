@@ -7,9 +7,15 @@
 
 namespace cdot {
 
-// Call before the poses of a step of h change: measures the energy of an island that changed from outside.
+// Call before the poses of a step of h change: measures the energy of an island that changed from outside, or whose
+// last step had another length.
 template <class S>
 void open_level(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step);
+
+// The kinetic energy of closing each gap of the slots [begin, end) in a step of h, (C / h)^2 / 2 K. C must be that of
+// these poses; writes K.
+template <class S>
+double energy_of_gaps(Batch<S>& batch, int begin, int end, const Bodies<S>& bodies, double h);
 
 // The energy of springs, less what was put in and plus what was taken. C must be that of the present poses.
 template <class S>
@@ -33,12 +39,13 @@ Start keep_start(WorldData<S>& world, Island<S>& island);
 template <class S>
 void go_back(WorldData<S>& world, Island<S>& island, const Start& start);
 
-// The poses at the end of the step, where `speed` is left of the motion of bodies against each other.
+// The poses at the end of the step, where `speed` is left of the motion of bodies against each other. An island that
+// spins freely turns, or keeps its orientation.
 template <class S>
-void move_slowly(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double speed);
+void move_slowly(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double speed, bool turning = true);
 
-// A step in which no row acts: the bodies stand against each other.
+// A step from that start in which no row acts: the bodies stand against each other.
 template <class S>
-void stand(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
+void stand(WorldData<S>& world, Island<S>& island, typename S::Scalar h, const Start& start);
 
 }  // namespace cdot

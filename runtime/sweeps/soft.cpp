@@ -183,8 +183,7 @@ void step_without_gain(WorldData<S>& world, Island<S>& island, typename S::Scala
     go_back(world, island, start);
     if (try_step(world, island, h, {.speed = speed})) return;
   }
-  go_back(world, island, start);
-  stand(world, island, h);
+  stand(world, island, h, start);
 }
 
 }  // namespace

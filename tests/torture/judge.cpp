@@ -87,6 +87,8 @@ Verdict judge_swept(const Scene& scene, std::uint64_t seed) {
 Verdict judge(const Scene& scene, const Asked& asked) {
   try {
     if (asked.swept) return judge_swept(scene, *asked.swept);
+  } catch (const SceneError& error) {
+    return verdict(Outcome::refused, error.what(), "");
   } catch (const Error& error) {
     return verdict(Outcome::refused, error.what(), "");
   }

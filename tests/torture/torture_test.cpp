@@ -171,6 +171,24 @@ TEST(Torture, FoundAndMended) {
   });
 }
 
+// Their titles tell the seed that draws the steps.
+TEST(Torture, FoundBySweeps) {
+  each_scene_in(CDOT_FOUND "/swept", [](const std::string& file, const Scene& scene) {
+    Asked asked;
+    asked.swept = std::stoull(scene.title.substr(5), nullptr, 16);
+    const Verdict verdict = judge(scene, asked);
+    EXPECT_EQ(verdict.outcome, Outcome::held)
+        << file << ": " << verdict.detail << ": " << verdict.value << ", at most " << verdict.bound;
+  });
+}
+
+// Closing its gaps in a step takes more energy than there is.
+TEST(Torture, StartsWithGapsAreNotJudgedBySweeps) {
+  Asked asked;
+  asked.swept = 0x77359469;
+  EXPECT_EQ(judge(generate(*asked.swept, {.steps = 30}).scene, asked).outcome, Outcome::limited);
+}
+
 TEST(Torture, FoundMisfitsStay) {
   each_scene_in(CDOT_FOUND "/misfit", [](const std::string& file, const Scene& scene) {
     for (const Integrator integrator :

@@ -39,5 +39,28 @@ TEST(FreeBodies, EnergyIsAccountedFor) {
   }
 }
 
+// Two bodies turn about each other on a soft pin that opens.
+Balance turn_on_a_pin(const Method& method, const Softness& soft) {
+  World<double> world(method.settings());
+  const int a = world.add_body({.x = -1, .vy = -0.5, .mass = 1, .inertia = 0.4});
+  const int b = world.add_body({.x = 1, .vy = 1, .w = 2, .mass = 2, .inertia = 0.3});
+  world.add_joint({"revolute", {a, b}, {{"pa", {1, 0}}, {"pb", {-1, 0}}}, soft});
+  for (int k = 0; k < 500; ++k) EXPECT_TRUE(world.step(1e-3));
+  return world.balance();
+}
+
+// The rows x and y of a pin have the force -k_x C_x, -k_y C_y, along C only if k_x = k_y. By frequency k_r = w^2 /
+// K_rr.
+TEST(FreeBodies, OnlyEqualSpringsOfAVectorKeepTheSpin) {
+  for (const Method& method : methods()) {
+    if (method.solver == Solver::iterative) continue;
+    const Balance equal = turn_on_a_pin(method, {.by_frequency = false, .stiffness = 20});
+    EXPECT_EQ(equal.angular.body, 0) << method.name();
+    const double torque = method.order() == 1 ? 3e-3 : 1e-5;
+    EXPECT_LT(equal.angular.error, torque * equal.angular.scale) << method.name();
+    EXPECT_EQ(turn_on_a_pin(method, {.frequency = 1}).angular.body, -1) << method.name();
+  }
+}
+
 }  // namespace
 }  // namespace cdot::test::free_bodies_test

@@ -6,6 +6,7 @@
 #include <cdot/balance.hpp>
 
 #include "runtime/motion/vectors.hpp"
+#include "runtime/sweeps/gain.hpp"
 
 namespace cdot::test {
 namespace {
@@ -69,6 +70,19 @@ double energy_of_round_off(const BasicWorld<S>& world, double h) {
   return sum;
 }
 
+// Of the gaps of a start, which a step may close at once.
+template <class S>
+double energy_of_gaps(BasicWorld<S>& world, double h) {
+  const WorldData<S>& state = world.data();
+  double energy = 0;
+  for (const auto& batch : state.batches) {
+    Batch<S> rows = *batch;  // a copy, because the next step may start from the World's own rows
+    rows.ops->evaluate(rows, 0, rows.count(), state.bodies, typename S::Scalar(state.time));
+    energy += cdot::energy_of_gaps(rows, 0, rows.count(), state.bodies, h);
+  }
+  return energy;
+}
+
 template <class S>
 SweptRise watch(const Scene& scene, const SweptWay& way) {
   BasicWorld<S> world = build_world_in<S>(scene);
@@ -81,6 +95,7 @@ SweptRise watch(const Scene& scene, const SweptWay& way) {
   balance.look(world.balance());
   const double longest = way.jitter.longest * way.unit / way.substeps;
   const double shortest = way.jitter.shortest * way.unit / way.substeps;
+  const double of_gaps = energy_of_gaps(world, shortest);
   double power = power_of_forces(world, scene, longest), missed = energy_of_round_off(world, shortest);
   for (int k = 0; !seen.fails && world.time() < way.duration; ++k) {
     seen.fails = !world.step(way.jitter.length(k) * way.unit);
@@ -89,6 +104,7 @@ SweptRise watch(const Scene& scene, const SweptWay& way) {
     power = std::max(power, power_of_forces(world, scene, longest));
     missed += way.substeps * missed_by_turning(world, way.jitter.length(k) * way.unit / way.substeps);
   }
+  seen.starts = of_gaps <= slight * balance.risen.scale;
   seen.risen = balance.risen.share(), seen.time = balance.risen.time;
   if (power + missed > 0) seen.bound += (longest * power + missed) / balance.risen.scale;
   return seen;

@@ -25,7 +25,8 @@ struct SweptWay {
 };
 
 struct SweptRise {
-  bool starts = false;         // on its joints and within its ends: closing the gaps of a start may lift bodies
+  // On its joints and within its ends: closing the gaps of a start may lift bodies, and takes energy.
+  bool starts = false;
   bool fails = false;          // a step, and says so
   double risen = 0, time = 0;  // BalanceWatch::risen, as a share, and when [s]
   // Of risen. Symplectic Euler itself is off by h/2 F v at both ends, of all forces on bodies, by the turning of
