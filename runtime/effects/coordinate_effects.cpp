@@ -12,8 +12,8 @@
 
 #include "runtime/effects/effect.hpp"
 #include "runtime/rows/parameters.hpp"
+#include "runtime/state/checks.hpp"
 #include "runtime/state/drives.hpp"
-#include "runtime/state/probe.hpp"
 
 namespace cdot {
 namespace {

@@ -7,7 +7,7 @@
 #include <cdot/detail/joint_table.hpp>
 #include <cdot/spaces.hpp>
 
-#include "runtime/state/probe.hpp"
+#include "runtime/state/checks.hpp"
 
 namespace cdot {
 namespace {

@@ -42,20 +42,29 @@ class Probe {
     return batch_.rate;
   }
 
-  // True if the law of an effect has a force and an energy here. Call Cdot() first.
-  bool has_value(const Law<S>& law) {
+  // The forces of an effect's law along its rows, at the present rates.
+  std::vector<T> forces(const Law<S>& law) {
+    Cdot();
     batch_.law = &law;
     batch_.factor.assign(1, T(1));  // laws of tapes are told the effective mass, read or not
-    T force[most_rows];
-    law.force(batch_, 0, batch_.rate.data(), force);
-    return std::all_of(force, force + rows(), [](T F) { return std::isfinite(F); }) &&
+    std::vector<T> force(static_cast<size_t>(rows()));
+    law.force(batch_, 0, batch_.rate.data(), force.data());
+    return force;
+  }
+
+  // True if the law of an effect has a force and an energy here.
+  bool has_value(const Law<S>& law) {
+    const std::vector<T> force = forces(law);
+    return std::all_of(force.begin(), force.end(), [](T F) { return std::isfinite(F); }) &&
            (!law.energy || std::isfinite(law.energy(batch_, 0)));
   }
 
-  // True if C = 0 is a kink of C, as at a distance of length 0. A step along the row's M^-1 J^T then changes C by as
+  // The acceleration of the row's coordinate by a force of 1 along it: J M^-1 J'.
+  T mobility(int row) { return pull_row(row); }
+
+  // True at a kink of C, as where two points of a distance meet. A step along the row's M^-1 J^T then changes C by as
   // much as the opposite step, so J does not predict the change of C.
   bool at_kink(int row) {
-    if (!(std::abs(C(row)) <= 1e-9)) return false;
     const T promised = pull_row(row);
     if (!(promised > T(0))) return false;
     // A small joint may have a kink nearby, and a large one does not resolve small steps. A kink must show at every
@@ -281,104 +290,6 @@ bool is_soft(const WorldData<S>& world, const JointRecord& joint) {
   if (joint.places.empty()) return false;
   const Law<S>* law = world.batches[joint.places[0].batch]->law;
   return law && !law->reported;
-}
-
-inline constexpr const char* why_it_jumps =
-    "it jumps at the smallest motion of a body, as an angle does between axes that point in opposite directions. "
-    "Turn one of the joint's frames round";
-
-// Throws Error if a coordinate for an effect jumps here.
-template <class S>
-void check_value(const WorldData<S>& world, const JointRecord& record, int coordinate) {
-  const JointType& type = joint_types(S::dimension)[record.type];
-  Probe<S> probe(world);
-  probe.look_at(record, coordinate);
-  if (probe.jumping_row() >= 0)
-    throw Error(fmt::format("coordinate `{}` of joint `{}` has no value here: {}", type.coordinates[coordinate].name,
-                            type.name, why_it_jumps));
-}
-
-// " (l = -1, ratio = 0)": the scalars among a joint's parameters.
-inline std::string scalars_of(const JointType& type, const std::vector<double>& numbers) {
-  std::string text;
-  for (const ParameterInfo& info : type.parameters)
-    if (info.kind == ParameterKind::scalar)
-      text += fmt::format("{}{} = {:.6g}", text.empty() ? "" : ", ", info.name, numbers[info.offset]);
-  return text.empty() ? text : " (" + text + ")";
-}
-
-// Throws Error if a row has no value here, or if no pose satisfies it. Rows of effects are no constraints.
-template <class S>
-void check_values(Probe<S>& probe, const JointType& type, const JointRecord& record) {
-  for (const ParameterInfo& info : type.parameters)
-    if (info.kind == ParameterKind::scalar && probe.jumps_at_zero(info.offset))
-      throw Error(fmt::format("joint `{}` has no meaning at {} = 0, by which it divides. Likely fix: {} = 1", type.name,
-                              info.name, info.name));
-  for (int r = 0; r < probe.rows() && !type.is_effect; ++r) {
-    const double C = probe.C(r);
-    const bool one_sided = type.row_kinds[r] == RowKind::inequality;
-    if (type.row_kinds[r] == RowKind::velocity || std::abs(C) <= 1e-4 || (one_sided && C > 0)) continue;
-    if (!probe.can_be_satisfied(r, one_sided))
-      throw Error(
-          fmt::format("row {} of joint `{}` can hold at no pose: C is {:.3g} here. Likely fix: the sign of a "
-                      "length among its parameters{}",
-                      r + 1, type.name, C, scalars_of(type, record.parameters)));
-    probe.look_at(record);
-  }
-}
-
-// Throws Error if a bounded row has a bound without a value, or its lower bound above its upper one.
-template <class S>
-void check_bounds(const WorldData<S>& world, const JointRecord& record) {
-  const JointType& type = joint_types(S::dimension)[record.type];
-  Probe<S> probe(world);
-  const std::vector<typename S::Scalar> numbers(record.parameters.begin(), record.parameters.end());
-  for (const BoundedEntry<S>& row : joint_entries<S>()[record.type].bounded) {
-    check_value(world, record, row.coordinate);
-    probe.look_at(record, row.coordinate);
-    RowBounds<typename S::Scalar> B;
-    row.bounds(typename S::Scalar(probe.C(0)), numbers.data(), typename S::Scalar(world.time), B);
-    if (!(B.lower <= B.upper) || !std::isfinite(B.rate))
-      throw Error(
-          fmt::format("row `{}` of effect `{}` has bounds from {:.6g} to {:.6g}: the lower one must not lie "
-                      "above the upper one{}",
-                      row.name, type.name, double(B.lower), double(B.upper), scalars_of(type, record.parameters)));
-  }
-}
-
-inline Error effect_without_value(const JointType& type, const std::vector<double>& numbers) {
-  return Error(
-      fmt::format("effect `{}` has no finite force and energy here{}. Likely fix: the sign of a parameter, or "
-                  "another place at the start",
-                  type.name, scalars_of(type, numbers)));
-}
-
-// Throws Error if a row has no value here, jumps here, has its kink at C = 0, or holds nowhere. Velocity rows have no
-// C. A soft row is a spring and may have a kink.
-template <class S>
-void check_rows(const WorldData<S>& world, const JointRecord& record, bool soft) {
-  const JointType& type = joint_types(S::dimension)[record.type];
-  Probe<S> probe(world);
-  probe.look_at(record);
-  check_values(probe, type, record);
-  check_bounds(world, record);
-  probe.look_at(record);
-  if (const Law<S>* law = joint_entries<S>()[record.type].law) {
-    probe.Cdot();
-    if (!probe.has_value(*law)) throw effect_without_value(type, record.parameters);
-  }
-  if (const int row = probe.jumping_row(); row >= 0)
-    throw Error(fmt::format("row {} of joint `{}` has no value here: {}", row + 1, type.name, why_it_jumps));
-  if (soft) return;
-  for (size_t r = 0; r < type.row_kinds.size(); ++r) {
-    if (type.row_kinds[r] == RowKind::velocity) continue;
-    probe.look_at(record);
-    if (probe.at_kink(static_cast<int>(r)))
-      throw Error(
-          fmt::format("row {} of joint `{}` has no direction here: C = 0 at its kink, as a distance of length 0. Hold "
-                      "the points together with a `revolute`",
-                      r + 1, type.name));
-  }
 }
 
 }  // namespace cdot

@@ -6,6 +6,7 @@
 #include "runtime/balance/balance.hpp"
 #include "runtime/rows/parameters.hpp"
 #include "runtime/state/add_rows.hpp"
+#include "runtime/state/checks.hpp"
 #include "runtime/state/drives.hpp"
 #include "runtime/state/probe.hpp"
 #include "runtime/world/islands.hpp"

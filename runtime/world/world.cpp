@@ -10,9 +10,9 @@
 #include "runtime/rows/laws.hpp"
 #include "runtime/rows/parameters.hpp"
 #include "runtime/state/add_rows.hpp"
+#include "runtime/state/checks.hpp"
 #include "runtime/state/drives.hpp"
 #include "runtime/state/gyroscopes.hpp"
-#include "runtime/state/probe.hpp"
 #include "runtime/text/spelling.hpp"
 #include "runtime/world/islands.hpp"
 

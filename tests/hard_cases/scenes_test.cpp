@@ -168,19 +168,30 @@ TEST(HardCasesInScenes, DistanceBetweenCoincidentPoints) {
   expect_finite_in_float(scene);
 }
 
-// A distance of length 0 has no direction on C = 0: refused in the joint's line, with a replacement.
-TEST(HardCasesInScenes, DistanceOfLengthZeroIsRefused) {
-  const Scene scene = read_scene(std::string_view("[[body]]\nname = \"ball\"\nmass = 1\nshape = { disc = 1 }\n"
-                                                  "[[joint]]\nname = \"zero\"\ntype = \"distance\"\n"
-                                                  "bodies = [\"world\", \"ball\"]\npa = [0, 0]\npb = [0, 0]\nl = 0\n"),
-                                 "zero.toml");
+// Checks that build_world() refuses a ball at the anchor with these lines, in their first line and with a fix.
+void expect_refused(const std::string& lines, const std::string& named, const std::string& fix) {
+  const Scene scene = read_scene("[[body]]\nname = \"ball\"\nmass = 1\nshape = { disc = 1 }\n" + lines, "zero.toml");
   try {
     build_world<double>(scene);
     FAIL() << "accepted";
   } catch (const SceneError& error) {
-    EXPECT_EQ(std::string(error.what()).find("zero.toml:5:1: error: zero: "), 0u) << error.what();
-    EXPECT_NE(std::string(error.what()).find("revolute"), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()).find("zero.toml:5:1: error: " + named), 0u) << error.what();
+    EXPECT_NE(std::string(error.what()).find(fix), std::string::npos) << error.what();
   }
+}
+
+// A distance of length 0 has no direction on C = 0: refused in the joint's line, with a replacement.
+TEST(HardCasesInScenes, DistanceOfLengthZeroIsRefused) {
+  expect_refused(
+      "[[joint]]\nname = \"zero\"\ntype = \"distance\"\nbodies = [\"world\", \"ball\"]\n"
+      "pa = [0, 0]\npb = [0, 0]\nl = 0\n",
+      "zero: ", "revolute");
+}
+
+// So is a spring that pushes from there.
+TEST(HardCasesInScenes, SpringThatPushesFromLengthZeroIsRefused) {
+  expect_refused("[[spring]]\nbodies = [\"world\", \"ball\"]\nstiffness = 100\nrest = 1\n", "a spring 1 away",
+                 "a rest of 0");
 }
 
 TEST(HardCasesInScenes, PulleyAtZeroRope) {

@@ -82,6 +82,26 @@ void choose_origin(const Scene& scene, BasicWorld<S>& world) {
   if (distance > far_away * apart) world.set_origin(centre[0], centre[1], centre[2]);
 }
 
+// Parts of a scene that the World refuses, each reported in its line.
+struct Refusals {
+  const Scene& scene;
+  std::string report{};
+  int mistakes = 0;
+
+  template <class Add>
+  void attempt(const Span& where, const std::string& name, Add add) {
+    try {
+      add();
+    } catch (const Error& error) {
+      report += scene.source->paragraph("error", where, name + error.what(), "");
+      ++mistakes;
+    }
+  }
+  void raise() const {
+    if (mistakes > 0) throw SceneError(report, mistakes);
+  }
+};
+
 }  // namespace
 
 Vec3 position_of(const SceneBody& body, Dimension dimension) {
@@ -98,18 +118,12 @@ BasicWorld<S> build_world_in(const Scene& scene) {
     if constexpr (S::dimension == Dimension::planar) world.add_body(body.definition);
     else world.add_body(body.spatial);
   }
-  std::string report;
-  int mistakes = 0;
-  for (const SceneJoint& joint : scene.joints) {
-    try {
-      add_joint(world, joint);
-    } catch (const Error& error) {
-      report += scene.source->paragraph("error", joint.where, fmt::format("{}: {}", joint.name, error.what()), "");
-      ++mistakes;
-    }
-  }
-  if (mistakes > 0) throw SceneError(report, mistakes);
-  for (const SpringDefinition& spring : scene.springs) add_spring(world, spring);
+  Refusals refusals{scene};
+  for (const SceneJoint& joint : scene.joints)
+    refusals.attempt(joint.where, joint.name + ": ", [&] { add_joint(world, joint); });
+  for (const SceneSpring& spring : scene.springs)
+    refusals.attempt(spring.where, "", [&] { add_spring(world, spring); });
+  refusals.raise();
   move_to_start(world, scene);
   return world;
 }

@@ -107,9 +107,9 @@ std::optional<std::vector<double>> read_two_axes_in_world(Entry& joint, const st
 // A type may have a number of its own that is called `start`, as rolling has: a table then gives the coordinates, a
 // number the parameter.
 bool means_coordinates(Entry& joint, const JointType& type, const std::string& key) {
+  if (key != start_key && key != start_rate_key) return false;
   const auto own = std::ranges::find(type.parameters, key, &ParameterInfo::name);
-  if (own == type.parameters.end()) return key == start_key || key == start_rate_key;
-  return own->kind == ParameterKind::scalar && joint.is_table(key);
+  return own == type.parameters.end() || (own->kind == ParameterKind::scalar && joint.is_table(key));
 }
 
 // The numbers of one parameter in the frame of its body. Nothing if it is wrong or takes its default.
@@ -323,7 +323,7 @@ void read_springs(Entry& top, const BodyNames& names, Scene& scene) {
     SpringReading read{names, used};
     read_keys(entry, spring_keys, scene.dimension, read);
     entry.close();
-    scene.springs.push_back(read.spring);
+    scene.springs.push_back({read.spring, entry.header()});
   }
 }
 

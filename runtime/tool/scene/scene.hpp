@@ -71,6 +71,10 @@ struct SceneJoint {
   std::vector<CoordinateStart> starts;
 };
 
+struct SceneSpring : SpringDefinition {
+  Span where{};  // its header in the file
+};
+
 // A quantity of a run that an expression reads.
 struct Measured {
   enum What {
@@ -139,7 +143,7 @@ struct Scene {
   bool project = false;                    // project an inconsistent start onto C = 0
   std::vector<SceneBody> bodies;
   std::vector<SceneJoint> joints;
-  std::vector<SpringDefinition> springs;
+  std::vector<SceneSpring> springs;
   std::vector<Sensor> sensors;
   std::vector<WrittenProfile> profiles;    // the functions of time that its numbers follow
   std::shared_ptr<const Mistakes> source;  // to report errors of the World in its lines

@@ -231,7 +231,7 @@ void add_point_spring(Random& random, const Scales& scales, Scene& scene) {
   spring.stiffness = scales.mass * scales.rate * scales.rate * random.log_between(0.1, 100);
   spring.rest_length = scales.length * random.between(0, 2);
   if (random.chance(0.5)) spring.damping = 0.1 * spring.stiffness / scales.rate;
-  scene.springs.push_back(spring);
+  scene.springs.push_back({spring, {}});
 }
 
 void push(Random& random, const Scales& scales, SceneBody& body) {

@@ -71,6 +71,20 @@ torque = "0.5 [N*m/s] * time"
   }
 }
 
+// A scalar parameter of a joint, by a table as well: 3 N m/s * t for a second, on 0.5 kg m^2.
+TEST(ScenesInTime, ATableTurnsABody) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "turn.csv") << "time, M\n0, 0\n1, 3\n";
+  std::ofstream(folder / "scene.toml") << settings_in_time << wheel_in_time << R"(
+[[joint]]
+type = "couple"
+bodies = ["wheel"]
+M = { table = "turn.csv", column = "M" }
+)";
+  const auto frames = frames_of(read_scene((folder / "scene.toml").string()));
+  for (const Frame& frame : frames) EXPECT_NEAR(frame.bodies[0].w, 3 * frame.time * frame.time, 1e-12) << frame.time;
+}
+
 // A column in degrees is one in radians.
 TEST(ScenesInTime, AColumnHasAUnit) {
   const TemporaryFolder folder;
