@@ -189,6 +189,7 @@ class EquationWriter {
     for (std::size_t b = 0; b < mechanism_.bounded.size(); ++b) {
       out_.is_rate += std::string(b == 0 ? "" : ", ") + (prescribes_rate(blocks_, b) ? "true" : "false");
       out_.waits += std::string(b == 0 ? "" : ", ") + (waits(blocks_, b) ? "true" : "false");
+      out_.cones += fmt::format("{}{}", b == 0 ? "" : ", ", mechanism_.bounded[b].cone);
       out_.has_ends |= has_ends(blocks_, b), out_.has_events |= has_events(blocks_, b);
     }
     if (out_.has_events) out_.distances = distances_of(blocks_, out_.constants);

@@ -45,6 +45,7 @@ struct Equations {
   Program weigh, stiffen, improve;
   // Of rows with bounds:
   std::string is_rate;  // "true, false", by row
+  std::string cones;    // "-1, 1, 1", by row: the first row of its cone
   bool has_ends = false, has_events = false;
   std::string waits;  // "true, false", by row: it waits for an event
   Program reach;      // q, time, J -> B: their part in a projection

@@ -79,7 +79,7 @@ class HeaderWriter {
   }
 
   void write_head() {
-    const bool calls = calls_functions(equations_) || has().bonds || (has().midpoint && has().drags);
+    const bool calls = calls_functions(equations_) || has().bonds || has().cones || (has().midpoint && has().drags);
     text_ += head_of(mechanism_, request_.command, calls || mechanism_.spatial());
     if (mechanism_.spatial() && has().midpoint) text_ += tension;
     line("namespace cdot::scenes {");
@@ -204,7 +204,7 @@ class HeaderWriter {
                          ", const T& h, Velocity (&next)[bodies]" + (has().rows ? ", T (&lambda)[rows]" : "") +
                          (has().bounded ? ", Bounded& B)" : ")"),
                      equations_.kick);
-    if (has().corrects_loads()) write_carry(at), text_ += settle_loads_of(has());
+    if (has().corrects_loads()) write_carry(at), text_ += settle_loads_of(has(), equations_.cones);
     if (has().ends) write_ends(at, moving);
     if (has().events) {
       write_function("Distances from the events of rows with bounds",
@@ -338,7 +338,7 @@ class HeaderWriter {
             "(&of_rate)[bounded], T (&of_force)[bounded])",
         equations_.resolve);
     if (has().loads) write_carry(at);
-    text_ += modes_of(has(), equations_.waits);
+    text_ += modes_of(has(), equations_.waits, equations_.cones);
   }
 
   void write_step() {

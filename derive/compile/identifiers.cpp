@@ -29,6 +29,8 @@ std::set<std::string> taken_names() {
       "mean_of find_mean_spins missed side given end guess load from bonds Bonds snap strain choose_once latches "
       "Complex Differences Newton LU freedom unknowns place_of reciprocal set_zero factor turn_back turn_on numbers_of "
       "solve_shifted differentiate slopes_of largest_change find_increments collocate end re im shift by_pose "
+      "cone_of in_cone size_in_cone most_in_cone may_go instead begin_corners find_corners aim_cones share turns "
+      "turned "
       "by_velocity body_of begins ends widest begin_of end_of set_difference take_difference");
   std::set<std::string> names;
   for (std::string word; words >> word;) names.insert(word);

@@ -158,6 +158,7 @@ Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
           .carries = mechanism.method == Method::rattle && carries_spin(mechanism, !equations.effect_of.empty()),
           .modes = !mechanism.bounded.empty() && mechanism.on_accelerations(),
           .loads = mechanism.has_loads(),
+          .cones = mechanism.has_cones(),
           .strong = mechanism.on_accelerations() && mechanism.has_strong_motors(),
           .bonds = !mechanism.bonds.empty(),
           .snaps = !mechanism.bonds.empty() && mechanism.on_accelerations(),
@@ -224,7 +225,7 @@ long numbers_of_modes(const Mechanism& mechanism, const Equations& equations, co
   if (!has.strides()) return 0;
   const long bounded = long(mechanism.bounded.size()), strengths = has.snaps ? long(mechanism.bonds.size()) : 0;
   const long struck = has.modes && has.snaps ? bounded + long(equations.rows.size()) : 0;
-  return 1 + (has.loads ? 7 : 6) * bounded + 2 * strengths + struck;
+  return (has.cones ? 2 : 1) + (has.loads ? 7 : 6) * bounded + 2 * strengths + struck;
 }
 
 }  // namespace
@@ -240,8 +241,8 @@ long state_bytes_of(const Mechanism& mechanism, const Equations& equations, cons
          (1 + of_bodies + of_rows + long(mechanism.bounded.size()) +
           (has.midpoint || has.weighs ? long(mechanism.bounded.size()) : 0) +
           (has.carries_over() ? 2 * long(mechanism.bounded.size()) + long(equations.rows.size()) : 0) +
-          (has.repeats() ? long(mechanism.bounded.size()) : 0) + long(equations.constants.inputs.size()) +
-          2 * mechanism.angles);
+          (long{has.repeats()} + long{has.cones}) * long(mechanism.bounded.size()) +
+          long(equations.constants.inputs.size()) + 2 * mechanism.angles);
 }
 
 std::string begin_of(Method method, const Contents& has) {
@@ -253,6 +254,7 @@ std::string begin_of(Method method, const Contents& has) {
   text += "$C";
   if (has.bounded && (has.midpoint || has.weighs)) text += "    for (T& of_row : s.force) of_row = T(0);\n";
   if (has.strides()) text += "    s.modes = {};\n";
+  if (has.cones) text += "    for (T& of_row : s.share) of_row = T(0);\n";
   if (has.events) text += "    latch(s);\n";
   if (has.rows) text += "    for (int i = 0; i < rows; ++i) s.lambda[i] = T(0);\n";
   if (has.carries_over()) {

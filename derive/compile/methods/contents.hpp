@@ -20,6 +20,7 @@ struct Contents {
   bool carries = false;        // by RATTLE, forces at the end read the spin of a body whose inertia turns
   bool modes = false;          // of rows with bounds by Runge-Kutta methods
   bool loads = false;          // bounds of these that grow with loads
+  bool cones = false;          // one force along several of these
   bool strong = false;         // motors without a largest force among these
   bool bonds = false;          // some joint may break
   bool snaps = false;          // by Runge-Kutta methods: when it does is located in a step

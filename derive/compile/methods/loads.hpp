@@ -9,6 +9,9 @@ namespace cdot::compile {
 
 // Of carry(), after its poses.
 std::string arguments_of_carry(const Contents& has);
-std::string settle_loads_of(const Contents& has);
+// cones: the first row of the cone of each row with bounds, or -1.
+std::string settle_loads_of(const Contents& has, const std::string& cones);
+// Its arguments for cones.
+std::string corners(const Contents& has, const char* share = "s.share");
 
 }  // namespace cdot::compile

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "derive/compile/methods/bonds.hpp"
+#include "derive/compile/methods/cones.hpp"
 #include "derive/compile/methods/loads.hpp"
 
 namespace cdot::compile {
@@ -12,10 +13,10 @@ namespace {
 constexpr const char* pulls = R"(
   // Accelerations with the rows in their modes.
   static void pull($dconst Pose (&q)[bodies], const T& time, const Velocity (&v)[bodies], {0}const T (&hold)[bounded],
-                   {1}T (&force)[bounded], {7}Velocity (&a)[bodies]) {{
+                   {10}{1}T (&force)[bounded], {7}Velocity (&a)[bodies]) {{
     Bounded B;
     accelerate($pq, time, v, {2}a, B);
-    Mask held[bounded];
+{11}    Mask held[bounded];
     for (int e = 0; e < bounded; ++e) held[e] = magnitude(hold[e]) < T(0.5);
     const auto solve = [&](T (&now)[bounded]) {{
       for (int e = 0; e < bounded; ++e) now[e] = is_rate[e] ? select(hold[e] > T(0), B.high[e], B.low[e]) : T(0);
@@ -28,9 +29,8 @@ constexpr const char* pulls = R"(
   }}
 
   // The rates of change at a stage of a Runge-Kutta method, whose poses are turned.
-  static void slope($dEvaluated& at, const Velocity (&v)[bodies], {4}const T (&hold)[bounded], {7}Slope& k) {{
-$w{5}    T force[bounded];
-    Velocity a[bodies];
+  static void slope($dEvaluated& at, const Velocity (&v)[bodies], {4}const T (&hold)[bounded], {10}{12}{7}Slope& k) {{
+$w{5}{13}    Velocity a[bodies];
     pull($pat.q, at.time, v, {6}force, {9}a);
     for (int i = 0; i < bodies; ++i) k.set(i, rate_of(at.q[i], v[i]), a[i]);
   }}
@@ -102,7 +102,7 @@ constexpr const char* stops = R"(
       for (T& of_row : hold) of_row = T(0);
       settle(B, hold, now);
     }};
-{2}{4}    for (int e = 0; e < bounded; ++e) {{
+{5}{2}{4}    for (int e = 0; e < bounded; ++e) {{
       stopped[e] = hits && magnitude(mu[e]) > T(0){3};
       for (int i = 0; i < bodies; ++i) s.v[i] = choose(hits, s.v[i] + mu[e] * B.g[e][i], s.v[i]);
     }}
@@ -131,14 +131,14 @@ constexpr const char* decides = R"(
       for (T& of_row : hold) of_row = T(0);
       settle(B, hold, now);
     }};
-    {2}
+{6}    {2}
 {5}    for (int i = 0; i < bounded; ++i) {{
       const Mask up = force[i] >= B.high[i], down = force[i] <= B.low[i];
       const Mask leaves = !is_equation(G, i) && magnitude(s.hold[i]) < T(0.5) && (up || down){4};
       const T end = select(magnitude(G.low[i]) > T(0), T(1), T(-1));
       s.hold[i] = select(leaves, select(has_one_end(G, i), end, select(up, T(1), T(-1))), s.hold[i]);
 {3}    }}
-  }}
+{7}  }}
 )";
 
 constexpr const char* margins_begin = R"(
@@ -294,23 +294,28 @@ constexpr const char* finds_strong_motors = R"(    Mask drives = T(1) < T(0);
 
 std::string pull_of(const Contents& has) {
   const bool rows = has.rows, loads = has.loads;
+  const char* const slips = has.cones ? "share, step, " : "";
   return fmt::format(pulls, rows ? "const Jacobian& J, " : "", rows ? "T (&lambda)[rows], " : "",
                      rows ? "J, lambda, " : "", rows ? adds_forces : "", rows ? "Jacobian& J, T (&forces)[rows], " : "",
-                     rows ? "    evaluate($pat.q, at.time, J);\n" : "", rows ? "J, hold, forces, " : "hold, ",
+                     rows ? "    evaluate($pat.q, at.time, J);\n" : "",
+                     fmt::format("{}hold, {}{}", rows ? "J, " : "", slips, rows ? "forces, " : ""),
                      loads ? "T (&load)[bounded], " : "",
-                     loads ? fmt::format("const Mask jams = settle_loads($pq, time, {}B, force, load, solve);{}",
-                                         rows ? "J, lambda, " : "", holds_jammed)
+                     loads ? fmt::format("const Mask jams = settle_loads($pq, time, {}{}B, force, load, solve);{}",
+                                         rows ? "J, lambda, " : "", corners(has, "none"), holds_jammed)
                            : "solve(force);",
-                     loads ? "load, " : "");
+                     loads ? "load, " : "", has.cones ? "const T (&share)[bounded], const T& step, " : "",
+                     has.cones ? aims_at_stage : "", has.cones ? "T (&force)[bounded], " : "",
+                     has.cones ? "" : "    T force[bounded];\n");
 }
 
 std::string stops_of(const Contents& has) {
   const std::string J = has.rows ? "s.J, " : "";
   const std::string notes = has.snaps ? fmt::format(notes_impulses, has.rows ? notes_impulses_of_rows : "") : "";
-  if (!has.loads) return fmt::format(stops, J, "", "    solve(mu);\n", "", notes);
+  if (!has.loads) return fmt::format(stops, J, "", "    solve(mu);\n", "", notes, "");
   const std::string none = has.rows ? "T none[rows];\n    for (T& of_row : none) of_row = T(0);\n    " : "";
-  return fmt::format(stops, J, impacts_by_load, fmt::format(settles_impact, none, has.rows ? "s.J, none, " : ""),
-                     unless_it_slips, notes);
+  return fmt::format(stops, J, impacts_by_load,
+                     fmt::format(settles_impact, none, (has.rows ? "s.J, none, " : "") + corners(has)), unless_it_slips,
+                     notes, has.cones ? std::string(all_turn) + none_turned : "");
 }
 
 // Where forces of a choice call for another one.
@@ -334,13 +339,14 @@ std::string choices_of(const Contents& has) {
 
 std::string decides_of(const Contents& has) {
   const std::string J = has.rows ? "s.J, s.lambda, " : "";
-  return fmt::format(decides, J, has.loads ? bounds_by_load : "",
-                     has.loads
-                         ? "const Mask jams = settle_loads($ss.q, s.time, " + J + "B, force, s.modes.load, solve);"
-                         : "solve(force);",
-                     has.loads ? stops_jammed : "",
-                     std::string(has.loads ? " && !jams" : "") + (has.strong ? " && !(drives && stopped[i])" : ""),
-                     has.strong ? finds_strong_motors : "");
+  return fmt::format(
+      decides, J, has.loads ? bounds_by_load : "",
+      has.loads ? fmt::format("const Mask jams = settle_loads($ss.q, s.time, {}{}B, force, s.modes.load, solve);", J,
+                              corners(has))
+                : "solve(force);",
+      has.loads ? stops_jammed : "",
+      std::string(has.loads ? " && !jams" : "") + (has.strong ? " && !(drives && stopped[i])" : ""),
+      has.strong ? finds_strong_motors : "", has.cones ? offers_cones : "", has.cones ? decides_cones : "");
 }
 
 }  // namespace
@@ -351,6 +357,7 @@ std::string modes_types(const Contents& has) {
                   has.modes && has.snaps ? " + strengths" : "");
   if (!has.modes) return watched + types_of_bonds;
   std::string more = has.loads ? "    T load[bounded];  // forces with which bounds grow\n" : "";
+  if (has.cones) more += "    T step;  // [s]\n";
   if (has.snaps) {
     more += "    T struck_bounds[bounded];  // impulses of impacts\n";
     if (has.rows) more += "    T struck[rows];\n";
@@ -361,18 +368,21 @@ std::string modes_types(const Contents& has) {
 }
 
 std::string arguments_of_pull(const Contents& has) {
-  return std::string(has.rows ? "s.J, s.hold, s.lambda, " : "s.hold, ") + "s.modes.force, " +
+  return fmt::format("{}s.hold, {}{}s.modes.force, ", has.rows ? "s.J, " : "",
+                     has.cones ? "s.share, s.modes.step, " : "", has.rows ? "s.lambda, " : "") +
          (has.loads ? "s.modes.load, " : "") + "s.a";
 }
 
-std::string modes_of(const Contents& has, const std::string& waits) {
+std::string modes_of(const Contents& has, const std::string& waits, const std::string& cones) {
   std::string text = pull_of(has) + kinds_of_rows + resolutions;
-  if (has.loads) text += grows + settle_loads_of(has);
+  if (has.loads) text += grows + settle_loads_of(has, cones);
+  if (has.cones) text += aims_cones;
   text += stops_of(has) + decides_of(has);
   std::string margins = margins_begin;
   const std::string_view growing = "    grow(G, m);\n";
   if (!has.loads) margins.erase(margins.find(growing), growing.size());
   text += margins;
+  if (has.cones) text += margins_of_cones;
   if (has.events) text += fmt::format(margins_of_events, waits, has.forces ? "m.force, " : "");
   if (has.snaps) text += margins_of_bonds(has);
   return text + "    return passed;\n  }\n" + choices_of(has);

@@ -9,8 +9,9 @@ namespace cdot::compile {
 
 // Types of a State's member `modes`, and of what is known of each row.
 std::string modes_types(const Contents& has);
-// The mode of each row, and accelerations in these modes; waits: of each row whether it waits for an event.
-std::string modes_of(const Contents& has, const std::string& waits);
+// The mode of each row, and accelerations in these modes. Of each row waits: whether it waits for an event; cones: as
+// settle_loads_of() has it.
+std::string modes_of(const Contents& has, const std::string& waits, const std::string& cones);
 // Those of pull(), after the pose, the time and the velocities of a State.
 std::string arguments_of_pull(const Contents& has);
 

@@ -93,7 +93,10 @@ std::string runge_kutta(Method method, const Contents& has, bool few) {
 }
 
 std::string arguments_of_slope(const Contents& has) {
-  const std::string held = !has.modes ? "" : has.loads ? "s.hold, s.modes.load, " : "s.hold, ";
+  const std::string held = !has.modes  ? ""
+                           : has.cones ? "s.hold, s.share, s.modes.step, s.modes.force, s.modes.load, "
+                           : has.loads ? "s.hold, s.modes.load, "
+                                       : "s.hold, ";
   return (has.rows ? "s.J, forces, " : "") + held;
 }
 

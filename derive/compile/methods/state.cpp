@@ -55,6 +55,7 @@ std::string of_rows(const Mechanism& mechanism, const Contents& has) {
         "corrections\n";
     if (has.rows) text += "    T drawn[rows];      // of the joints\n";
   }
+  if (has.cones) text += "    T share[bounded];  // directions of forces along several coordinates\n";
   if (has.repeats()) text += "    T repeats[bounded];  // forces that they repeat\n";
   return text;
 }

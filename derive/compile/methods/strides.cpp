@@ -1,5 +1,6 @@
 #include "derive/compile/methods/strides.hpp"
 
+#include <algorithm>
 #include <string_view>
 
 namespace cdot::compile {
@@ -30,6 +31,8 @@ constexpr const char* steps = R"(
   static void go_to_event(const State& s, State& next, T& length, Mask busy, T& residual) {
     T low = T(0), high = length, before[watched], after[watched];
     for (int i = 0; i < watched; ++i) before[i] = s.modes.margin[i], after[i] = next.modes.margin[i];
+    T last[bounded];  // forces: as cones that slip know them
+    for (int i = 0; i < bounded; ++i) last[i] = next.modes.force[i];
     Mask stalls = T(1) < T(0);
     for (int search = 0; search < 61 && any(busy || stalls); ++search) {
       const T share = larger(T(0.001), smaller(T(0.999), first_event(s.modes.chosen, before, after)));
@@ -38,7 +41,9 @@ constexpr const char* steps = R"(
       if (search == 60) stalls = stalls || busy;
       at = select(stalls, high, at);
       State there = s;
+      for (int i = 0; i < bounded; ++i) there.modes.force[i] = last[i];
       const T error = stride(there, at), furthest_there = furthest(there.modes);
+      for (int i = 0; i < bounded; ++i) last[i] = there.modes.force[i];
       const Mask passed = furthest_there < T(-1), ends = stalls || (busy && passed && furthest_there >= T(-3));
       replace(next, there, ends);
       length = select(ends, at, length), residual = select(ends, error, residual);
@@ -56,6 +61,7 @@ constexpr const char* steps = R"(
   static T step(State& s, T h = T(default_step)) {
     const T start = s.time;
     T done = T(0), residual = T(0), events = T(0);
+    s.modes.step = h;
     for (Mask goes_on = T(0) < T(1); any(goes_on);) {
       const Mask unknown = goes_on && s.modes.known < T(0.5);
       if (any(unknown)) {
@@ -80,13 +86,20 @@ constexpr const char* steps = R"(
   }
 )";
 
-constexpr std::string_view forgets_jams = "      forget_jammed(next.modes);\n";
+constexpr std::string_view of_loads = "      forget_jammed(next.modes);\n";
+constexpr std::string_view of_cones[] = {
+    "    T last[bounded];  // forces: as cones that slip know them\n"
+    "    for (int i = 0; i < bounded; ++i) last[i] = next.modes.force[i];\n",
+    "      for (int i = 0; i < bounded; ++i) there.modes.force[i] = last[i];\n",
+    "      for (int i = 0; i < bounded; ++i) last[i] = there.modes.force[i];\n", "    s.modes.step = h;\n"};
 
 }  // namespace
 
 std::string step_by_events(const Contents& has) {
   std::string text = steps;
-  if (!has.loads) text.erase(text.find(forgets_jams), forgets_jams.size());
+  const auto leave_out = [&](std::string_view lines) { text.erase(text.find(lines), lines.size()); };
+  if (!has.cones) std::ranges::for_each(of_cones, leave_out);
+  if (!has.loads) leave_out(of_loads);
   return text;
 }
 

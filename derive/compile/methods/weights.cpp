@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "derive/compile/methods/cones.hpp"
+#include "derive/compile/methods/loads.hpp"
+
 namespace cdot::compile {
 namespace {
 
@@ -70,9 +73,12 @@ constexpr const char* keeps_before = "    for (int i = 0; i < bounded; ++i) s.be
 constexpr const char* keeps_drawn =
     "    for (int i = 0; i < rows; ++i) s.drawn[i] = (select(keep, gained[i] / h, T(0)) - projected[i]) / h;\n";
 
+// Corrections do not count in the size of a force.
+std::string turns_alone(const Contents& has) { return has.cones ? std::string(all_turn) + none_turned : ""; }
+
 constexpr const char* settles_euler = R"(    T before[bounded];
     for (int i = 0; i < bounded; ++i) before[i] = h * s.before[i];
-{0}    settle_loads($ss.q, s.time, {1}before, B, mu, s.load, [&](T (&now)[bounded]) {{ settle(B, s.hold, now); }});
+{0}{2}    settle_loads($ss.q, s.time, {1}before, {3}B, mu, s.load, [&](T (&now)[bounded]) {{ settle(B, s.hold, now); }});
 )";
 constexpr const char* settles_euler_joints = R"(    T drawn[rows];
     for (int i = 0; i < rows; ++i) drawn[i] = h * s.drawn[i];
@@ -84,14 +90,14 @@ constexpr const char* settles_rattle = R"(    T of_first[bounded], load[bounded]
       of_first[i] = {0}half * s.repeats[i], load[i] = h * magnitude(s.force[i]);
       B.by_low[i] = T(0.5) * B.by_low[i], B.by_high[i] = T(0.5) * B.by_high[i];
     }}
-{1}    settle_loads($ss.q, s.time, {2}of_first, B, mu, load, [&](T (&now)[bounded]) {{ settle(B, s.hold, now); }});
+{1}{3}    settle_loads($ss.q, s.time, {2}of_first, {4}B, mu, load, [&](T (&now)[bounded]) {{ settle(B, s.hold, now); }});
 )";
 constexpr const char* settles_rattle_joints = R"(    T drawn[rows];
     for (int i = 0; i < rows; ++i) drawn[i] = half * found[i];
 )";
 constexpr const char* settles_rattle_start = R"(    T before[bounded], load[bounded];
     for (int i = 0; i < bounded; ++i) before[i] = T(0), load[i] = T(0);
-{0}    settle_loads($ss.q, s.time, {1}before, B, mu, load, [&](T (&now)[bounded]) {{ settle(B, hold, now); }});
+{0}{2}    settle_loads($ss.q, s.time, {1}before, {3}B, mu, load, [&](T (&now)[bounded]) {{ settle(B, hold, now); }});
 )";
 constexpr const char* settles_rattle_start_joints = R"(    T drawn[rows];
     for (T& of_row : drawn) of_row = T(0);
@@ -131,7 +137,8 @@ std::string project_with_impulses() { return project_weighs; }
 
 std::string settles_impulses(const Contents& has) {
   if (!has.loads) return "    settle(B, s.hold, mu);\n";
-  return fmt::format(settles_euler, has.rows ? settles_euler_joints : "", has.rows ? "s.J, s.lambda, drawn, " : "");
+  return fmt::format(settles_euler, has.rows ? settles_euler_joints : "", has.rows ? "s.J, s.lambda, drawn, " : "",
+                     turns_alone(has), corners(has));
 }
 
 std::string euler_weighs(const Contents& has) {
@@ -166,12 +173,12 @@ std::string rattle_weighs(const Contents& has) {
 
 std::string settles_end_with_loads(const Contents& has) {
   return fmt::format(settles_rattle, has.ends ? "total[i] + " : "", has.rows ? settles_rattle_joints : "",
-                     has.rows ? "s.J, s.lambda, drawn, " : "");
+                     has.rows ? "s.J, s.lambda, drawn, " : "", turns_alone(has), corners(has));
 }
 
 std::string settles_start_with_loads(const Contents& has) {
   return fmt::format(settles_rattle_start, has.rows ? settles_rattle_start_joints : "",
-                     has.rows ? "s.J, lambda, drawn, " : "");
+                     has.rows ? "s.J, lambda, drawn, " : "", turns_alone(has), corners(has));
 }
 
 std::string repeats_at_start(const Contents& has) { return has.repeats() ? start_repeats : ""; }

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "derive/compile/methods/cones.hpp"
+#include "derive/compile/methods/loads.hpp"
+
 namespace cdot::compile {
 namespace {
 
@@ -117,7 +120,8 @@ constexpr const char* projects = R"(    solve($qs.J, rate, y, d);
 
 // A motor keeps to the bounds of the middle; the whole impulse of an end never pulls.
 constexpr const char* settles_end = R"(    for (int i = 0; i < bounded; ++i) {{
-      B.low[i] = (is_rate[i] ? low[i] : B.low[i]) - mu[i], B.high[i] = (is_rate[i] ? high[i] : B.high[i]) - mu[i];
+      const bool as_middle = is_rate[i]{2};
+      B.low[i] = (as_middle ? low[i] : B.low[i]) - mu[i], B.high[i] = (as_middle ? high[i] : B.high[i]) - mu[i];
     }}
 {1}    for (int i = 0; i < bounded; ++i) mu[i] = mu[i] + x[i], s.force[i] = mu[i] / h;
 {0})";
@@ -201,7 +205,7 @@ constexpr const char* parts = R"(
 constexpr const char* settles_loaded = R"(    {{
       T before[bounded], load[bounded];
       for (int i = 0; i < bounded; ++i) before[i] = {2}mu[i], load[i] = magnitude(before[i]);
-{3}      settle_loads($s{0}, s.time, {4}before, B, x, load, [&](T (&now)[bounded]) {{ settle(B, {1}, now); }});
+{3}{5}      settle_loads($s{0}, s.time, {4}before, {6}B, x, load, [&](T (&now)[bounded]) {{ settle(B, {1}, now); }});
     }}
 )";
 constexpr const char* draws_joints = R"(      T drawn[rows];
@@ -209,10 +213,18 @@ constexpr const char* draws_joints = R"(      T drawn[rows];
       evaluate($s{}, s.time, s.J);
 )";
 
-std::string settles_x(const Contents& has, const char* q, const char* hold, const char* share) {
+constexpr std::string_view in_middle_by = "T(0.5) * ", alone = "T(0) * ";
+// The size of a force in a cone is that of its whole impulse.
+constexpr const char* turns = R"(      T turned[bounded];
+      for (int i = 0; i < bounded; ++i) turned[i] = {}mu[i];
+)";
+
+std::string settles_x(const Contents& has, const char* q, const char* hold, std::string_view share) {
   if (!has.loads) return fmt::format("    settle(B, {}, x);\n", hold);
+  const bool in_middle = share == in_middle_by;
   return fmt::format(settles_loaded, q, hold, share, has.rows ? fmt::format(draws_joints, share, q) : "",
-                     has.rows ? "s.J, y, drawn, " : "");
+                     has.rows ? "s.J, y, drawn, " : "",
+                     has.cones ? all_turn + fmt::format(turns, in_middle ? share : "") : "", corners(has));
 }
 
 // The changes by impulses x of rows with bounds.
@@ -236,11 +248,12 @@ std::string ending(const Contents& has) {
         "    T rate[rows];\n    rates(s.J, s.v, rate);\n"
         "    const T energy = moved_energy(s.q, s.v, before);\n    const auto stands = hardly_moves(s.v, h);\n";
   if (has.finishes)
-    text += fmt::format(
-        finishes, has.rows ? "s.J, " : "", has.looks ? "given, at_end, " : "", has.rows ? ", y" : "",
-        has.bounded ? ", B" : "",
-        has.bounded ? fmt::format(settles_end, adds_bounded(has, "    "), settles_x(has, "s.q", "s.hold", "T(0) * "))
-                    : "");
+    text += fmt::format(finishes, has.rows ? "s.J, " : "", has.looks ? "given, at_end, " : "", has.rows ? ", y" : "",
+                        has.bounded ? ", B" : "",
+                        has.bounded
+                            ? fmt::format(settles_end, adds_bounded(has, "    "),
+                                          settles_x(has, "s.q", "s.hold", alone), has.cones ? " && cone_of[i] < 0" : "")
+                            : "");
   else if (has.rows) text += projects;
   if (!has.rows) return text + "    (void)last, (void)work, (void)residual;\n";
   return text + judges_end + (has.ends ? forgives_hits : "") + stores_end;
@@ -283,7 +296,7 @@ std::string round(const Mechanism& mechanism, const Contents& has) {
   if (has.gyroscopes) text += "      find_mean_spins(at.q, s.v, h, mean);\n";
   text += "      T power;\n" + improves(has, "middle", "h");
   if (has.bounded)
-    text += fmt::format(settles_round, adds_bounded(has, "      "), settles_x(has, "middle", "hold", "T(0.5) * "));
+    text += fmt::format(settles_round, adds_bounded(has, "      "), settles_x(has, "middle", "hold", in_middle_by));
   const auto bodies = static_cast<double>(std::ranges::count_if(mechanism.bodies, &Body::moves));
   const double goal = 0.01 * mechanism.tolerance, few = std::clamp(bodies * bodies, 1e2, 1e4);
   return text +
@@ -311,7 +324,7 @@ std::string rescue(const Contents& has) {
   if (has.gyroscopes) text += "    for (int i = 0; i < bodies; ++i) mean[i] = s.v[i];\n";
   text += improves(has, "s.q", "twice");
   if (has.bounded)
-    text += fmt::format(rescue_settles, adds_bounded(has, "    "), settles_x(has, "s.q", "s.hold", "T(0) * "));
+    text += fmt::format(rescue_settles, adds_bounded(has, "    "), settles_x(has, "s.q", "s.hold", alone));
   text += rescue_moves + drifts(has, "s", "h") + "    s.time = s.time + h;\n";
   if (has.gyroscopes) text += follows;
   if (has.closes()) text += rescue_closes;

@@ -102,18 +102,18 @@ class EffectReader {
     effect.law = Effect::bound;
     const std::size_t first = mechanism_.bounded.size();
     for (std::size_t k = 1; k < places.size() && is_bounded(places[k]); ++k, ++effect.row) {
+      const auto& law = *batch_of(places[k]).law;
+      effect.cone = law.cone_rows > 0 ? static_cast<int>(first + effect.row) - law.cone_row : -1;
       effect.loaded_by_row = -1;
       for (std::size_t other = 1; other < places.size(); ++other)
-        if (batch_of(places[other]).law == batch_of(places[k]).law->load_of)
-          effect.loaded_by_row = static_cast<int>(first + other - 1);
+        if (batch_of(places[other]).law == law.load_of) effect.loaded_by_row = static_cast<int>(first + other - 1);
       add_bounded(source, effect, places[k]);
     }
   }
 
   void add_bounded(const SceneJoint& source, const Effect& effect, const Place& place) {
     const auto& law = *batch_of(place).law;
-    if (law.cone_rows > 0) refuse_(source, fmt::format("{}: one force along several coordinates", effect.name));
-    else if (law.by_load && !effect.is_loaded())
+    if (law.by_load && !effect.is_loaded())
       refuse_(source, fmt::format("{}: bounds that grow with the load of a joint that is soft", effect.name));
     else if (law.error && !effect.in_time.empty())
       refuse_(source, fmt::format("{}: ends that follow functions of time", effect.name));

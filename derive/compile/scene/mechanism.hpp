@@ -86,7 +86,8 @@ struct Effect {
   double size = 1;                          // Island::size of its mechanism [m]
   // Of a row whose bounds grow with a load: what carries it, among Mechanism::bounded or Mechanism::joints.
   int loaded_by_row = -1, loaded_by_joint = -1;
-  int holds = -1;             // of a joint that may break, on which it acts: as Joint::holds
+  int cone = -1;   // of a row of a force along several coordinates: the first one of these, among Mechanism::bounded
+  int holds = -1;  // of a joint that may break, on which it acts: as Joint::holds
   bool by_own_force = false;  // an event of the row depends on the force that it carries
   bool is_loaded() const { return loaded_by_row >= 0 || loaded_by_joint >= 0; }
 };
@@ -143,7 +144,10 @@ struct Mechanism {
     return std::ranges::any_of(bounded,
                                [](const Effect& of) { return of.law == Effect::motor && std::isinf(of.numbers[1]); });
   }
-  bool has_loads() const { return std::ranges::any_of(bounded, &Effect::is_loaded); }
+  bool has_loads() const { return has_cones() || std::ranges::any_of(bounded, &Effect::is_loaded); }
+  bool has_cones() const {
+    return std::ranges::any_of(bounded, [](const Effect& of) { return of.cone >= 0; });
+  }
   // True if the inertia of a body turns with it.
   bool has_gyroscopes() const { return std::ranges::any_of(bodies, &Body::inertia_turns); }
   bool keeps_momenta() const { return has_gyroscopes() && !on_accelerations(); }  // of such bodies
