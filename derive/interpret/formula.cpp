@@ -42,6 +42,10 @@ class Names final : public Scope {
   Names(Pool& pool, const Vocabulary& vocabulary) : pool_(pool), vocabulary_(vocabulary) {
     for (std::size_t k = 0; k < vocabulary.quantities.size(); ++k)
       index_.emplace(vocabulary.quantities[k].name, static_cast<int>(k));
+    origin_ = vector(zero_vector(pool), Unit{.m = 1});
+    origin_.type = Type::point;
+    origin_.arm = origin_.e;
+    origin_.anchored = true;
   }
 
   // Turns every written quantity into one name. "rate(pin.agnle)" and "pin.agnle" are mistakes.
@@ -59,7 +63,7 @@ class Names final : public Scope {
 
   const Value* find(const std::string& name) override {
     const auto known = index_.find(name);
-    if (known == index_.end()) return nullptr;
+    if (known == index_.end()) return name == "origin" && has_origin() ? &origin_ : nullptr;
     const auto [at, is_new] = values_.emplace(name, Value{});
     if (!is_new) return &at->second;
     const Vocabulary::Quantity& q = vocabulary_.quantities[static_cast<std::size_t>(known->second)];
@@ -84,6 +88,7 @@ class Names final : public Scope {
     std::vector<std::string> names = vocabulary_.bodies;
     for (const Vocabulary::Quantity& q : vocabulary_.quantities) names.push_back(q.name);
     names.insert(names.end(), {"time", "pi", "world"});
+    if (has_origin()) names.push_back("origin");
     return names;
   }
   std::string hint(const std::string& name) const override {
@@ -112,8 +117,14 @@ class Names final : public Scope {
   }
 
  private:
+  // Places are of bodies, whose names come first.
+  bool has_origin() const {
+    return !vocabulary_.bodies.empty() && std::ranges::count(vocabulary_.bodies, "origin") == 0;
+  }
+
   Pool& pool_;
   const Vocabulary& vocabulary_;
+  Value origin_;
   std::map<std::string, int> index_;
   std::map<std::string, Value> values_;
   mutable std::vector<std::string> bodies_;
@@ -153,7 +164,9 @@ Value value_of(const SourceFile& file, Names& names, Pool& pool, Diagnostics& di
   Value value = Evaluator(pool, names, diagnostics)(ast);
   if (value.type != Type::poison && value.type != Type::scalar)
     diagnostics.error(ast.where, "this is " + std::string(in_words(value.type)) + ", and a number is needed",
-                      value.type == Type::vector ? "take a component, .x or .y, or the length, norm(u)" : "");
+                      value.type == Type::vector  ? "take a component, .x or .y, or the length, norm(u)"
+                      : value.type == Type::point ? "a component of its way from another point: (x(rod) - origin).y"
+                                                  : "");
   return value;
 }
 

@@ -12,7 +12,8 @@
 
 namespace cdot {
 
-// The names that an expression may use, beside `time`, `pi` and the operators of the language.
+// The names that an expression may use, beside `time`, `pi` and the operators of the language; with bodies also
+// `origin`, the point (0, 0) of the world.
 struct Vocabulary {
   // A scalar or vector with its unit, as a spec writes it: "rad/s". The name is one word, word.word or f(word.word):
   // "pin.angle", "rate(pin.angle)".

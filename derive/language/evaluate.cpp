@@ -329,8 +329,10 @@ Value Evaluator::member(const Ast& ast) {
     const Ast& of = ast.args[0];
     const bool call = of.kind == Ast::Kind::call && of.args.size() == 1;
     const std::string point = of.kind == Ast::Kind::name ? of.text : call ? of.text + "(" + of.args[0].text + ")" : "p";
+    const bool declared = names_.find("origin") != nullptr;
     return error(ast.where, "a point has no components",
-                 "a vector has: declare `point origin on world` and write `(" + point + " - origin)." + ast.text + "`");
+                 std::string("a vector has: ") + (declared ? "" : "declare `point origin on world` and ") + "write `(" +
+                     point + " - origin)." + ast.text + "`");
   }
   return error(ast.where, std::string(in_words(v.type)) + " has no component " + ast.text);
 }

@@ -56,6 +56,17 @@ TEST(Formula, InputsOfBodies) {
   EXPECT_EQ(formula.formula->unit(), "m/s");
 }
 
+// The way from the origin of the scene, where no body has this name.
+TEST(Formula, PlacesFromTheOrigin) {
+  EXPECT_EQ(value("(x(rod) - origin).y", {3}), 3);
+  EXPECT_EQ(value("norm(x(cart) - origin)", {3, 4}), 5);
+  EXPECT_EQ(mistake("x(rod).y").fix, "a vector has: write `(x(rod) - origin).y`");
+  EXPECT_EQ(mistake("x(rod)").fix, "a component of its way from another point: (x(rod) - origin).y");
+  const Vocabulary taken{2, {"origin"}, {}};
+  EXPECT_TRUE(Formula::read("dot(v(origin), origin.x)", taken).formula);
+  EXPECT_FALSE(Formula::read("norm(x(origin) - origin)", taken).formula);
+}
+
 TEST(Formula, MistakesHaveTheirPlaces) {
   const FormulaMistake unknown = mistake("2 * energie");
   EXPECT_EQ(unknown.begin, 4);
