@@ -102,6 +102,18 @@ int coordinate_index(int type, std::string_view name) {
                           known.empty() ? "none" : known));
 }
 
+namespace {
+
+template <class S>
+void note_once(WorldData<S>& world, int joint, std::string_view coordinate) {
+  const std::string text = fmt::format("has effects on `{}`, which cannot change: they do nothing", coordinate);
+  const bool known =
+      std::ranges::any_of(world.notes, [&](const Note& note) { return note.joint == joint && note.text == text; });
+  if (!known) world.notes.push_back({joint, text});
+}
+
+}  // namespace
+
 template <class S>
 int add_coordinate_row(WorldData<S>& world, int joint, std::string_view coordinate, const Law<S>* law,
                        std::span<const double> constants, std::string_view source) {
@@ -110,6 +122,7 @@ int add_coordinate_row(WorldData<S>& world, int joint, std::string_view coordina
   const int index = coordinate_index<S>(record.type, coordinate);
   if (record.places.empty()) return -1;
   check_value(world, record, index);
+  if (moves_nothing(world, record, index)) note_once(world, joint, coordinate);
   const auto& variants = joint_entries<S>()[record.type].coordinates[index];
   add_rows(world, joint, variants.choose(world.bodies, record.bodies), law, {RowKind::equality}, constants, source);
   return static_cast<int>(record.places.size()) - 1;

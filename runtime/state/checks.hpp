@@ -81,6 +81,18 @@ inline Error effect_without_value(const JointType& type, const std::vector<doubl
                   type.name, scalars_of(type, numbers)));
 }
 
+// True if the rows of an effect, or of a coordinate, pull only at what cannot move: J M^-1 J' = 0 though J is not.
+template <class S>
+bool moves_nothing(const WorldData<S>& world, const JointRecord& record, int coordinate) {
+  Probe<S> probe(world);
+  probe.look_at(record, coordinate);
+  std::vector<ExactNumber<typename S::Scalar>> J(static_cast<size_t>(probe.rows()) * S::freedom * record.bodies.size()),
+      weighted(J.size());
+  probe.dense(J.data(), weighted.data());
+  const auto is_zero = [](const auto& number) { return number == 0; };
+  return std::ranges::all_of(weighted, is_zero) && !std::ranges::all_of(J, is_zero);
+}
+
 // Throws Error if the law of an effect has no value here, or pushes where its coordinate has a kink, as a spring
 // between points that meet. A force there has no direction. One that moves its coordinate by a nanometre in a second
 // counts as none: a slack cord pulls by less.

@@ -223,6 +223,8 @@ int BasicWorld<S>::add_joint(const JointDefinition& definition) {
     data_->notes.push_back({joint, "connects only immovable bodies and does nothing"});
     return joint;
   }
+  if (type->is_effect && moves_nothing(*data_, record, -1))
+    data_->notes.push_back({joint, "pushes its bodies where they cannot move, and does nothing"});
   const auto& kinds = type->row_kinds;
   const bool unilateral = std::count(kinds.begin(), kinds.end(), RowKind::inequality) > 0;
   const Law<S>* const own = joint_entries<S>()[record.type].law;

@@ -105,6 +105,7 @@ std::string failure(const Scene& scene, const RunResult& result) {
 namespace {
 
 std::string own_steps_text(const StepCounts& counts) {
+  if (counts.taken == 0) return "  own steps       none: no body can move\n";
   std::string text =
       fmt::format("  own steps       {}, from {:.3g} s to {:.3g} s", counts.taken, counts.shortest, counts.longest);
   if (counts.rejected > 0) text += fmt::format(", {} rejected", counts.rejected);

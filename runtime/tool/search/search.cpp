@@ -60,9 +60,9 @@ constexpr double most_first_runs = 50;
 // that price. Then methods for stiff scenes get such a share to be cheaper.
 constexpr double suspicious = 600, dear = 4000, share_of_stiff = 0.33, share_of_surely_stiff = 0.5;
 
-// Two runs by the same steps agree, whatever their error.
+// Two runs by the same steps agree, whatever their error; of bodies that never move there are no steps and no error.
 bool same_steps(const StepCounts& a, const StepCounts& b) {
-  return a.taken == b.taken && a.shortest == b.shortest && a.longest == b.longest;
+  return a.taken > 0 && a.taken == b.taken && a.shortest == b.shortest && a.longest == b.longest;
 }
 
 class Search {

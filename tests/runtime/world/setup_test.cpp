@@ -156,6 +156,22 @@ TEST(Setup, JointBetweenStaticBodiesDoesNothingAndSaysSo) {
   EXPECT_TRUE(finite(world));
 }
 
+// A motor on the angle of a body that never turns, and a torque on it: one note each.
+TEST(Setup, EffectsThatMoveNothingAreNoted) {
+  World<double> world;
+  const int body = world.add_body({.mass = 1, .fixed_rotation = true});
+  const int pin = revolute(world, world.ground(), body, 0, 0, 0, 0);
+  add_motor(world, pin, "angle", {.speed = 1});
+  add_friction(world, pin, "angle", DryFriction{.max_force = 2});
+  const int torque = world.add_joint({"couple", {body}, {{"M", {3}}}, {}});
+  const int force = world.add_joint({"push", {body}, {{"pa", {0, 1}}, {"F", {3, 0}}}, {}});
+  ASSERT_EQ(world.notes().size(), 2u) << force;
+  EXPECT_EQ(world.notes()[0].joint, pin);
+  EXPECT_EQ(world.notes()[0].text, "has effects on `angle`, which cannot change: they do nothing");
+  EXPECT_EQ(world.notes()[1].joint, torque);
+  EXPECT_EQ(world.notes()[1].text, "pushes its bodies where they cannot move, and does nothing");
+}
+
 TEST(Setup, InconsistentStartIsReportedAndProjected) {
   for (Solver solver : {Solver::direct, Solver::iterative}) {
     World<double> world(settings(solver));

@@ -219,6 +219,17 @@ TEST(Run, StaticJointIsNoted) {
   EXPECT_EQ(result.notes, std::vector<std::string>{"joint \"idle\" connects only immovable bodies and does nothing"});
 }
 
+// Nothing moves, so nothing is wrong: no step, no doubt about the accuracy.
+TEST(Run, ASceneThatCannotMoveReachesItsAccuracy) {
+  std::string warnings;
+  const Scene scene = scene_of("[[body]]\nname = \"wall\"\nstatic = true\n");
+  const RunResult result = simulate(scene, {}, warnings);
+  ASSERT_TRUE(result.choice);
+  EXPECT_TRUE(result.choice->reached);
+  EXPECT_LE(result.choice->achieved, 1e-4);
+  EXPECT_EQ(result.counts.taken, 0);
+}
+
 TEST(Frames, CubicBetweenStepsIsExactForCubics) {
   const auto at = [](double t) {
     Frame frame;
