@@ -77,14 +77,12 @@ bool stays_misfit(const WorldData<S>& world, const Island<S>& island, typename S
   // Round-off of floats leaves errors that are to be corrected, or a slack bridge sags: larger ones are misfits. Where
   // rows are redundant, so are those of its own size. Where no body moves, all are: near a loss of rank a correction of
   // round-off moves bodies by a thousand times as much, and they would wander for ever.
-  constexpr T unchanged = T(1e-9), of_round_off = T(1) / 16;
-  const T left = island.residual;
-  if (std::is_same_v<T, float> && error == left && stands(world, island, h)) return true;
+  constexpr T unchanged = T(1e-9), of_round_off = T(1) / 16, at_rest = T(1) / 4;
+  const T left = island.residual, round_off = round_off_of(world, island), change = std::abs(error - left);
+  if (std::is_same_v<T, float> && change <= at_rest * round_off && stands(world, island, h)) return true;
   const T above_round_off = T(island.redundant_rows > 0 ? by_precision<T>(0.25, 0) : by_precision<T>(4, 0));
   if (!(left > converged<T> * island.scale)) return false;
-  const T round_off = round_off_of(world, island);
-  return left > above_round_off * round_off &&
-         std::abs(error - left) <= std::max(unchanged * error, of_round_off * round_off);
+  return left > above_round_off * round_off && change <= std::max(unchanged * error, of_round_off * round_off);
 }
 
 template <class S>
@@ -221,9 +219,19 @@ void project_start(WorldData<S>& world, Island<S>& island) {
   if (world.settings.drift != Drift::projection || island.segments.empty()) return;
   if (!(island.residual > foreign<T> * island.scale)) return;
   clear_correction(world, island);
+  Bodies<S>& all = world.bodies;
+  const bool exact = island.solver->exact;
+  for (size_t k = 0; exact && k < island.bodies.size(); ++k) island.flow.pose[k] = all.pose[island.bodies[k]];
   const T error = find_errors(world, island, T(world.time));
   island.solver->positions(world, island, T(world.time), true);
-  if (island.solver->exact) fail_if_moved_far(world, island, double(error), 0);
+  if (exact) fail_if_moved_far(world, island, double(error), 0);
+  // Joints that contradict each other may have no pose near by, and Newton leads away from all.
+  if (exact && island.residual > error) {
+    for (size_t k = 0; k < island.bodies.size(); ++k) all.pose[island.bodies[k]] = island.flow.pose[k];
+    if constexpr (S::has_gyroscopes) set_inertias(world, island);
+    clear_correction(world, island);
+    island.residual = find_errors(world, island, T(world.time));
+  }
   scale_corrections(island, T(0));  // the motion does not need them, so they are no load for its friction
   island.evaluated = island.factored = false;
 }

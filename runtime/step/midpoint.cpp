@@ -23,14 +23,12 @@
 #include "runtime/step/find_middle.hpp"
 #include "runtime/step/integrators.hpp"
 #include "runtime/step/kick_drift.hpp"
+#include "runtime/step/work_in_part.hpp"
 
 namespace cdot {
 
 namespace {
 
-// Of the joints in a part, as a share of the kinetic energy.
-template <class T>
-constexpr double slight_work = by_precision<T>(1e-2, 1e-4);
 template <class T>
 constexpr int most_parts = static_cast<int>(by_precision<T>(8, 64));  // of a step
 constexpr double small_turn = 0.25, most_turning_parts = 64;          // of step_midpoint_from() [rad]
@@ -57,51 +55,6 @@ void drag(WorldData<S>& world, const Island<S>& island, typename S::Scalar h) {
     v = S::damped(v, std::exp(-h * drag.linear), std::exp(-h * drag.angular));
     take(world, Source::damping, before - energy());
   }
-}
-
-// The work of the joints, which is 0 along the exact motion: lambda (J v_m + dC/dt), in [J].
-template <class S>
-double work_of_joints(const Island<S>& island) {
-  double work = 0;
-  for (const auto& [batch, begin, end, whole] : island.segments) {
-    if (batch->law) continue;
-    each_row(*batch, begin, end, [&, of = batch](int i) {
-      work += double(of->correction[i]) * (double(of->rate[i]) + double(of->bias[i]));
-    });
-  }
-  return work;
-}
-
-// The kinetic energy of the motions that the joints changed in this part. A wheel that merely spins has no say.
-template <class S>
-double moved_energy(const WorldData<S>& world, const Island<S>& island) {
-  using T = typename S::Scalar;
-  constexpr double same = by_precision<T>(1e-4, 1e-9);
-  double energy = 0;
-  for (size_t k = 0; k < island.bodies.size(); ++k) {
-    const int i = island.bodies[k];
-    T v[S::freedom], before[S::freedom], momentum[S::freedom];
-    S::write(world.bodies.velocity[i], v), S::write(island.flow.velocity[k], before);
-    S::write(S::force(world.bodies.inverse_mass[i], world.bodies.velocity[i]), momentum);
-    for (const auto& [from, to] : {std::pair{0, S::lengths}, std::pair{S::lengths, S::freedom}}) {
-      double own = 0, change = 0, size = 0;
-      for (int c = from; c < to; ++c) {
-        own += 0.5 * double(momentum[c]) * double(v[c]);
-        change += std::abs(double(v[c]) - double(before[c])), size += std::abs(double(v[c]));
-      }
-      if (change > same * size) energy += own;
-    }
-  }
-  return energy;
-}
-
-// Too slow for a judgement of its energy.
-template <class S>
-bool hardly_moves(const WorldData<S>& world, const Island<S>& island, typename S::Scalar h) {
-  using T = typename S::Scalar;
-  const T speed = T(by_precision<T>(1e-4, 1e-6)) * island.size / h;
-  return std::all_of(island.bodies.begin(), island.bodies.end(),
-                     [&](int i) { return S::slower(world.bodies.velocity[i], speed); });
 }
 
 template <class S>
@@ -271,13 +224,10 @@ bool take_part(WorldData<S>& world, Island<S>& island, typename S::Scalar h, boo
   book_kick(world, island, Impulses::dampers, h);
   drag(world, island, h / 2);
   note_start(world, island);
-  bool found = find_middle(world, island, h);
+  const bool found = find_middle(world, island, h);
   leave_middle(world, island);
-  if (found && !hardly_moves(world, island, h)) {
-    const double work = work_of_joints(island);
-    found = (last ? work : std::abs(work)) <= slight_work<T> * moved_energy(world, island);
-  }
-  if (!found) return give_up();
+  double given = 0;
+  if (!found || !joints_fit(world, island, h, last, given)) return give_up();
   island.evaluated_at = T(world.time) + h / 2;
   book_middle(world, island, h);
   double_middle(world, island);
@@ -293,7 +243,7 @@ bool take_part(WorldData<S>& world, Island<S>& island, typename S::Scalar h, boo
   forget_dampers(world, island);
   if (!last && joints.taken > slight_work<T> * energy && !hardly_moves(world, island, h)) return give_up();
   book_kick(world, island, Impulses::end, h);
-  give_back(world, joints.given_back);
+  give_back(world, given + joints.given_back);
   island.evaluated = true;
   return true;
 }

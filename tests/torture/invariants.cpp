@@ -188,7 +188,7 @@ template <class S>
 const char* Trial<S>::excuse(BasicWorld<S>& world) const {
   if (starts_beyond_) return "a start beyond an end, which the World tells";
   if (laws_.may_contradict) return "a prescribed motion, or a rolling one, meets what may stop it";
-  if (heaviest_over_lightest(*scene_) * told_apart < T >> 1)  // rows of effects as well
+  if (heaviest_over_lightest(*scene_) * double(told_apart<T>) > 1)  // rows of effects as well
     return "masses further apart than pivots are told from round-off";
   const SystemMatrix now = system_matrix(world), exact = exact_system_matrix(world, *scene_);
   if (rows_told_apart(exact, told_apart<T>) < exact.rank) return "rows that light bodies between heavy ones hide";

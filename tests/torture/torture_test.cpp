@@ -192,7 +192,7 @@ TEST(Torture, StartsWithGapsAreNotJudgedBySweeps) {
 TEST(Torture, FoundMisfitsStay) {
   each_scene_in(CDOT_FOUND "/misfit", [](const std::string& file, const Scene& scene) {
     for (const Integrator integrator :
-         {Integrator::euler, Integrator::rattle, Integrator::implicit, Integrator::dop853})
+         {Integrator::euler, Integrator::rattle, Integrator::implicit, Integrator::rk4, Integrator::dop853})
       for (const bool single : {false, true}) {
         Scene same = scene;
         same.settings.integrator = integrator, same.single = single;
