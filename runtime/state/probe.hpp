@@ -67,9 +67,10 @@ class Probe {
   bool at_kink(int row) {
     const T promised = pull_row(row);
     if (!(promised > T(0))) return false;
-    // A small joint may have a kink nearby, and a large one does not resolve small steps. A kink must show at every
-    // scale.
-    for (const T wanted : {T(1e-3), T(1e-6), T(1e-9), T(1e3) * resolution()}) {
+    // A small joint may have a kink nearby, and a large one does not resolve small steps, nor the square of a length
+    // small changes. A kink must show at every scale, of C and of the poses.
+    const T least = T(1e3) * resolution(), moved = longest_way();
+    for (const T wanted : {T(1e-3), T(1e-6), T(1e-9), least, moved > T(0) ? least * promised / moved : T(0)}) {
       if (wanted == T(0)) continue;  // all bodies are at the origin
       const T forth = C_after(wanted / promised)[row], back = C_after(-wanted / promised)[row];
       if (!(std::abs(forth - back) < T(0.01) * T(2) * wanted)) return false;
@@ -245,6 +246,16 @@ class Probe {
       if constexpr (requires { pose.z; }) far = std::max(far, std::abs(pose.z));
     }
     return far * std::numeric_limits<T>::epsilon();
+  }
+
+  // Of the displacements.
+  T longest_way() const {
+    T longest = 0, numbers[S::freedom];
+    for (const auto& displacement : bodies_.displacement) {
+      S::write(displacement, numbers);
+      for (int c = 0; c < S::lengths; ++c) longest = std::max(longest, std::abs(numbers[c]));
+    }
+    return longest;
   }
 
   const std::vector<T>& C_moved(size_t body, int component, T by) {
