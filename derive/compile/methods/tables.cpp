@@ -11,16 +11,27 @@ constexpr const char* followed_type = R"(
   struct Followed {
     T value, rate, acceleration;
   };
+  // The last row that no lane comes before, or the first one: lanes mostly share a time, so few rows are left.
+  template <unsigned rows>
+  static unsigned first_row(const double (&times)[rows], const T& time) {
+    unsigned first = 0;
+    for (unsigned end = rows; end - first > 1;) {
+      const unsigned middle = first + (end - first) / 2;
+      (any(time < T(times[middle])) ? end : first) = middle;
+    }
+    return first;
+  }
 )";
 
 constexpr const char* table =
     R"(  // Cubics between the rows, in the time since the first row of each; before and after them a constant.
   static Followed table_{0}(const T& time) {{
-    constexpr double times[] = {{{1}}};
-    constexpr double pieces[][4] = {{{2}}};
+    static constexpr double times[] = {{{1}}};
+    static constexpr double pieces[][4] = {{{2}}};
     T begin = T(0), a = T({3}), b = T(0), c = T(0), d = T(0);
-{4}    for (unsigned k = 0; k < sizeof times / sizeof times[0]; ++k) {{
+{4}    for (unsigned k = first_row(times, {5}); k < sizeof times / sizeof times[0]; ++k) {{
       const auto later = !({5} < T(times[k]));
+      if (!any(later)) break;
       begin = select(later, T(times[k]), begin), a = select(later, T(pieces[k][0]), a);
       b = select(later, T(pieces[k][1]), b), c = select(later, T(pieces[k][2]), c), d = select(later, T(pieces[k][3]), d);
     }}
@@ -43,10 +54,11 @@ constexpr const char* next_break = R"(
 )";
 
 constexpr const char* breaks_of_table = R"(    {{
-      constexpr double breaks[] = {{{0}}};
-{1}      for (const double at : breaks) {{
-        const T of_row = T(at){2};
+      static constexpr double breaks[] = {{{0}}};
+{1}      for (unsigned k = first_row(breaks, time{2}); k < sizeof breaks / sizeof breaks[0]; ++k) {{
+        const T of_row = T(breaks[k]){3};
         next = select(of_row > time && of_row < next, of_row, next);
+        if (!any(!(of_row > time))) break;
       }}
     }}
 )";
@@ -122,7 +134,7 @@ std::string tables_of(const Mechanism& mechanism) {
     for (const double at : of.breaks)
       if (of.repeats) times.push_back(at + of.times.back() - of.times.front());
     text += fmt::format(breaks_of_table, numbers(times), of.repeats ? shifted(of, of.times.front()) : "",
-                        of.repeats ? " + shift" : "");
+                        of.repeats ? " - shift" : "", of.repeats ? " + shift" : "");
   }
   return text + "    return next;\n  }\n";
 }
