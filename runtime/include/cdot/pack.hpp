@@ -102,16 +102,9 @@ struct Pack {
   friend Comparison operator==(const Pack& a, const Pack& b) { return {a.lanes == b.lanes}; }
   friend Comparison operator!=(const Pack& a, const Pack& b) { return {a.lanes != b.lanes}; }
 
-  // Bitwise, as in hardware: an Inf or NaN of the operand not chosen has no effect.
+  // An Inf or NaN of the operand not chosen has no effect. Compilers know a > b ? a : b as the larger one.
   friend Pack select(const Comparison& condition, const Pack& a, const Pack& b) {
-    using Bits = typename Comparison::Vector;
-    Bits x, y;
-    std::memcpy(&x, &a.lanes, sizeof x);
-    std::memcpy(&y, &b.lanes, sizeof y);
-    const Bits chosen = (x & condition.lanes) | (y & ~condition.lanes);
-    Pack p;
-    std::memcpy(&p.lanes, &chosen, sizeof chosen);
-    return p;
+    return Pack(condition.lanes ? a.lanes : b.lanes);
   }
 };
 
