@@ -1,5 +1,7 @@
-// The part of a compiled header that is the same in all of them: arithmetic on numbers and on packs of them.
+// Parts of compiled headers that are the same in all of them: arithmetic on numbers and on packs of them.
 #pragma once
+
+#include <string_view>
 
 namespace cdot::compile {
 
@@ -202,5 +204,99 @@ inline void sin_cos_after(Pose& q, const Displacement& d) {
 #endif
 
 )";
+
+// For headers that call them.
+inline constexpr const char* functions = R"(#ifndef CDOT_SCENE_FUNCTIONS
+#define CDOT_SCENE_FUNCTIONS
+namespace cdot::scenes {
+
+// Exponentials and logarithms without branches: the same bits in a lane as alone, within 1 unit in the last place. They
+// are objects: no other function of their name takes part.
+template <int bytes>
+struct WordOf {
+  using type = unsigned long long;
+};
+template <>
+struct WordOf<4> {
+  using type = unsigned;
+};
+template <class T>
+struct Bits {
+  using Number = typename NumberOf<T>::type;
+  using Word = typename WordOf<sizeof(Number)>::type;
+  static constexpr bool single = sizeof(Number) == 4;
+  static constexpr int digits = single ? 23 : 52, bias = single ? 127 : 1023;
+  static constexpr double whole = single ? 8388608.0 : 4503599627370496.0;  // 2^digits: whole + n has the bits of n last
+  static constexpr Word of_whole = Word(bias + digits) << digits, of_one = Word(bias) << digits;
+  // The bits of each number changed by f.
+  template <class F>
+  static T change(const T& x, F f) {
+    Word words[sizeof(T) / sizeof(Number)];
+    __builtin_memcpy(words, &x, sizeof x);
+    for (Word& word : words) word = f(word);
+    T y;
+    __builtin_memcpy(&y, words, sizeof y);
+    return y;
+  }
+  static T rounded(const T& x) { return x + T(1.5 * whole) - T(1.5 * whole); }
+  static T power_of_two(const T& n) {
+    return change(n + T(1.5 * whole + bias), [](Word word) { return word << digits; });
+  }
+};
+
+// e^x = 2^n e^r with x = n ln 2 + r; of e^r the series up to r^13, added in pairs, whose sums do not wait for each other.
+struct Exponential {
+  template <class T>
+  T operator()(const T& x) const {
+    using B = Bits<T>;
+    const T n = B::rounded(x * T(1.44269504088896338700)), half = B::rounded(n * T(0.5));
+    const T high = x - n * T(B::single ? 0.693359375 : 6.93147180369123816490e-01);
+    const T low = n * T(B::single ? -2.12194440e-4 : 1.90821492927058770002e-10);
+    const T r = high - low, z = r * r, w = z * z;
+    const T by_2 = T(1.0 / 2) + r * T(1.0 / 6) + z * (T(1.0 / 24) + r * T(1.0 / 120));
+    const T by_6 = T(1.0 / 720) + r * T(1.0 / 5040) + z * (T(1.0 / 40320) + r * T(1.0 / 362880));
+    const T by_10 = T(1.0 / 3628800) + r * T(1.0 / 39916800) + z * (T(1.0 / 479001600) + r * T(1.0 / 6227020800));
+    const T y = T(1) + (high + (z * (by_2 + w * by_6 + w * w * by_10) - low));
+    const T power = y * B::power_of_two(half) * B::power_of_two(n - half);
+    const T most = T(B::single ? 120 : 800);  // beyond the largest and the smallest number
+    return select(x > most, T(__builtin_inf()), select(x < -most, T(0), power));
+  }
+};
+
+// log x = e ln 2 + log m with x = 2^e m, m near 1; with f = m - 1 and s = f / (2 + f), log m = f - s (f - R), where R
+// is a polynomial of s^2 (fdlibm).
+struct Logarithm {
+  template <class T>
+  T operator()(const T& x) const {
+    using B = Bits<T>;
+    using Word = typename B::Word;
+    const auto tiny = x < T(B::single ? 1.17549435e-38 : 2.2250738585072014e-308);
+    T y = x, e = T(-B::bias);
+    if (any(tiny)) y = select(tiny, x * T(4 * B::whole), x), e = select(tiny, e - T(B::digits + 2), e);
+    constexpr Word least = B::single ? 0x3f3504f3 : 0x3fe6a09e667f3bcd, shift = B::of_one - least;  // m from sqrt(1/2) on
+    e = e + (B::change(y, [](Word word) { return (word + shift) >> B::digits | B::of_whole; }) - T(B::whole));
+    const T m = B::change(y, [](Word word) { return ((word + shift) & ((Word(1) << B::digits) - 1)) + least; });
+    const T f = m - T(1), s = f / (T(2) + f), z = s * s, w = z * z;
+    const T R = z * (T(6.666666666666735130e-01) + w * T(2.857142874366239149e-01) +
+                     w * w * (T(1.818357216161805012e-01) + w * T(1.479819860511658591e-01))) +
+                w * (T(3.999999999940941908e-01) + w * (T(2.222219843214978396e-01) + w * T(1.531383769920937332e-01)));
+    const T half = T(0.5) * f * f;
+    const T high = T(B::single ? 0.693359375 : 6.93147180369123816490e-01);
+    const T low = T(B::single ? -2.12194440e-4 : 1.90821492927058770002e-10);
+    const T value = e * high - ((half - (s * (half + R) + e * low)) - f);
+    const T endless = T(__builtin_inf());
+    return select(x > T(0), select(x < endless, value, x), select(x < T(0), T(__builtin_nan("")), x - endless));
+  }
+};
+
+}  // namespace cdot::scenes
+#endif
+
+)";
+
+// The type of the object that stands for a function of <cmath>; null: none does.
+inline const char* own_function(std::string_view name) {
+  return name == "exp" ? "Exponential" : name == "log" ? "Logarithm" : nullptr;
+}
 
 }  // namespace cdot::compile

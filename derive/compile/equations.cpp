@@ -66,13 +66,8 @@ class EquationWriter {
 
   void write_errors() {
     Algebra algebra(out_.constants);
-    for (std::size_t k = 0; k < system().blocks().size(); ++k) {
-      const RowBlock& joint = system().blocks()[k];
-      Values C;
-      if (!joint.motor) C = blocks_.call(algebra, joint, "position", blocks_.inputs(algebra, joint));
-      for (std::size_t r = 0; r < joint.rows->count(); ++r)
-        algebra.output(element("C", system().first_row(k) + r), joint.motor ? algebra.value(0) : C.at(element("C", r)));
-    }
+    const std::vector<int> errors = joints_.errors(algebra);
+    for (std::size_t row = 0; row < errors.size(); ++row) algebra.output(element("C", row), errors[row]);
     out_.errors = algebra.finish_as_kernels();
   }
 
@@ -110,8 +105,9 @@ class EquationWriter {
 
   bool foresees() const {
     const Method method = mechanism_.method;
-    return mechanism_.foresees && mechanism_.bonds.empty() && !mechanism_.has_loads() && !mechanism_.has_rates() &&
-           (method == Method::euler || method == Method::rattle) && !out_.has_ends && !out_.finishes && !out_.exerts;
+    return mechanism_.foresees && !mechanism_.open && mechanism_.bonds.empty() && !mechanism_.has_loads() &&
+           !mechanism_.has_rates() && (method == Method::euler || method == Method::rattle) && !out_.has_ends &&
+           !out_.finishes && !out_.exerts;
   }
 
   void write_middle() {
@@ -245,9 +241,10 @@ std::set<std::string> functions_of(const Program& program) {
   return functions;
 }
 
-bool calls_functions(const Equations& equations) {
-  return std::ranges::any_of(programs_of_equations(equations),
-                             [](const Program* program) { return !functions_of(*program).empty(); });
+std::set<std::string> functions_of(const Equations& equations) {
+  std::set<std::string> functions;
+  for (const Program* program : programs_of_equations(equations)) functions.merge(functions_of(*program));
+  return functions;
 }
 
 Equations equations_of(const Mechanism& mechanism, const Names& names, const derive::SpecsFolder& specs) {

@@ -62,9 +62,9 @@ struct Equations {
   Program resolve;                      // q, v, time, a, force, h -> of_value, of_rate, of_force: resolutions
 };
 std::vector<const Program*> programs_of_equations(const Equations& equations);
-// Those of <cmath> that it calls.
+// The functions that it calls, beside those of every header.
 std::set<std::string> functions_of(const Program& program);
-bool calls_functions(const Equations& equations);
+std::set<std::string> functions_of(const Equations& equations);
 
 Equations equations_of(const Mechanism& mechanism, const Names& names, const derive::SpecsFolder& specs);
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 
+#include "derive/compile/arithmetic.hpp"
 #include "derive/compile/bodies.hpp"
 #include "derive/compile/equations.hpp"
 #include "derive/compile/foresight/foresight.hpp"
@@ -79,8 +80,11 @@ class HeaderWriter {
   }
 
   void write_head() {
-    const bool calls = calls_functions(equations_) || has().bonds || has().cones || (has().midpoint && has().drags);
-    text_ += head_of(mechanism_, request_.command, calls || mechanism_.spatial());
+    std::set<std::string> calls = functions_of(equations_);
+    const auto own = std::erase_if(calls, [](const std::string& f) { return own_function(f) != nullptr; });
+    const bool others = !calls.empty() || has().bonds || has().cones || (has().midpoint && has().drags);
+    text_ += head_of(mechanism_, request_.command, others || mechanism_.spatial());
+    if (own > 0) text_ += functions;
     if (mechanism_.spatial() && has().midpoint) text_ += tension;
     line("namespace cdot::scenes {");
     line();
@@ -175,7 +179,8 @@ class HeaderWriter {
   }
 
   void write_using(const Program& program) {
-    for (const std::string& f : functions_of(program)) line("    using std::" + f + ";");
+    for (const std::string& f : functions_of(program))
+      line(own_function(f) ? fmt::format("    constexpr {} {};", own_function(f), f) : "    using std::" + f + ";");
   }
 
   void write_equations() {

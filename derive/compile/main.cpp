@@ -29,6 +29,7 @@ struct Options {
 std::string command_of(const Options& options) {
   std::string command = "cdot compile " + std::filesystem::path(options.scene).filename().string();
   if (!options.wishes.integrator.empty()) command += " --integrator " + options.wishes.integrator;
+  if (!options.wishes.drift.empty()) command += " --drift " + options.wishes.drift;
   if (options.wishes.step > 0) command += fmt::format(" --step {}", options.wishes.step);
   for (const std::string& input : options.wishes.inputs)
     command += (input == options.wishes.inputs.front() ? " --input " : ",") + input;
@@ -65,6 +66,9 @@ void add_options(Line& line, Options& options) {
   line.add("--integrator", &options.wishes.integrator,
            "Method of the step; without it that of the scene, or rk4 if the scene names none")
       .one_of({"euler", "implicit", "rattle", "rk4", "dop853", "radau5"});
+  line.add("--drift", &options.wishes.drift,
+           "Correction of C; without it that of the scene, or projection: baumgarte and none go with euler")
+      .one_of({"projection", "baumgarte", "none"});
   line.add("--step", &options.wishes.step, "Its usual length [s]; without it that of the scene, or 0.001").positive();
   line.add("--input", &options.wishes.inputs,
            "A number that a run may change, as hinge.angle.motor.speed: a member of State::p. Several are separated by "

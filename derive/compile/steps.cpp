@@ -35,13 +35,30 @@ constexpr const char* euler_begins = R"(
   static T step(State& s, T h = T(default_step)) {
 )";
 
+constexpr const char* euler_begins_open = R"(
+  // Symplectic Euler: velocities with the joints' impulses, then poses. Nothing projects these onto C = 0.
+  static T step(State& s, T h = T(default_step)) {
+)";
+
 constexpr const char* euler_by_joints = R"(    push($qs.v, h);
     T rate[rows];
     rates(s.J, s.v, rate);
-    Velocity d[bodies];
+{}    Velocity d[bodies];
     solve($qs.J, rate, s.lambda, d);
     for (int i = 0; i < rows; ++i) s.lambda[i] = -s.lambda[i];
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] - d[i];
+)";
+
+constexpr const char* feeds_back = R"(    T C[rows];
+    errors($ss.q, s.time, C);
+    const T share = T({}) / h;
+    for (int i = 0; i < rows; ++i) rate[i] = rate[i] + share * C[i];
+)";
+
+constexpr const char* returns_errors = R"(    T left[rows];
+    errors($ss.q, s.time, left);
+    return largest(left);
+  }
 )";
 
 constexpr const char* euler_by_kick = R"(    Velocity next[bodies];
@@ -105,8 +122,9 @@ constexpr const char* euler_corrects = R"({0}    Velocity moves[bodies];
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + select(keep, T(1) / h, T(0)) * moves[i];
 )";
 
-std::string euler(double tolerance, const Contents& has) {
-  std::string text = euler_begins;
+std::string euler(const Mechanism& mechanism, const Contents& has) {
+  const double tolerance = mechanism.tolerance;
+  std::string text = has.open ? euler_begins_open : euler_begins;
   if (has.effects || has.bounded) {
     const std::string arguments =
         has.rows ? "$ss.q, s.time, s.v, s.J, h, next, s.lambda" : "$ss.q, s.time, s.v, h, next";
@@ -114,7 +132,8 @@ std::string euler(double tolerance, const Contents& has) {
                                                                  has.rows ? adds_impulses : "", settles_impulses(has))
                                                    : fmt::format("    kick({});\n", arguments));
   } else {
-    text += has.rows ? euler_by_joints : "    push($qs.v, h);\n";
+    text += has.rows ? fmt::format(euler_by_joints, has.feeds ? fmt::format(feeds_back, mechanism.fed_back) : "")
+                     : "    push($qs.v, h);\n";
   }
   if (has.closes()) text += "    const T left = s.residual;\n" + notes_poses(has);
   if (has.gyroscopes || !has.foresees) text += drifts(has, "s");
@@ -132,8 +151,9 @@ std::string euler(double tolerance, const Contents& has) {
   text += "$C";
   if (has.rows) text += evaluates;
   if (has.weighs) text += euler_weighs(has);
-  else if (has.rows) text += "    project(s);\n";
+  else if (has.projects()) text += "    project(s);\n";
   if (has.events) text += "    latch(s);\n";
+  if (has.rows && has.open) return text + returns_errors;
   return text + fmt::format("    return {};\n  }}\n", has.closes() ? "s.residual" : "T(0)");
 }
 
@@ -165,6 +185,8 @@ Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
           .weighs = mechanism.weighs(),
           .drags = std::ranges::any_of(mechanism.bodies, &Body::drags),
           .foresees = !equations.apply.outputs.empty(),
+          .open = mechanism.open,
+          .feeds = mechanism.fed_back > 0,
           .collocated = mechanism.method == Method::radau5 ? mechanism.components() : 0};
 }
 
@@ -178,6 +200,8 @@ Calls calls_of(Method method, const Contents& has) {
     if (has.finishes) calls.finish = 1, --calls.rates, --calls.solve;
     return calls;
   }
+  if (has.open && has.effects) return {.evaluate = 1, .errors = 1, .kick = 1};
+  if (has.open) return {.evaluate = 1, .errors = has.feeds ? 2 : 1, .rates = 1, .solve = 1};
   if (method == Method::euler) {
     if (has.effects || has.bounded) calls.kick = 1;
     else ++calls.rates, ++calls.solve;
@@ -284,7 +308,7 @@ std::string begin_of(Method method, const Contents& has) {
 }
 
 std::string step_of(const Mechanism& mechanism, const Contents& has) {
-  if (mechanism.method == Method::euler) return euler(mechanism.tolerance, has);
+  if (mechanism.method == Method::euler) return euler(mechanism, has);
   if (mechanism.method == Method::rattle) return rattle(mechanism.tolerance, has);
   if (mechanism.method == Method::implicit) return implicit(mechanism, has);
   if (mechanism.method == Method::radau5) return radau(mechanism, has);

@@ -1,10 +1,10 @@
-# cdot_add_scene(TARGET name SCENE crane.toml [INTEGRATOR rk4] [STEP 0.001] [NAME crane] [INPUTS hinge.angle.motor.speed …] [NO_FORESIGHT]):
+# cdot_add_scene(TARGET name SCENE crane.toml [INTEGRATOR rk4] [DRIFT none] [STEP 0.001] [NAME crane] [INPUTS hinge.angle.motor.speed …] [NO_FORESIGHT]):
 # at build time `cdot compile` writes the scene as its own step, and the target finds it by #include "crane.hpp". Needs
 # no library.
 function(cdot_add_scene)
-  cmake_parse_arguments(arg "NO_FORESIGHT" "TARGET;SCENE;INTEGRATOR;STEP;NAME" "INPUTS" ${ARGN})
+  cmake_parse_arguments(arg "NO_FORESIGHT" "TARGET;SCENE;INTEGRATOR;DRIFT;STEP;NAME" "INPUTS" ${ARGN})
   if(NOT arg_TARGET OR NOT arg_SCENE OR arg_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "usage: cdot_add_scene(TARGET name SCENE file.toml [INTEGRATOR method] [STEP seconds] [NAME struct] [INPUTS number…] [NO_FORESIGHT])")
+    message(FATAL_ERROR "usage: cdot_add_scene(TARGET name SCENE file.toml [INTEGRATOR method] [DRIFT correction] [STEP seconds] [NAME struct] [INPUTS number…] [NO_FORESIGHT])")
   endif()
   if(NOT TARGET cdot::cdot-compile)
     message(FATAL_ERROR "cdot_add_scene: this cdot was built without its generator (CDOT_DERIVE=OFF)")
@@ -16,6 +16,9 @@ function(cdot_add_scene)
   set(options --name ${arg_NAME})
   if(arg_INTEGRATOR)
     list(APPEND options --integrator ${arg_INTEGRATOR})
+  endif()
+  if(arg_DRIFT)
+    list(APPEND options --drift ${arg_DRIFT})
   endif()
   if(arg_STEP)
     list(APPEND options --step ${arg_STEP})

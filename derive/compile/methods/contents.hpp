@@ -27,14 +27,16 @@ struct Contents {
   bool weighs = false;         // by Euler's steps or RATTLE: the impulses of corrections count as loads
   bool drags = false;          // some body has drag
   bool foresees = false;       // the multipliers of the next projection, by those of the last steps
+  bool open = false;           // no step projects its end
+  bool feeds = false;          // velocities take a share of C back
   std::size_t collocated = 0;  // by Radau IIA: components of velocities
   bool strides() const { return modes || snaps; }                        // steps end strides at events
-  bool projects() const { return rows || modes; }                        // velocities
+  bool projects() const { return (rows || modes) && !open; }             // velocities
   bool repeats() const { return weighs && exerts && bounded; }           // forces of rows that prescribe a rate
   bool corrects_loads() const { return loads && (weighs || midpoint); }  // by impulses beside those found
   bool carries_over() const { return loads && weighs && !rattle; }       // impulses of the last corrections
   bool weighs_joints() const { return weighs && (bonds || loads) && rows; }
-  bool closes() const { return rows || ends; }
+  bool closes() const { return (rows || ends) && !open; }
   bool stiffens() const { return midpoint && (rows || bounded); }            // by tension
   bool replaces() const { return strides() || midpoint || collocated > 0; }  // some lanes of a State
   bool pulls() const { return rattle && (rows || bounded); }                 // a State has its joints' accelerations

@@ -76,6 +76,17 @@ int JointRows::drift(Algebra& algebra, std::size_t row) const {
   return C_t == rates_.end() ? algebra.value(0) : read(algebra, C_t->second);
 }
 
+std::vector<int> JointRows::errors(Algebra& algebra) const {
+  std::vector<int> errors;
+  for (const RowBlock& joint : system_.blocks()) {
+    Values C;
+    if (!joint.motor) C = blocks_.call(algebra, joint, "position", blocks_.inputs(algebra, joint));
+    for (std::size_t r = 0; r < joint.rows->count(); ++r)
+      errors.push_back(joint.motor ? algebra.value(0) : C.at(derive::element("C", r)));
+  }
+  return errors;
+}
+
 std::vector<int> JointRows::rates(Algebra& algebra, const Values& velocities) const {
   std::vector<int> rates;
   for (std::size_t k = 0; k < J_.size(); ++k) {

@@ -23,6 +23,8 @@ class JointRows {
 
   // Inputs of a block of the system, with J as it was stored.
   Values inputs(Algebra& algebra, std::size_t block) const;
+  // C of all rows; 0 of motors.
+  std::vector<int> errors(Algebra& algebra) const;
   // J v + dC/dt of all rows, with these velocities in place of v, if there are any.
   std::vector<int> rates(Algebra& algebra, const Values& velocities) const;
   // dC/dt of a row; 0 for most; of a motor whose speed follows a function of time, what it takes from the rate.

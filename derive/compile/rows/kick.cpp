@@ -43,8 +43,10 @@ class KickWriter {
     for (std::size_t k = 0; k < plan_.effects.size(); ++k) add_effect(answers, joints + k, plan_.effects[k]);
     factor();
     const std::size_t rows = joints_.system().size();
+    const std::vector<int> wanted = by_euler ? fed_back() : std::vector<int>(rows, algebra_.value(0));
     const Answers::Answer end = answers.to(by_euler ? pushed() : given(), [&](std::size_t row) {
-      return row < rows ? joints_.drift(algebra_, row) : drifts_[row - rows];
+      if (row >= rows) return drifts_[row - rows];
+      return algebra_.sum({{joints_.drift(algebra_, row), wanted[row]}, {1, 1}});
     });
     for (std::size_t row = 0; row < rows; ++row) algebra_.output(element("lambda", row), end.lambda[row]);
     output("next", end.velocities);
@@ -88,6 +90,14 @@ class KickWriter {
     each_component(blocks_, [&](const Component& component, double, double) {
       algebra_.output(component.in(array), velocities.at(component.name));
     });
+  }
+
+  // Rates by which the joints take a share of C back in the step.
+  std::vector<int> fed_back() {
+    const int rate = algebra_.times(algebra_.value(blocks_.mechanism().fed_back), algebra_.function(Fn::inverse, {h_}));
+    std::vector<int> rates = joints_.errors(algebra_);
+    for (int& of_row : rates) of_row = algebra_.times(rate, of_row);
+    return rates;
   }
 
   // The known impulses act.

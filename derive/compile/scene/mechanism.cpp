@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <limits>
 
+#include <cdot/methods.hpp>
 #include <cdot/world.hpp>
 
 #include "derive/compile/scene/bonds.hpp"
@@ -62,7 +63,8 @@ void refuse_parts(const Scene& scene) {
   const Settings& s = scene.settings;
   for (const SceneJoint& joint : scene.joints) refuse_joint(joint, scene, refusals);
   refuse(s.solver != Solver::direct, "a compiled step solves all rows at once", "write solver = \"direct\"");
-  refuse(s.drift != Drift::projection, "a compiled step projects its end", "write drift = \"projection\"");
+  refuse(s.drift == Drift::soft || (s.drift != Drift::projection && s.integrator != Integrator::euler),
+         "a compiled step projects its end, unless euler takes baumgarte or none", "write drift = \"projection\"");
   refuse(s.local_error > 0, "a compiled step has a fixed length", "give --step in place of local_error");
   refuse(s.substeps != 1, "a compiled step is one step", "divide the step by substeps");
   refusals.throw_any();
@@ -73,6 +75,7 @@ void settle_method(Scene& scene, const Wishes& wishes) {
   if (!wishes.integrator.empty())
     scene.settings.integrator = std::ranges::find(integrator_rows, wishes.integrator, &IntegratorRow::name)->integrator;
   else if (chooses_method(scene) || !scene.names_integrator) scene.settings.integrator = Integrator::rk4;
+  if (!wishes.drift.empty()) scene.drift = std::ranges::find(drifts, wishes.drift, &Named<Drift>::name)->method;
   if (wishes.step > 0) scene.step = wishes.step;
   else if (scene.step == 0 || chooses_method(scene)) scene.step = default_step;
   scene.accuracy = 0;
@@ -206,6 +209,17 @@ void refuse_rates_beside_bounds(const Scene& scene, const Mechanism& mechanism) 
   refusals.throw_any();
 }
 
+// Their ends are kept by projections, and their loads count what these pull.
+void refuse_bounds_without_projection(const Scene& scene, const Mechanism& mechanism) {
+  if (!mechanism.open || (mechanism.bounded.empty() && mechanism.bonds.empty())) return;
+  Refusals refusals(scene);
+  refusals.add({},
+               fmt::format("{}: cdot compile knows rows with bounds and joints that break only with projections",
+                           mechanism.bounded.empty() ? mechanism.bonds[0].name : mechanism.bounded[0].name),
+               "write drift = \"projection\"");
+  refusals.throw_any();
+}
+
 // Radau IIA: Newton's dense matrices stay on the stack.
 void refuse_large(const Scene& scene, const Mechanism& mechanism) {
   constexpr std::size_t most = 128;
@@ -247,6 +261,7 @@ void add_parts(const Scene& scene, Mechanism& mechanism) {
   add_effects(scene, world, mechanism);
   read_bonds(scene, world, mechanism);
   refuse_rates_beside_bounds(scene, mechanism);
+  refuse_bounds_without_projection(scene, mechanism);
   note_own_specs(mechanism);
 }
 
@@ -268,6 +283,8 @@ Mechanism read_mechanism(const std::string& file, const Wishes& wishes) {
     mechanism.notes.emplace_back("Compiled bodies do not sleep: sleep_after is left out.");
   mechanism.inputs = wishes.inputs;
   mechanism.foresees = !wishes.plain;
+  mechanism.open = scene.settings.drift != Drift::projection;
+  if (scene.settings.drift == Drift::baumgarte) mechanism.fed_back = scene.settings.baumgarte;
   for (std::string& name : mechanism.inputs) std::ranges::replace(name, '.', '_');
   mechanism.gravity = {scene.settings.gravity_x, scene.settings.gravity_y, scene.settings.gravity_z};
   if (mechanism.spatial()) add_parts<Spatial<double>>(scene, mechanism);

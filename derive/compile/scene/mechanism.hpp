@@ -119,6 +119,8 @@ struct Mechanism {
   std::map<std::string, std::string> own_specs;  // files beside the scene, by type
   std::vector<Table> tables;                     // that numbers follow
   bool foresees = true;                          // corrections may begin close to their end
+  bool open = false;                             // no step projects onto C = 0
+  double fed_back = 0;                           // share of C that the velocities of a step take back
   int angles = 0;                                // that count whole turns
   std::vector<std::string> notes;                // parts of the scene that are left out
 
@@ -166,7 +168,7 @@ struct Mechanism {
 
 // Choices of the command line in place of the scene's; empty and 0: as the scene has it.
 struct Wishes {
-  std::string integrator;
+  std::string integrator, drift;
   double step = 0;
   std::vector<std::string> inputs;  // "hinge.angle.servo.target"
   bool plain = false;               // corrections foresee nothing
