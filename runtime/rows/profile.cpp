@@ -50,6 +50,9 @@ class Table final : public Profile::Course {
     order_ = table_.interpolation == Interpolation::step ? 0 : table_.interpolation == Interpolation::linear ? 1 : 3;
     const bool equal = table_.values.front() == table_.values.back();
     order_of_ends_ = table_.beyond == Beyond::hold ? std::min(order_, 1) : equal ? order_ : 0;
+    for (std::size_t order = 0; order < breaks_.size(); ++order)
+      for (auto row = table_.times.cbegin(); row != table_.times.cend(); ++row)
+        if (order_at(row) <= static_cast<int>(order)) breaks_[order].push_back(*row);
   }
 
   ProfileValue at(double time, const ProfileSpan& span) const override {
@@ -66,15 +69,14 @@ class Table final : public Profile::Course {
   }
 
   double next_break(double after, int order) const override {
+    const std::vector<double>& breaks = breaks_[static_cast<std::size_t>(std::clamp(order, 0, 3))];
     const bool repeats = table_.beyond == Beyond::repeat;
-    for (double shift = repeats ? periods_before(after) * period() : 0;; shift += period()) {
-      for (auto row = std::upper_bound(table_.times.begin(), table_.times.end(), after - shift);
-           row != table_.times.end(); ++row) {
-        const bool end = row == table_.times.begin() || row + 1 == table_.times.end();
-        if (order_at(row, end) <= order && *row + shift > after) return *row + shift;
-      }
-      if (!repeats || !breaks_at_all(order)) return unbounded;
+    for (double shift = repeats ? periods_before(after) * period() : 0; !breaks.empty(); shift += period()) {
+      for (auto at = std::upper_bound(breaks.begin(), breaks.end(), after - shift); at != breaks.end(); ++at)
+        if (*at + shift > after) return *at + shift;
+      if (!repeats) break;
     }
+    return unbounded;
   }
 
   std::array<double, 2> range() const override {
@@ -92,20 +94,17 @@ class Table final : public Profile::Course {
     return span.until - 1e-6 * length;
   }
 
-  int order_at(std::vector<double>::const_iterator row, bool end) const {
-    const bool jump = row + 1 != table_.times.end() && *(row + 1) == *row;
-    const bool second_of_jump = row != table_.times.begin() && *(row - 1) == *row;
-    return jump || second_of_jump ? 0 : end ? order_of_ends_ : order_;
-  }
-  bool breaks_at_all(int order) const {
-    for (auto row = table_.times.begin(); row != table_.times.end(); ++row)
-      if (order_at(row, row == table_.times.begin() || row + 1 == table_.times.end()) <= order) return true;
-    return false;
+  // Of the lowest derivative that jumps there.
+  int order_at(std::vector<double>::const_iterator row) const {
+    const bool first = row == table_.times.begin(), last = row + 1 == table_.times.end();
+    if ((!last && *(row + 1) == *row) || (!first && *(row - 1) == *row)) return 0;
+    return first || last ? order_of_ends_ : order_;
   }
 
   ProfileTable table_;
   std::vector<Cubic> pieces_;
-  int order_, order_of_ends_;  // of the derivatives that jump at the rows
+  int order_, order_of_ends_;                  // of the derivatives that jump at the rows
+  std::array<std::vector<double>, 4> breaks_;  // times at which a derivative of this order or a lower one jumps
 };
 
 void check(const ProfileTable& table) {

@@ -13,14 +13,15 @@ namespace {
 
 // The numbers of a slot go on within the span `next`. Where they jump, their mover puts in the energy that rows gain.
 template <class S>
-void begin_span(WorldData<S>& world, Island<S>& island, Batch<S>& batch, int slot, double time,
-                const ProfileSpan& next) {
+void begin_span(WorldData<S>& world, Island<S>& island, Batch<S>& batch, int slot, double time, const ProfileSpan& next,
+                bool effect) {
   const bool jumps = batch.spans[2 * slot + 1] <= next.from;
   const double before = jumps ? potential_of(world, batch, slot, time, world.one_slot) : 0;
   batch.spans[2 * slot] = next.from, batch.spans[2 * slot + 1] = next.until;
   if (!jumps) return;
   // The rows and the accelerations of the last step hold the numbers before the jump.
   island.evaluated = island.factored = island.flow.known = false;
+  if (!effect) island.kinked = static_cast<int>(batch.source);
   const double after = potential_of(world, batch, slot, time, world.one_slot);
   put_in(world, static_cast<Source>(batch.source), after - before);
 }
@@ -42,7 +43,7 @@ double begin_piece(WorldData<S>& world, Island<S>& island, double time, double h
         const int lowest = effect || drive.of_row ? 0 : 1;
         slot_until = std::min(slot_until, drive.profile.next_break(time + near, std::max(order, lowest)));
       }
-      begin_span(world, island, *batch, slot, time, {time + near, slot_until});
+      begin_span(world, island, *batch, slot, time, {time + near, slot_until}, effect);
       until = std::min(until, slot_until);
     }
   }

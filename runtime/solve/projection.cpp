@@ -8,6 +8,7 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/balance/balance.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/longest_move.hpp"
 #include "runtime/solve/solver.hpp"
@@ -214,6 +215,18 @@ void project_velocities(WorldData<S>& world, Island<S>& island) {
 }
 
 template <class S>
+void project_velocities_at_start(WorldData<S>& world, Island<S>& island) {
+  if (island.kinked < 0) return project_velocities(world, island);
+  const auto source = static_cast<Source>(island.kinked);
+  island.kinked = -1;
+  const double before = kinetic_energy(world, island);
+  project_velocities(world, island);
+  const double gained = kinetic_energy(world, island) - before;
+  if (gained > 0) put_in(world, source, gained);
+  else take(world, source, -gained);
+}
+
+template <class S>
 void project_start(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   if (world.settings.drift != Drift::projection || island.segments.empty()) return;
@@ -278,6 +291,7 @@ void project_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
   template void fail_if_moved_far(const WorldData<S>&, Island<S>&, double, double);        \
   template bool correction_is_small(const WorldData<S>&, const Island<S>&, double);        \
   template void project_velocities(WorldData<S>&, Island<S>&);                             \
+  template void project_velocities_at_start(WorldData<S>&, Island<S>&);                    \
   template void project_start(WorldData<S>&, Island<S>&);                                  \
   template void project_step(WorldData<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)

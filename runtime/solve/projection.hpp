@@ -76,6 +76,11 @@ bool correction_is_small(const WorldData<S>& world, const Island<S>& island, dou
 template <class S>
 void project_velocities(WorldData<S>& world, Island<S>& island);
 
+// The same at the start of a step. Where the number of a joint in time has a kink, as the length of a rod by a linear
+// table, velocities jump, and its mover puts in what the bodies gain.
+template <class S>
+void project_velocities_at_start(WorldData<S>& world, Island<S>& island);
+
 // With Drift::projection: project_start() projects the poses at the start of a step onto C = 0 if they are off.
 // project_step() projects the poses and velocities at the end of a step of h.
 template <class S>

@@ -99,6 +99,8 @@ struct IslandWorkspace {
   typename S::Scalar corrections_in_loads = 0, loads_in_kick = 1;
   // Share of the impulses in Batch::correction that belong to the present force of a cone and to its load.
   typename S::Scalar corrections_in_cones = 0;
+  // The source of a joint whose number in time has just passed a kink, until the velocities follow; -1: none.
+  int kinked = -1;
   bool jams = false;                        // no load was found that bounds the forces which it comes from
   const RowSolver<S>* solver = nullptr;     // that of the settings, except in a retry
   bool stiffened = false;                   // linearly implicit step: effective masses include stiffness

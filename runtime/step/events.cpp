@@ -310,9 +310,10 @@ void choose_modes_once(WorldData<S>& world, Island<S>& island, typename S::Scala
       evaluate_anew(world, island, time);
     }
   }
-  const bool starts_motor = has_strong_motor(island), stops = !starts_motor && closes_latch(world, island);
+  const bool kinked = island.kinked >= 0, starts_motor = !kinked && has_strong_motor(island),
+             stops = !kinked && !starts_motor && closes_latch(world, island);
   const double before = starts_motor || stops ? kinetic_energy(world, island) : 0;
-  project_velocities(world, island);
+  project_velocities_at_start(world, island);
   if (starts_motor) put_in(world, Source::motor, kinetic_energy(world, island) - before);
   if (stops) take(world, Source::limit, before - kinetic_energy(world, island));
   note_rates(world, island);

@@ -146,7 +146,7 @@ typename S::Scalar begin_kick_drift(WorldData<S>& world, Island<S>& island, type
   project_start(world, island);
   evaluate_anew(world, island, typename S::Scalar(world.time));
   clear_correction(world, island);
-  project_velocities(world, island);
+  project_velocities_at_start(world, island);
   fill_lambda(island, T(0));
   island.evaluated = true;
   if (has_rows(island, has_velocity_rows<S>) || has_rows(island, acts_by_force<S>)) exert_at_start(world, island, h);

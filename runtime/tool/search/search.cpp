@@ -89,6 +89,7 @@ class Search {
   std::optional<Try> after_early_end(const Attempt& last, const Attempt& now) const;
   Attempt attempt(const Try& knob, double most, const Attempt& last, bool judged);
   void judge(const Attempt& coarse, Attempt& fine) const;
+  void judge_by_another_method(Attempt& now, double most);
   void keep(Attempt&& attempt);
   bool balanced(const Attempt& attempt) const {
     return attempt.result.balance.energy.share() <= scene_.energy_tolerance;
@@ -194,6 +195,20 @@ void Search::judge(const Attempt& coarse, Attempt& fine) const {
   fine.claimed = std::max(fine.achieved, std::min(claim, yardstick_.asked()));
 }
 
+// Steps that end where numbers in time have kinks may be the same at every local error. Two runs by them agree,
+// whatever their error; one of another order does not.
+void Search::judge_by_another_method(Attempt& now, double most) {
+  Try other = now.knob;
+  other.integrator = now.knob.integrator == Integrator::dop853 ? Integrator::rk4 : Integrator::dop853;
+  const Attempt check = attempt(other, most, {}, false);
+  if (!check.whole || check.result.counts.rescued > 0) return;
+  const auto [apart, agree_until] = distance(yardstick_, check, now);
+  now.achieved = std::max(least_sure, unlike * apart), now.holds_until = agree_until;
+  now.claimed = std::max(now.achieved, local_errors * now.knob.local_error);
+  now.reached = balanced(now) && now.achieved <= yardstick_.asked();
+  if (now.reached) now.holds_until = scene_.duration;
+}
+
 // The better of two: a run that reached the accuracy, then one that holds it longer, then any that has ended.
 void Search::keep(Attempt&& attempt) {
   const auto rank = [&](const Attempt& a) {
@@ -288,6 +303,9 @@ void Search::try_candidate(Integrator integrator, double most) {
       // A stiff candidate has a bound of its own.
       if (adaptive && !(first_price_ > 0)) left_ = std::min(left_, std::max(most_first_runs * now.price, least_left_));
       if (last.whole) judge(last, now);
+      if (last.whole && adaptive && !now.reached && now.result.counts.rescued == 0 &&
+          now.knob.parts == last.knob.parts && same_steps(last.result.counts, now.result.counts))
+        judge_by_another_method(now, most - spent);
       else if (runs_ == 1 && has_long_steps(now) && now.price <= even * yardstick_.mechanisms()) try_even_steps(now);
     }
     const std::optional<double> share = next_share(last, now, idle);

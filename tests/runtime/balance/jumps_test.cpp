@@ -1,4 +1,4 @@
-// A number of a spring jumps: who moves it puts in the energy that the spring gains at that moment.
+// A number of a spring jumps, or the rate of a joint's: who moves it puts in the energy that appears at that moment.
 #include "tests/methods.hpp"
 #include "tests/runtime/effects/generated_effects.hpp"
 
@@ -41,6 +41,34 @@ TEST(Jumps, CountOnceBesideRejectedSteps) {
     EXPECT_NEAR(world.balance().put_in, 25, 1e-9) << name_of(integrators, integrator);
     EXPECT_NEAR(world.energy(), 25, 1e-6) << name_of(integrators, integrator);
   }
+}
+
+// A rod grows by 2 m/s between two kinks of its length, at the ends of steps and within: its mover gives 2 kg 4 J and
+// takes them back.
+TEST(Jumps, OfARodsRatePutInItsMotion) {
+  const Profile length = Profile::table({.times = {0, 0.3, 0.8012, 2}, .values = {1, 1, 2.0024, 2.0024}});
+  for (const IntegratorRow& row : integrator_rows)
+    for (const double local_error : {0.0, 1e-8}) {
+      if (local_error > 0 && row.level != Level::acceleration) continue;
+      Settings settings = with(row.integrator);
+      settings.local_error = local_error;
+      World<double> world(settings);
+      const int body = ball(world, 1, 0, 0, 0, 2);
+      world.add_joint(
+          {"distance", {world.ground(), body}, {{"pa", {0, 0}}, {"pb", {0, 0}}, in_time("l", {length})}, {}});
+      BalanceWatch watch;
+      for (int k = 0; k < 100; ++k) {
+        ASSERT_TRUE(world.step(0.01));
+        watch.look(world.balance());
+        if (k == 50) {
+          EXPECT_NEAR(world.balance().put_in, 4, 1e-9) << row.name;
+        }
+      }
+      EXPECT_NEAR(world.place(body).x, 2.0024, 1e-12) << row.name;
+      EXPECT_NEAR(world.energy(), 0, 1e-12) << row.name;
+      EXPECT_NEAR(world.balance().put_in - world.balance().taken, 0, 1e-9) << row.name;
+      EXPECT_LT(std::abs(watch.energy.amount), 1e-9) << row.name;
+    }
 }
 
 // The torque on a wheel jumps at each tenth step's end, up to round-off: the sum of steps lies just before or after it.
