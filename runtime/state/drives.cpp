@@ -1,6 +1,7 @@
 #include "runtime/state/drives.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 #include <cdot/spaces.hpp>
@@ -67,6 +68,11 @@ void check_functions(const JointType& type, const std::vector<NamedValue>& given
       throw Error(fmt::format("{} cannot follow a function of time: the joint has rows without a position",
                               named(type, value.name)));
     for (const auto& [number, profile] : value.in_time) {
+      if (const double jump = profile.next_break(0, 0); !type.is_effect && std::isfinite(jump))
+        throw Error(
+            fmt::format("{} jumps at t = {:.6g} s, and bodies do not. Likely fix: a linear or cubic table, without two "
+                        "rows of one time",
+                        named(type, value.name), jump));
       if (open_end(info) < profile.least() || std::isinf(profile.least())) {
         if (profile.most() < info.below || std::isinf(profile.most())) continue;
       }

@@ -373,6 +373,10 @@ TEST(InTime, NumbersThatCannotFollowAreRefused) {
   expect_refused(world,
                  {"brake", {body, ground}, {in_time("torque", {table({0, 1}, {3, -1}, Interpolation::linear)})}, {}},
                  "follows values from -1 to 3 [kg*m^2/s^2]. Likely fix: numbers above 0");
+  for (const Profile& jumping :
+       {table({0, 0.5}, {1, 2}, Interpolation::step), table({0, 0.5, 0.5, 1}, {1, 1, 2, 2}, Interpolation::linear)})
+    expect_refused(world, {"distance", {body, ground}, {{"pa", {0, 0}}, {"pb", {0, 0}}, in_time("l", {jumping})}, {}},
+                   "`l` of joint `distance` jumps at t = 0.5 s");
   SpatialWorld<double> space;
   const int sphere = space.add_body(brick(0, 0, 1));
   expect_refused(space, {"rolling_sphere", {sphere, space.ground()}, {{"fa", {0, 0, 1}}, in_time("radius", {f})}, {}},
