@@ -71,7 +71,7 @@ struct EffectAtRates {
   using T = typename S::Scalar;
   T rate[most_rows], R[most_rows];
   SpringNumbers<T> bound[most_rows];  // of the slopes
-  T secant;                           // |R| / |r|, by the energies of the rows; 0 at rest
+  T secant;                           // [1/s] |R| / |r|, by the energies of the rows; of a damper d K. 0 at rest
 
   EffectAtRates(const Batch<S>& batch, int slot) {
     const int rows = batch.ops->rows, first = slot * rows;
@@ -89,8 +89,8 @@ struct EffectAtRates {
   // The share of h in which R acts at the start. A force that saturates would reverse the motion if its slope alone
   // set the time.
   T time_at_start(int r, T K, T h) const {
-    const T d = std::max(bound[r].d, secant), half = T(0.5) * h;
-    return half * d * K > T(1) ? T(1) / (d * K) : half;
+    const T fastest = std::max(bound[r].d * K, secant), half = T(0.5) * h;
+    return half * fastest > T(1) ? T(1) / fastest : half;
   }
 };
 

@@ -159,18 +159,24 @@ void Accounts::add_round_off(const Motion& now, double operations) {
   angular_ += operations * epsilon_ * now.angular_size;
 }
 
-// The error of springs in a step. Each further order is one more derivative, a factor `rough`, or the change of the
-// spring's own rate in the step relative to the largest so far: a stretch may wave more quickly than the bodies move.
-// So may a stiffness.
-double Accounts::work_missed(const std::vector<SpringRow>& springs, double dv, double rough) {
+// The errors of springs in a step. A stretch, and a stiffness, may wave more quickly than the bodies move: the change
+// of the rate in the step counts relative to the largest so far, if that is larger.
+std::vector<Accounts::Missed> Accounts::work_missed(const std::vector<SpringRow>& springs, double dv) {
   largest_rates_.resize(springs.size(), 0);
-  double sum = 0;
+  std::vector<Missed> all;
   for (std::size_t k = 0; k < springs.size(); ++k) {
     const SpringRow &s = springs_[k], &e = springs[k];
     largest_rates_[k] = std::max({largest_rates_[k], std::abs(s.rate), std::abs(e.rate)});
     const double bend = largest_rates_[k] > 0 ? std::abs(e.rate - s.rate) / largest_rates_[k] : 0;
-    sum += missed_work(s, e, step_, dv) * std::pow(std::max({rough, bend, stiffened(s, e)}), order_ - 1);
+    all.push_back({missed_work(s, e, step_, dv), std::max(bend, stiffened(s, e))});
   }
+  return all;
+}
+
+// Each further order is one more derivative, a factor `rough`, or the spring's own.
+double Accounts::by_order(const std::vector<Missed>& all, double rough) const {
+  double sum = 0;
+  for (const Missed& of : all) sum += of.work * std::pow(std::max(rough, of.rough), order_ - 1);
   return sum;
 }
 
@@ -197,13 +203,14 @@ void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double en
   if (change_) {
     const double noise = 1000 * epsilon_ * largest_speed_;
     const double rough = largest_change_ > noise ? std::sqrt(square(now, d, *change_)) / largest_change_ : 0;
-    const double rho = std::pow(std::max(rough, rough_before_), order_ - 1);
-    add_error(now, (first_order + pending_) * rho + work_missed(springs, size, std::max(rough, rough_before_)));
+    const double most = std::max(rough, rough_before_), rho = std::pow(most, order_ - 1);
+    add_error(now, (first_order + pending_) * rho + by_order(pending_springs_, most) +
+                       by_order(work_missed(springs, size), most));
     roughest_ = std::max(roughest_, rough);
     rough_before_ = rough;
-    pending_ = 0;
+    pending_ = 0, pending_springs_.clear();
   } else {
-    pending_ = first_order + work_missed(springs, size, 1);  // of the first step
+    pending_ = first_order, pending_springs_ = work_missed(springs, size);
   }
   // An error of local_error in every pose and velocity, at the end of each step taken.
   add_error(now, double(taken - taken_) * local_error_ *

@@ -168,7 +168,12 @@ class Accounts {
 
  private:
   void add_error(const Motion& now, double energy);
-  double work_missed(const std::vector<SpringRow>& springs, double dv, double rough);
+  // What a first-order step may miss of a spring's work, and how much its rate or its stiffness changes, relative.
+  struct Missed {
+    double work, rough;
+  };
+  std::vector<Missed> work_missed(const std::vector<SpringRow>& springs, double dv);
+  double by_order(const std::vector<Missed>& all, double rough) const;
   void add_round_off(const Motion& now, double operations);
 
   double order_, epsilon_, start_energy_, local_error_;
@@ -183,6 +188,7 @@ class Accounts {
   Motion last_;
   double across_;
   std::optional<VelocityChange> change_;
+  std::vector<Missed> pending_springs_;  // of the first step, as pending_
   double rough_before_ = 0, pending_ = 0, largest_change_ = 0, largest_speed_ = 0, largest_energy_ = 0;
   double fastest_ = 0, order_error_ = 0, round_off_ = 0, roughest_ = 0, momentum_ = 0, angular_ = 0, angular_order_ = 0;
 };

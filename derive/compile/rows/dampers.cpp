@@ -42,8 +42,9 @@ struct AtRates {
   std::vector<int> t;     // the part of h in which R acts at the start
 };
 
-// At the start R acts for h/2, or for less where it would reverse the motion: for 1/(d K). d is the slope, or |R|/|r|
-// if that is more: a force that saturates would reverse the motion if its slope alone set the time.
+// At the start R acts for h/2, or for less where it would reverse the motion: for 1/(d K) of the slope d, or for
+// |r|/|R| by the energies of the rows if that is less. A force that saturates would reverse the motion if its slope
+// alone set the time.
 AtRates at_rates(Algebra& algebra, const LawWriter& law, const Masses& masses) {
   AtRates at;
   const std::vector<int> F = law.force(), rest = law.at_rest().force(), &r = law.rate();
@@ -57,7 +58,7 @@ AtRates at_rates(Algebra& algebra, const LawWriter& law, const Masses& masses) {
   const int ratio = algebra.times(algebra.sum(push), algebra.function(Fn::inverse, {algebra.sum(motion)}));
   const int secant = algebra.function(Fn::sqrt, {ratio}), half = algebra.times(algebra.value(0.5), algebra.input("h"));
   for (std::size_t i = 0; i < F.size(); ++i) {
-    const int rate = algebra.times(law.most(at.d[i], secant), masses.own(i));  // by which the effect slows its row
+    const int rate = law.most(algebra.times(at.d[i], masses.own(i)), secant);  // by which the effect slows its row
     const int reverses = algebra.sum({{algebra.times(half, rate), algebra.value(1)}, {1, -1}});
     at.t.push_back(algebra.function(Fn::select, {reverses, algebra.function(Fn::inverse, {rate}), half}));
   }

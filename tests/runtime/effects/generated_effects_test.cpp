@@ -76,6 +76,18 @@ TEST(GeneratedEffects, SweepsFindWhatTheDirectSolverFinds) {
   }
 }
 
+// A thick fluid slows a light ball, v = v_0 exp(-d t / m): K = 1/m is far from 1.
+double error_of_slowing(Integrator integrator, double h) {
+  constexpr double m = 1e-6, d = 8e-7;
+  World<double> world(with(integrator));
+  const int body = ball(world, 0, 0, 30, 0, m);
+  world.add_joint({"viscous_drag", {body}, {{"pa", {0, 0}}, {"d", {d}}}, {}});
+  for (long n = 0; n < steps_of(1, h); ++n) EXPECT_TRUE(world.step(h));
+  return std::abs(world.velocity(body).x / 30 - std::exp(-d / m));
+}
+
+TEST(GeneratedEffects, AThickFluidSlowsALightBall) { expect_orders("viscous_drag", 0.05, 0.1, error_of_slowing); }
+
 // On its circle of radius m v/strength a charge is back after 2 pi m/strength.
 double error_of_charge(Integrator integrator, double h) {
   constexpr double m = 0.5, strength = 2, period = 2 * pi * m / strength;
