@@ -93,9 +93,13 @@ enum class Impulses : char {
   rattle_end,    // `lambda` over h but that of springs, from Flow::velocity on; drag with the rate at begin_kick()
   middle,        // `correction` over h, without dampers and drag; the velocities are the mean of the kick
   end,           // `lambda` of a projection; that of springs holds their dampers
-  drift,         // `correction` of joints that depend on time
-  soft,          // as euler, the first of two kicks
-  relaxed,       // `correction` of rows but springs, the second of these kicks, without other forces
+  // `correction` of joints that depend on time. With J0 v1 = -c1 before displacements d / h, which are added to the
+  // velocities, and J1 v2 = -c2 after the change e by the projection, all joints do the work
+  //   -(mu / h) c1 + |d / h|^2 / 2 - lambda c2 - |e|^2 / 2;
+  // the squares are the method's error, so the velocities are those of the end.
+  drift,
+  soft,     // as euler, the first of two kicks
+  relaxed,  // `correction` of rows but springs, the second of these kicks, without other forces
 };
 
 // Call at the start and at the end of a kick of h. C and J are those of the kick.

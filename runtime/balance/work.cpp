@@ -233,10 +233,11 @@ void book(WorldData<S>& world, Island<S>& island, Kind impulses, typename S::Sca
   if (impulses == Impulses::dampers && !has_springs(island)) return;
   const auto& v = world.bodies.velocity;
   auto &start = world.start_of_kick, &mean = world.mean_of_kick;
+  const bool at_velocities = impulses == Impulses::middle || impulses == Impulses::drift;
   for (size_t k = 0; k < island.bodies.size(); ++k) {
     const int i = island.bodies[k];
     const auto& from = impulses == Impulses::rattle_end ? island.flow.velocity[k] : start[i];
-    mean[i] = impulses == Impulses::middle ? v[i] : S::damped(S::sum(from, v[i], T(1)), T(0.5), T(0.5));
+    mean[i] = at_velocities ? v[i] : S::damped(S::sum(from, v[i], T(1)), T(0.5), T(0.5));
     if (impulses == Impulses::rattle_start) start[i] = island.flow.velocity[k];
   }
   const bool at_end = impulses == Impulses::euler || impulses == Impulses::soft;

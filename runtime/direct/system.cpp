@@ -59,10 +59,10 @@ void System<S>::solve_kept_rows() {
 }
 
 template <class S>
-typename System<S>::Real System<S>::largest_b() const {
+typename System<S>::Real System<S>::largest_b(Of rows) const {
   Real largest = 0;
   for (int r = 0; r < rows_; ++r)
-    if (!broken[r]) largest = std::max(largest, std::abs(b[r]));
+    if (!broken[r] && !(rows == Of::free_rows && fixed[r])) largest = std::max(largest, std::abs(b[r]));
   return largest;
 }
 
@@ -79,7 +79,7 @@ char System<S>::bound_for(int r, Real excess, Real tolerance) const {
 template <class S>
 bool System<S>::revise_active_set(bool one_by_one) {
   find_excess();
-  const Real scale = largest_b();
+  const Real scale = largest_b(Of::all_rows);
   const Real tolerance = by_precision<Real>(1e-12) * scale;
   bool settled = true;
   for (int r = rows_ - 1; r >= 0; --r) {
@@ -114,7 +114,8 @@ constexpr double slight_softness = std::max(1e-8, 10 * Ldlt::pivot_share<T>);
 constexpr double softness_of_motor = 1;
 
 // Joints and limits hold the motors that contradict them: these become soft. Call after share_contradictions(), which
-// leaves an error above `slight` in the rows of a contradiction. True if rows changed.
+// leaves an error above `slight` in the rows of a contradiction. A limit far away, which does not act, sets no scale.
+// True if rows changed.
 template <class S, class Real>
 bool hold_motors(System<S>& system, Real slight) {
   bool held = false;
@@ -135,7 +136,7 @@ template <class S>
 void System<S>::solve() {
   solve_rows();
   share_contradictions();
-  if (lawful_ && contradicted_ && hold_motors(*this, slight(largest_b()))) {
+  if (lawful_ && contradicted_ && hold_motors(*this, slight(largest_b(Of::free_rows)))) {
     factor();
     solve_rows();
     share_contradictions();
@@ -149,7 +150,7 @@ void System<S>::solve() {
 template <class S>
 bool System<S>::part_contradicting_rows() {
   const auto bounded = [&](int r) { return std::isfinite(lower[r]) || std::isfinite(upper[r]); };
-  const Real scale = largest_b();
+  const Real scale = largest_b(Of::free_rows);
   bool any = false;
   for (int r = 0; r < rows_; ++r)
     any |= bounded(r) && !fixed[r] && !broken[r] && std::abs(excess(r)) > missed<Real> * scale;
@@ -192,7 +193,7 @@ int System<S>::find_active_set() {
     solve_rows();
     if (round >= fast && dependent > 0) {
       share_contradictions();
-      if (hold_motors(*this, slight(largest_b()))) {
+      if (hold_motors(*this, slight(largest_b(Of::free_rows)))) {
         yields_ = true;
         continue;
       }
@@ -215,6 +216,9 @@ int System<S>::part_and_settle() {
 template <class S>
 int System<S>::solve_bounded() {
   std::copy(active_set_.begin(), active_set_.end(), fixed.begin());  // start: the active set of the last step
+  each_row([&](int r, const Batch<S>& batch, int) {  // beside a given force that is free, a joint's row is redundant
+    if (batch.law && batch.law->force && lower[r] == upper[r]) fixed[r] = at_lower;
+  });
   for (int r = 0; r < rows_; ++r) {
     if (broken[r]) fixed[r] = free;
     if (fixed[r]) lambda[r] = fixed[r] == at_lower ? lower[r] : upper[r];

@@ -179,7 +179,8 @@ class System {
   bool has_light_bodies(const Bodies<S>& bodies) const;
   bool has_loops(const Bodies<S>& bodies) const;
   std::vector<int> movable_bodies(const Block& block, const Bodies<S>& bodies) const;
-  Real largest_b() const;
+  enum class Of : char { all_rows, free_rows };
+  Real largest_b(Of rows) const;
   char bound_for(int row, Real excess, Real tolerance) const;
   bool revise_active_set(bool one_by_one);
   int find_active_set();

@@ -61,7 +61,6 @@ void advance(WorldData<S>& world, Island<S>& island, typename S::Scalar h, const
   book_kick(world, island, Impulses::euler, h);
   if (by.speed < 1) move_slowly(world, island, h, by.speed);
   else integrate(world, island, h);
-  if (island.driven) begin_kick(world, island);
   project_step(world, island, h);
   book_kick(world, island, Impulses::drift, h);
 }

@@ -54,15 +54,13 @@ class Trial {
   Gap gap_now(BasicWorld<S>& world) const;
   double passed_share(BasicWorld<S>& world) const;
   std::optional<Verdict> look_at_joints(BasicWorld<S>& world, const Gap& gap, int k) const;
-  std::optional<Verdict> look_at_momentum(const Motion& now, const BasicWorld<S>& world, double gap, int k);
+  std::optional<Verdict> look_at_momentum(const Motion& now, BasicWorld<S>& world, double gap, int k);
   std::optional<Verdict> look_at_energy(double energy, int k) const;
   std::optional<Verdict> look_at_balance(const Balance& balance, int k) const;
   Verdict bits() const;
 
   // The error of sweeps is of first order in the step for every method.
-  bool sweeps_only() const {
-    return scene_->settings.solver == Solver::iterative && order_of(scene_->settings.integrator) > 1;
-  }
+  bool sweeps_only() const { return scene_->settings.solver == Solver::iterative && order_of(scene_->settings) > 1; }
 
   const Scene* scene_;
   const Asked* asked_;
@@ -108,19 +106,15 @@ StepResult Trial<S>::step(BasicWorld<S>& world, int k) const {
 }
 
 template <class S>
-std::optional<Verdict> Trial<S>::look_at_momentum(const Motion& now, const BasicWorld<S>& world, double gap, int k) {
+std::optional<Verdict> Trial<S>::look_at_momentum(const Motion& now, BasicWorld<S>& world, double gap, int k) {
   if (!laws_.momentum()) return {};
   double impulses = 0;
   for (int j = 0; j < world.joint_count(); ++j)
     for (const double lambda : world.impulse(j)) impulses += std::abs(lambda);
   const double rounded = impulses * operations_ * std::numeric_limits<T>::epsilon();
   pushes_ += rounded, torques_ += impulses * gap * sizes_.length + rounded * sizes_.length;
-  // M contains h dJ'lambda/dq: an impulse with a lever arm, times the rotation of a step.
-  if (scene_->settings.integrator == Integrator::implicit) {
-    double fastest = 0;
-    for (const BodyMotion& body : now.bodies) fastest = std::max(fastest, norm(body.w) + norm(body.v) / sizes_.length);
-    torques_ += impulses * sizes_.length * fastest * scene_->step;
-  }
+  if (scene_->settings.integrator == Integrator::implicit)
+    torques_ += (k == 1 ? 2 : 1) * torques_of_own_turns(world, *scene_, scene_->step);  // the first step rehearses
   const double linear = accounts_->momentum_round_off() + pushes_;
   const double angular = accounts_->angular_round_off() + accounts_->angular_order_error() + torques_;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -106,7 +106,7 @@ double turned(const SystemMatrix& before, const SystemMatrix& after, double leng
 
 Accounts::Accounts(const Motion& start, std::vector<SpringRow> springs, double energy, const Scene& scene,
                    double length, double epsilon, double across)
-    : order_(order_of(scene.settings.integrator)),
+    : order_(order_of(scene.settings)),
       epsilon_(epsilon),
       start_energy_(energy),
       local_error_(scene.settings.local_error),

@@ -18,7 +18,11 @@
 
 namespace cdot::torture {
 
-using test::order_of;
+// Of the method that takes the steps: where `implicit` does not take the midpoint rule, it is Euler's.
+inline double order_of(const Settings& s) {
+  const bool is_euler = s.integrator == Integrator::implicit && !takes_midpoint(s);
+  return test::order_of(is_euler ? Integrator::euler : s.integrator);
+}
 
 // The size of each row of a joint: |J| of a displacement by the mechanism's size and of a rotation by one radian.
 struct RowSizes {
@@ -137,6 +141,45 @@ template <class S>
 double speed_left_across(BasicWorld<S>& world, const Scene& scene) {
   const bool paid = scene.settings.solver == Solver::iterative || scene.settings.drift == Drift::projection;
   return paid ? 0 : speed_across(world, scene);
+}
+
+// The place of a body that turns on by its own rotation in h.
+template <class S>
+typename S::Place turned_on(const BasicWorld<S>& world, int body, double h) {
+  auto v = world.velocity(body);
+  v.x = v.y = 0;
+  if constexpr (S::dimension == Dimension::spatial) v.z = 0;
+  const auto pose = S::moved(world.pose(body), S::sum({}, v, typename S::Scalar(h)));
+  auto place = world.place(body);
+  if constexpr (S::dimension == Dimension::planar) place.angle = pose.angle;
+  else place.e0 = pose.e0, place.e1 = pose.e1, place.e2 = pose.e2, place.e3 = pose.e3;
+  return place;
+}
+
+// The torques of a linearly implicit step: its M contains h dJ'lambda/dq of each body's own rotation, as if the
+// impulses acted along rows that turn with it. Sum of |lambda| |J(turned) - J| over the columns of that rotation.
+template <class S>
+double torques_of_own_turns(BasicWorld<S>& world, const Scene& scene, double h) {
+  constexpr int lengths = S::dimension == Dimension::planar ? 2 : 3;
+  const SystemMatrix at = system_matrix(world);
+  BasicWorld<S> other = build_world_in<S>(scene);
+  for (int body = 0; body < static_cast<int>(scene.bodies.size()); ++body) other.set_pose(body, world.place(body));
+  double sum = 0;
+  for (std::size_t b = 0; b < at.bodies.size(); ++b) {
+    other.set_pose(at.bodies[b], turned_on(world, at.bodies[b], h));
+    const SystemMatrix turned = system_matrix(other);
+    for (const SystemMatrix::Joint& joint : at.joints) {
+      const std::vector<double> impulse = world.impulse(joint.joint);
+      for (int r = 0; r < joint.rows; ++r) {
+        double square = 0;
+        for (int c = at.freedom * static_cast<int>(b) + lengths; c < at.freedom * static_cast<int>(b + 1); ++c)
+          square += std::pow(turned.entry(joint.first + r, c) - at.entry(joint.first + r, c), 2);
+        sum += std::abs(impulse[static_cast<std::size_t>(r)]) * std::sqrt(square);
+      }
+    }
+    other.set_pose(at.bodies[b], world.place(at.bodies[b]));
+  }
+  return sum;
 }
 
 // The bounds of energy and angular momentum after the steps so far; see README.md.

@@ -46,6 +46,10 @@ struct BlockLoops : BlockSlots<S, Joint, Block> {
     if constexpr (Turns::counts_parameters)
       Turns::count_parameters(block_of<Block>(batch), q, first_parameter(batch, slot), time, counters(batch, slot));
   }
+  // Their rows take C from position(): beside J, an angle at half a turn may round to the other side than as counted.
+  static bool counts_some_parameters(const Batch<S>& batch) {
+    return Turns::counts_parameters && batch.ops->counters > int(Turns::is_angle());
+  }
   static void count_angle(Batch<S>& batch, int slot, T (&C)[rows]) {
     if constexpr (Turns::is_angle()) Turns::count_angle(block_of<Block>(batch), C[0], counters(batch, slot));
   }
@@ -101,6 +105,7 @@ struct BlockLoops : BlockSlots<S, Joint, Block> {
       const Parameters& p = parameters(batch, slot);
       T C[rows];
       block_of<Block>(batch).jacobian(q, p, time, C, entries(batch, slot));
+      if (counts_some_parameters(batch)) block_of<Block>(batch).position(q, p, time, C);
       count_angle(batch, slot, C);
       for (int r = 0; r < rows; ++r) batch.C[slot * rows + r] = C[r];
       T drift[rows] = {};
