@@ -101,6 +101,21 @@ class EquationWriter {
       out_.exerts |= prescribes_rate(blocks_, b);
     out_.exerts |= mechanism_.method == Method::rattle && mechanism_.has_rates();
     if (out_.exerts) out_.exert = exert_of(blocks_, joints_, out_.constants);
+    if (mechanism_.method == Method::rattle) list_freed();
+  }
+
+  // Of a mechanism with effects or rows with bounds.
+  void list_freed() {
+    const std::vector<int> all = groups_of(mechanism_);
+    std::set<int> lawful;
+    for (const std::vector<Effect>* effects : {&mechanism_.effects, &mechanism_.bounded})
+      for (const Effect& effect : *effects) lawful.insert(group_of(all, effect.bodies));
+    for (std::size_t k = 0; k < system().blocks().size(); ++k) {
+      const RowBlock& block = system().blocks()[k];
+      for (std::size_t r = 0; r < block.rows->count(); ++r)
+        if (block.joint->is_rate[r] && lawful.contains(group_of(all, *block.bodies)))
+          out_.freed.push_back(static_cast<int>(system().first_row(k) + r));
+    }
   }
 
   bool foresees() const {
@@ -115,6 +130,7 @@ class EquationWriter {
     if (!mechanism_.effects.empty()) out_.weigh = middle.weigh();
     if (system().size() > 0 || !mechanism_.bounded.empty()) out_.stiffen = middle.stiffen();
     out_.improve = middle.improve();
+    out_.taut = middle.tensions().rows(), out_.taut_numbers = middle.tensions().numbers();
   }
 
   void write_foreseen() {
@@ -131,14 +147,10 @@ class EquationWriter {
   void list_groups() {
     const std::vector<int> all = groups_of(mechanism_);
     std::vector<int> of_body, of_row, of_bound;
-    const auto of = [&](const std::vector<int>& bodies) {
-      for (const int b : bodies)
-        if (const int group = all[static_cast<std::size_t>(b)]; group >= 0) return group;
-      return 0;
-    };
     std::ranges::copy_if(all, std::back_inserter(of_body), [](int group) { return group >= 0; });
-    for (const RowBlock& block : system().blocks()) of_row.insert(of_row.end(), block.rows->count(), of(*block.bodies));
-    for (const Effect& effect : mechanism_.bounded) of_bound.push_back(of(effect.bodies));
+    for (const RowBlock& block : system().blocks())
+      of_row.insert(of_row.end(), block.rows->count(), group_of(all, *block.bodies));
+    for (const Effect& effect : mechanism_.bounded) of_bound.push_back(group_of(all, effect.bodies));
     out_.groups = 1 + *std::ranges::max_element(of_body);
     out_.group_lists = fmt::format("  static constexpr int groups = {};  // mechanisms\n", out_.groups);
     const auto list = [&](const char* name, const std::vector<int>& groups) {

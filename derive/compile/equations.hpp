@@ -35,6 +35,7 @@ struct Equations {
   bool exerts = false;         // so does the start of a run
   int groups = 1;              // mechanisms
   std::string group_lists;     // by body, by row, by row with bounds
+  std::vector<int> freed;      // rows of velocities beside effects or rows with bounds
   std::vector<int> effect_of;  // by row of Damping: its effect
   std::size_t triangle = 0;    // numbers in Damping::K
   Program dampen;              // q, v, time, h -> next: v with the dampers at the start
@@ -43,6 +44,7 @@ struct Equations {
   Program exert;               // q, v, time, J, h -> lambda, pull, B: forces at the start of a run
   // By the midpoint rule (rows/middle.hpp):
   Program weigh, stiffen, improve;
+  std::size_t taut = 0, taut_numbers = 0;  // rows of tension, and the numbers of these
   // Of rows with bounds:
   std::string is_rate;  // "true, false", by row
   std::string cones;    // "-1, 1, 1", by row: the first row of its cone

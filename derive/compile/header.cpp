@@ -131,6 +131,7 @@ class HeaderWriter {
     }
     if (has().midpoint)
       line(fmt::format("  using Inertia = {};  // its inverse", mechanism_.spatial() ? "Tensor<T>" : "T"));
+    if (has().taut) text_ += taut_type(equations_.taut, equations_.taut_numbers);
     if (has().foresees) line("  struct Multipliers {\n    T of[rows];\n  };");
     if (has().events) {
       line("  // Of rows with bounds: 1 if they have begun, if they have ended, if they act.");
@@ -258,7 +259,7 @@ class HeaderWriter {
   }
 
   void write_rattle(const std::string& at, const std::string& moving) {
-    text_ += pushes_of(has());
+    text_ += pushes_of(has()) + frees_of(equations_.freed);
     const std::string J = has().rows ? ", const Jacobian& J" : "", lambda = has().rows ? ", T (&lambda)[rows]" : "";
     const std::string end = ", Velocity (&pull)[bodies]" + std::string(has().bounded ? ", Bounded& B)" : ")");
     write_function("Accelerations without joints", "fall(" + at + ", " + moving + ", Velocity (&a)[bodies])",
@@ -279,7 +280,7 @@ class HeaderWriter {
       write_function(
           has().spatial ? "Stiffness of tension" : "Inverse inertias with the stiffness of tension in a step of h",
           (has().spatial ? "tension(" + at : "stiffen(" + at + ", const T& h") + ", " + impulses_of(has()) +
-              "Inertia (&W)[bodies])",
+              "Inertia (&W)[bodies]" + (has().taut ? ", Taut& B)" : ")"),
           equations_.stiffen);
     if (has().stiffens() && has().spatial) text_ += stiffen_of(mechanism_, names_.bodies, has());
     write_function("A round of Newton in the middle of a step of h: changes d of v, and y of lambda / 2",

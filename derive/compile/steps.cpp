@@ -175,6 +175,7 @@ Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
           .looks = !equations.effect_of.empty(),
           .finishes = equations.finishes,
           .exerts = equations.exerts,
+          .frees = !equations.freed.empty(),
           .carries = mechanism.method == Method::rattle && carries_spin(mechanism, !equations.effect_of.empty()),
           .modes = !mechanism.bounded.empty() && mechanism.on_accelerations(),
           .loads = mechanism.has_loads(),
@@ -187,6 +188,8 @@ Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
           .foresees = !equations.apply.outputs.empty(),
           .open = mechanism.open,
           .feeds = mechanism.fed_back > 0,
+          .turns = std::ranges::any_of(mechanism.bodies, &Body::turns),
+          .taut = equations.taut > 0,
           .collocated = mechanism.method == Method::radau5 ? mechanism.components() : 0};
 }
 

@@ -126,24 +126,15 @@ bool has_strong_motor(Island<S>& island) {
   return any;
 }
 
-// True if a latch closes: from its event on it holds its bodies on both sides, and stops them now.
-template <class S>
-bool closes_latch(WorldData<S>& world, Island<S>& island) {
-  using T = typename S::Scalar;
-  bool any = false;
-  find_rates(world, island);
-  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
-    any |= batch.law->distance && guard.bilateral() && std::abs(batch.rate[i] + batch.bias[i]) > resolution.rate;
-  });
-  return any;
-}
-
-// True if a row stops or drives its bodies by an impulse: an end that is met, or a clutch of unlimited force that meets
-// a rate beyond its own. `missing` is what the row lacks to its rate.
+// True if a row stops or drives its bodies by an impulse: an end that is met, a latch that closes, or a clutch of
+// unlimited force that meets a rate beyond its own. `missing` is what the row lacks to its rate; has_events: it may be
+// a latch, which from its event on holds its bodies on both sides.
 template <class T>
-bool strikes(const Guard<T>& guard, const Resolution<T>& resolution, T missing) {
+bool strikes(const Guard<T>& guard, const Resolution<T>& resolution, T missing, bool has_events) {
   const T bound = missing > T(0) ? guard.upper : guard.lower;
-  const bool may_act = guard.one_sided() ? guard.gap() <= resolution.C : guard.of_rate && !guard.bilateral();
+  const bool may_act = guard.one_sided() ? guard.gap() <= resolution.C
+                       : guard.of_rate   ? !guard.bilateral()
+                                         : has_events;
   return may_act && std::isinf(bound) && std::abs(missing) > resolution.rate;
 }
 // True if an impact at another row may call for an impulse of this one.
@@ -163,7 +154,8 @@ void stop_what_hits(WorldData<S>& world, Island<S>& island) {
   find_rates(world, island);
   each_guarded_row(
       island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
-        hits |= strikes(guard, resolution, guard.rate - (batch.rate[i] + batch.bias[i]));
+        const T missing = guard.rate - (batch.rate[i] + batch.bias[i]);
+        hits |= strikes(guard, resolution, missing, batch.law->distance && island.kinked < 0);
       });
   if (!hits) return;
   clear_laws(island);
@@ -310,12 +302,10 @@ void choose_modes_once(WorldData<S>& world, Island<S>& island, typename S::Scala
       evaluate_anew(world, island, time);
     }
   }
-  const bool kinked = island.kinked >= 0, starts_motor = !kinked && has_strong_motor(island),
-             stops = !kinked && !starts_motor && closes_latch(world, island);
-  const double before = starts_motor || stops ? kinetic_energy(world, island) : 0;
+  const bool starts_motor = island.kinked < 0 && has_strong_motor(island);
+  const double before = starts_motor ? kinetic_energy(world, island) : 0;
   project_velocities_at_start(world, island);
   if (starts_motor) put_in(world, Source::motor, kinetic_energy(world, island) - before);
-  if (stops) take(world, Source::limit, before - kinetic_energy(world, island));
   note_rates(world, island);
   accelerate(world, island, time);
   find_resolution(world, island, h);

@@ -143,9 +143,7 @@ std::string bonds_type(const Mechanism& mechanism) {
   const std::vector<int> groups = groups_of(mechanism);
   std::vector<int> joints, of;
   for (const Bond& bond : mechanism.bonds) {
-    joints.push_back(bond.holds), of.push_back(0);
-    for (const int body : bodies_of(mechanism, bond))
-      of.back() = std::max(of.back(), groups[static_cast<std::size_t>(body)]);
+    joints.push_back(bond.holds), of.push_back(group_of(groups, bodies_of(mechanism, bond)));
   }
   return fmt::format(bonds_type_text, mechanism.breakable(), mechanism.bonds.size(),
                      1 + *std::ranges::max_element(groups), fmt::join(joints, ", "), fmt::join(of, ", "));

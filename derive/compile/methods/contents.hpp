@@ -17,6 +17,7 @@ struct Contents {
   // By RATTLE: effects act by their rates at the start; rates at the end are looked for; the end solves for more than
   // the joints, and so does the start of a run.
   bool rattle = false, midpoint = false, dampens = false, looks = false, finishes = false, exerts = false;
+  bool frees = false;          // by RATTLE, rows of velocities are free in the first half
   bool carries = false;        // by RATTLE, forces at the end read the spin of a body whose inertia turns
   bool modes = false;          // of rows with bounds by Runge-Kutta methods
   bool loads = false;          // bounds of these that grow with loads
@@ -29,6 +30,8 @@ struct Contents {
   bool foresees = false;       // the multipliers of the next projection, by those of the last steps
   bool open = false;           // no step projects its end
   bool feeds = false;          // velocities take a share of C back
+  bool turns = false;          // some body does
+  bool taut = false;           // by the midpoint rule: tension has rows between bodies
   std::size_t collocated = 0;  // by Radau IIA: components of velocities
   bool strides() const { return modes || snaps; }                        // steps end strides at events
   bool projects() const { return (rows || modes) && !open; }             // velocities
@@ -37,9 +40,9 @@ struct Contents {
   bool carries_over() const { return loads && weighs && !rattle; }       // impulses of the last corrections
   bool weighs_joints() const { return weighs && (bonds || loads) && rows; }
   bool closes() const { return (rows || ends) && !open; }
-  bool stiffens() const { return midpoint && (rows || bounded); }            // by tension
-  bool replaces() const { return strides() || midpoint || collocated > 0; }  // some lanes of a State
-  bool pulls() const { return rattle && (rows || bounded); }                 // a State has its joints' accelerations
+  bool stiffens() const { return midpoint && (rows || bounded) && (turns || taut); }  // by tension
+  bool replaces() const { return strides() || midpoint || collocated > 0; }           // some lanes of a State
+  bool pulls() const { return rattle && (rows || bounded); }  // a State has its joints' accelerations
 };
 
 // Of the function that steps a State.

@@ -86,7 +86,7 @@ constexpr const char* stops = R"(
       const T bound = select(G.missing[i] > T(0), G.high[i], G.low[i]);
       const Mask one = has_one_end(G, i), meets = one && gap(G, i) <= s.modes.of_value[i];
       const Mask drives = is_rate[i] ? !is_equation(G, i) : T(1) < T(0);
-      hits = hits || ((meets || drives) && is_endless(bound) && magnitude(G.missing[i]) > s.modes.of_rate[i]);
+{6}      hits = hits || ((meets || drives{7}) && is_endless(bound) && magnitude(G.missing[i]) > s.modes.of_rate[i]);
     }}
     if (!any(hits)) return;
     reach($ss.q, s.time, {0}B);
@@ -108,6 +108,10 @@ constexpr const char* stops = R"(
     }}
   }}
 )";
+
+// From its event on a latch holds its bodies on both sides.
+constexpr const char* latches_close =
+    "      const Mask closes = (is_rate[i] ? T(0) : s.events.began[i]) > T(0) && is_equation(G, i);\n";
 
 constexpr const char* decides = R"(
   // Forces and accelerations are complementary: a row stays held if its force lies within its bounds.
@@ -311,11 +315,12 @@ std::string pull_of(const Contents& has) {
 std::string stops_of(const Contents& has) {
   const std::string J = has.rows ? "s.J, " : "";
   const std::string notes = has.snaps ? fmt::format(notes_impulses, has.rows ? notes_impulses_of_rows : "") : "";
-  if (!has.loads) return fmt::format(stops, J, "", "    solve(mu);\n", "", notes, "");
+  const char *const of_latches = has.events ? latches_close : "", *const closes = has.events ? " || closes" : "";
+  if (!has.loads) return fmt::format(stops, J, "", "    solve(mu);\n", "", notes, "", of_latches, closes);
   const std::string none = has.rows ? "T none[rows];\n    for (T& of_row : none) of_row = T(0);\n    " : "";
   return fmt::format(stops, J, impacts_by_load,
                      fmt::format(settles_impact, none, (has.rows ? "s.J, none, " : "") + corners(has)), unless_it_slips,
-                     notes, has.cones ? std::string(all_turn) + none_turned : "");
+                     notes, has.cones ? std::string(all_turn) + none_turned : "", of_latches, closes);
 }
 
 // Where forces of a choice call for another one.

@@ -105,7 +105,53 @@ constexpr const char* joint_changes =
     R"(      for (int i = 0; i < rows; ++i) C[i] = select(goes_on, C[i] {}, T(0));
       Velocity d[bodies];
       solve($qs.J, {}C, impulse, d);
-      for (int i = 0; i < bodies; ++i) d[i] = -d[i];
+{}      for (int i = 0; i < bodies; ++i) d[i] = -d[i];
+)";
+// Beside effects and rows with bounds, rows of velocities are free in the first half, as in the World: of all impulses
+// those with none of theirs. F.lambda of each such row is 1 in it and 0 in the others.
+constexpr const char* frees = R"(
+  static constexpr int freed = {0}, freed_rows[freed] = {{{1}}};
+  struct Freed {{
+    T lambda[freed][rows];
+    Velocity d[freed][bodies];
+  }};
+  static void find_freed(const State& s, Freed& F) {{
+    for (int f = 0; f < freed; ++f) {{
+      T b[rows];
+      for (T& of_row : b) of_row = T(0);
+      b[freed_rows[f]] = T(1);
+      solve($qs.J, b, F.lambda[f], F.d[f]);
+    }}
+    for (int f = 0; f < freed; ++f) {{
+      const T scale = inverse(F.lambda[f][freed_rows[f]]);
+      for (T& of_row : F.lambda[f]) of_row = scale * of_row;
+      for (Velocity& of_body : F.d[f]) of_body = scale * of_body;
+      for (int g = 0; g < freed; ++g)
+        if (g != f) free(F, f, F.lambda[g], F.d[g]);
+    }}
+  }}
+  static void free(const Freed& F, int f, T (&lambda)[rows], Velocity (&d)[bodies]) {{
+    const T share = lambda[freed_rows[f]];
+    for (int i = 0; i < rows; ++i) lambda[i] = lambda[i] - share * F.lambda[f][i];
+    for (int i = 0; i < bodies; ++i) d[i] = d[i] - share * F.d[f][i];
+  }}
+)";
+constexpr const char* frees_changes = R"(      Freed F;
+      find_freed(s, F);
+      for (int f = 0; f < freed; ++f) free(F, f, impulse, d);
+)";
+constexpr const char* frees_ends = R"(          for (int f = 0; f < freed; ++f) {
+            T along_freed[bounded];
+            along($sat.q, at.time, F.d[f], along_freed);
+            for (int e = 0; e < bounded; ++e) {
+              const T share = reached.l[e][freed_rows[f]];
+              for (int i = e; i < bounded; ++i) {
+                T& of_both = reached.S[i * (i + 1) / 2 + e];
+                of_both = of_both - share * along_freed[i];
+              }
+              free(F, f, reached.l[e], reached.g[e]);
+            }
+          }
 )";
 constexpr const char* notes_found =
     "      for (int i = 0; i < rows; ++i) found[i] = found[i] - (T(1) / half) * impulse[i];\n";
@@ -118,7 +164,9 @@ constexpr const char* end_changes = R"(      Mask passed[bounded];
       auto some = T(1) < T(0);
       for (int i = 0; i < bounded; ++i) passed[i] = goes_on && (magnitude(over[i]) > T(0) || magnitude(total[i]) > T(0)), some = some || passed[i];
       if (any(some)) {{
-        if (!reaches) reach($sat.q, at.time, {0}reached);
+        if (!reaches) {{
+          reach($sat.q, at.time, {0}reached);
+{2}        }}
         reaches = true;
         T along_ends[bounded], c[bounded], mu[bounded];
         along($sat.q, at.time, d, along_ends);
@@ -240,9 +288,11 @@ std::string closing(double tolerance, const Contents& has) {
   if (has.rows && has.ends) text += "      worst = select(largest(over) > worst, largest(over), worst);\n";
   text += fmt::format(judges, tolerance, has.foresees ? leaves_series : "");
   if (has.foresees) text += drift_aims();
-  text += has.rows ? fmt::format(joint_changes, has.foresees ? "* (T(1) / h)" : "/ h", has.foresees ? "B, aimed, " : "")
+  text += has.rows ? fmt::format(joint_changes, has.foresees ? "* (T(1) / h)" : "/ h", has.foresees ? "B, aimed, " : "",
+                                 has.frees ? frees_changes : "")
                    : no_changes;
-  if (has.ends) text += fmt::format(end_changes, has.rows ? "s.J, " : "", weighs_end_changes(has));
+  if (has.ends)
+    text += fmt::format(end_changes, has.rows ? "s.J, " : "", weighs_end_changes(has), has.frees ? frees_ends : "");
   if (has.foresees || has.weighs_joints()) text += notes_found;
   return text + fmt::format(round_ends, tolerance, has.pulls() ? "(a[i] + s.pull[i])" : "a[i]", drifts(has, "at"),
                             has.foresees
@@ -273,6 +323,10 @@ std::string finishing(const Contents& has) {
 }  // namespace
 
 std::string pushes_of(const Contents& has) { return has.ends ? pushes : ""; }
+
+std::string frees_of(const std::vector<int>& rows) {
+  return rows.empty() ? "" : fmt::format(frees, rows.size(), fmt::join(rows, ", "));
+}
 
 std::string start_of(const Contents& has) {
   std::string text = start_begins;

@@ -267,8 +267,8 @@ std::string gyroscopes(const Contents& has) { return has.gyroscopes ? "s.g, " : 
 
 std::string stiffens(const Contents& has, const std::string& q, const std::string& h) {
   if (!has.stiffens()) return "";
-  return fmt::format("    stiffen($s{}, s.time, {}{}, {}{}W);\n", q, gyroscopes(has), h, has.rows ? "lambda, " : "",
-                     has.bounded ? "mu, " : "");
+  return fmt::format("    stiffen($s{}, s.time, {}{}, {}{}W{});\n", q, gyroscopes(has), h, has.rows ? "lambda, " : "",
+                     has.bounded ? "mu, " : "", has.taut ? ", N" : "");
 }
 
 std::string bounded_arguments(const Contents& has) {
@@ -278,8 +278,11 @@ std::string bounded_arguments(const Contents& has) {
 // q: poses of the middle; h: of the step.
 std::string improves(const Contents& has, const std::string& q, const std::string& h) {
   return fmt::format("    improve($s{}, s.time, s.v, before, {}{}{}, {}{}{}d, {}power{});\n", q,
-                     has.stiffens() ? "W, " : "", has.gyroscopes ? "s.g, mean, " : "", h, has.rows ? "lambda, C, " : "",
-                     has.effects ? "K, " : "", bounded_arguments(has), has.rows ? "y, " : "", has.bounded ? ", B" : "");
+                     has.taut         ? "W, N, "
+                     : has.stiffens() ? "W, "
+                                      : "",
+                     has.gyroscopes ? "s.g, mean, " : "", h, has.rows ? "lambda, C, " : "", has.effects ? "K, " : "",
+                     bounded_arguments(has), has.rows ? "y, " : "", has.bounded ? ", B" : "");
 }
 
 // The errors of a round at its end.
@@ -306,7 +309,7 @@ std::string round(const Mechanism& mechanism, const Contents& has) {
 }
 
 std::string declares(const Contents& has) {
-  return std::string(has.stiffens() ? "    Inertia W[bodies];\n" : "") +
+  return std::string(has.stiffens() ? "    Inertia W[bodies];\n" : "") + (has.taut ? "    Taut N;\n" : "") +
          (has.gyroscopes ? "    Velocity mean[bodies];\n" : "");
 }
 
@@ -340,6 +343,7 @@ std::string rescue(const Contents& has) {
 std::string arguments_of_improve(const Contents& has) {
   std::string text = ", const Velocity (&before)[bodies], ";
   if (has.stiffens()) text += "const Inertia (&W)[bodies], ";
+  if (has.taut) text += "const Taut& N, ";
   if (has.gyroscopes) text += "const Gyroscope* g, const Velocity (&mean)[bodies], ";
   text += "const T& h, ";
   if (has.rows) text += "const T (&lambda)[rows], const T (&C)[rows], ";

@@ -13,13 +13,14 @@ namespace {
 using derive::element;
 using derive::triangle_element;
 
-std::vector<RowBlock> blocks_of(const RowBlocks& blocks, const JointRows& joints) {
+std::vector<RowBlock> blocks_of(const RowBlocks& blocks, const JointRows& joints, const Tensions& tensions) {
   std::vector<RowBlock> all = joints.system().blocks();
   for (std::size_t e = 0; e < blocks.mechanism().effects.size(); ++e) all.push_back(blocks.effect(e));
+  std::ranges::copy(tensions.blocks(), std::back_inserter(all));
   return all;
 }
 
-// One round of Newton. With the stiffness G = -d(J^T lambda)/dq of tension,
+// One round of Newton. With the stiffness G = -d(J^T lambda)/dq of tension, whose part between bodies stands as rows,
 //
 //   (M + h G / 4) d - J^T y = M (before - v) + (h f + J^T lambda) / 2,   J d = -C / h,
 //
@@ -31,11 +32,12 @@ std::vector<RowBlock> blocks_of(const RowBlocks& blocks, const JointRows& joints
 //   lambda = h F - (t - 1/2) h^2 k rate,   t = max(1/2, 1 - 1 / (2 u)),   and for d: y = -t h^2 k / 2 J d.
 class Round {
  public:
-  Round(const RowBlocks& stiff, const JointRows& joints, Constants& constants)
+  Round(const RowBlocks& stiff, const JointRows& joints, const Tensions& tensions, Constants& constants)
       : blocks_(stiff),
         joints_(joints),
+        tensions_(tensions),
         algebra_(constants),
-        system_(stiff, blocks_of(stiff, joints)),
+        system_(stiff, blocks_of(stiff, joints, tensions)),
         bounded_(stiff, algebra_) {
     h_ = algebra_.input("h"), half_ = algebra_.times(algebra_.value(0.5), h_);
     const char* const array = stiff.mechanism().has_gyroscopes() ? "mean" : "v";
@@ -46,7 +48,10 @@ class Round {
     Answers answers(blocks_, algebra_, system_, [&](const std::string& name) { return factor_.at(name); });
     const std::size_t joints = joints_.system().blocks().size(), rows = joints_.system().size();
     for (std::size_t k = 0; k < joints; ++k) add_joint(answers, k);
-    for (std::size_t e = 0; e < blocks_.mechanism().effects.size(); ++e) add_effect(answers, joints + e, e);
+    const std::size_t effects = blocks_.mechanism().effects.size();
+    for (std::size_t e = 0; e < effects; ++e) add_effect(answers, joints + e, e);
+    for (std::size_t t = 0; joints + effects + t < system_.blocks().size(); ++t)
+      add_tension(answers, joints + effects + t, t);
     factor();
     const Answers::Answer change =
         answers.to(lack(), [&](std::size_t row) { return row < rows ? missed_[row] : algebra_.value(0); });
@@ -108,6 +113,14 @@ class Round {
     answers.add(in, share);
   }
 
+  void add_tension(Answers& answers, std::size_t k, std::size_t t) {
+    const Values in = tensions_.inputs(algebra_, blocks_, t);
+    system_.add_block(algebra_, k, in);
+    const std::vector<int> share = tensions_.share(algebra_, t);
+    share_.insert(share_.end(), share.begin(), share.end());
+    answers.add(in, share);
+  }
+
   void factor() {
     system_.couple(algebra_);
     const std::size_t joints = joints_.system().size();
@@ -143,15 +156,16 @@ class Round {
 
   const RowBlocks& blocks_;
   const JointRows& joints_;
+  const Tensions& tensions_;
   Algebra algebra_;
-  RowSystem system_;  // of joints and effects
+  RowSystem system_;  // of joints, effects and tension
   BoundedSystem bounded_;
   int h_, half_;
   Values mean_;              // velocities of the drift
   std::vector<int> missed_;  // by row of the joints: C / h of the end, or the rate of a row of velocities
   Summands power_;           // of the joints, in the step
   std::map<std::string, int> factor_;
-  std::vector<int> share_;  // by row of the effects
+  std::vector<int> share_;  // by row of the effects and of tension
   Forces forces_;           // impulses of half a step
 };
 
@@ -161,6 +175,7 @@ Middle::Middle(const RowBlocks& blocks, const JointRows& joints, Constants& cons
     : blocks_(blocks),
       stiff_(joints.system().size() > 0 || !blocks.mechanism().bounded.empty() ? blocks.stiffened(constants) : blocks),
       joints_(joints),
+      tensions_(blocks, joints, constants),
       constants_(constants) {}
 
 Program Middle::weigh() const {
@@ -187,42 +202,52 @@ int Middle::stiffened(Algebra& algebra, int body, int G) const {
   return algebra.times(inv_I, algebra.function(Fn::inverse, {times}));
 }
 
+// The symmetric part of -d(J^T lambda)/dq of one block; if it is not asked for as a whole, of own rotations alone.
+std::vector<std::vector<int>> Middle::stiffness_of(Algebra& algebra, const RowBlock& block, const char* impulses,
+                                                   std::size_t first, bool whole) const {
+  const std::size_t columns = blocks_.mechanism().columns(), n = columns * block.bodies->size();
+  const auto turns = [&](std::size_t i) { return i % columns >= blocks_.mechanism().linear(); };
+  Values in = blocks_.inputs(algebra, block);
+  for (std::size_t r = 0; r < block.rows->count(); ++r)
+    in[fmt::format("lambda_{}", r + 1)] = algebra.input(element(impulses, first + r));
+  const Values of_block = blocks_.call(algebra, block, "stiffness", in);
+  std::vector<std::vector<int>> A(n, std::vector<int>(n));
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      if (whole || (i / columns == j / columns && turns(i) && turns(j)))
+        A[i][j] = algebra.sum({{of_block.at(element(element("H", i), j)), of_block.at(element(element("H", j), i))},
+                               {Rational(-1, 2), Rational(-1, 2)}});
+  return A;
+}
+
 Program Middle::stiffen() const {
   Algebra algebra(constants_);
   const std::size_t columns = blocks_.mechanism().columns(), linear = blocks_.mechanism().linear();
-  std::map<int, std::vector<Values>> H;  // by body, of each joint and bound: entries of its own rotation
+  std::map<std::pair<int, std::size_t>, Summands> own;  // of each body's own rotation, by columns i and j
+  std::size_t number = 0;
   const auto add = [&](const RowBlock& block, const char* impulses, std::size_t first) {
-    Values in = blocks_.inputs(algebra, block);
-    for (std::size_t r = 0; r < block.rows->count(); ++r)
-      in[fmt::format("lambda_{}", r + 1)] = algebra.input(element(impulses, first + r));
-    const Values of_block = blocks_.call(algebra, block, "stiffness", in);
-    for (std::size_t b = 0; b < block.bodies->size(); ++b) {
-      Values& own = H[(*block.bodies)[b]].emplace_back();
-      for (std::size_t i = 0; i + linear < columns; ++i)
-        for (std::size_t j = 0; j + linear < columns; ++j)
-          own[element(element("H", i), j)] =
-              of_block.at(element(element("H", columns * b + linear + i), columns * b + linear + j));
-    }
+    std::vector<std::vector<int>> A = stiffness_of(algebra, block, impulses, first, tensions_.has(number));
+    tensions_.write(algebra, number++, A);
+    for (std::size_t b = 0; b < block.bodies->size(); ++b)
+      for (std::size_t i = linear; i < columns; ++i)
+        for (std::size_t j = i; j < columns; ++j)
+          own[{(*block.bodies)[b], columns * i + j}].add(1, A[columns * b + i][columns * b + j]);
   };
   for (std::size_t k = 0; k < joints_.system().blocks().size(); ++k)
     add(joints_.system().blocks()[k], "lambda", joints_.system().first_row(k));
   for (std::size_t b = 0; b < blocks_.mechanism().bounded.size(); ++b) add(blocks_.bounded(b), "mu", b);
   for (int body = 0; body < static_cast<int>(blocks_.mechanism().bodies.size()); ++body) {
     if (!blocks_.mechanism().bodies[static_cast<std::size_t>(body)].turns()) continue;
-    for (std::size_t i = 0; i + linear < columns; ++i)
-      for (std::size_t j = i; j + linear < columns; ++j) {
-        Summands half;
-        for (const Values& own : H[body])
-          for (const auto& [r, c] : {std::pair{i, j}, std::pair{j, i}})
-            half.add({-1, 2}, own.at(element(element("H", r), c)));
-        const int G = algebra.sum(half, "G_" + blocks_.body_name(body));
-        algebra.output(stiff_.stiffened_name(body, i, j),
+    for (std::size_t i = linear; i < columns; ++i)
+      for (std::size_t j = i; j < columns; ++j) {
+        const int G = algebra.sum(own[{body, columns * i + j}], "G_" + blocks_.body_name(body));
+        algebra.output(stiff_.stiffened_name(body, i - linear, j - linear),
                        blocks_.mechanism().spatial() ? G : stiffened(algebra, body, G));
       }
   }
   return algebra.finish();
 }
 
-Program Middle::improve() const { return Round(stiff_, joints_, constants_).write(); }
+Program Middle::improve() const { return Round(stiff_, joints_, tensions_, constants_).write(); }
 
 }  // namespace cdot::compile

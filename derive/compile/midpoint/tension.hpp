@@ -64,6 +64,8 @@ inline Tensor<T> stiffened(const Tensor<T>& I, const T& h, const Tensor<T>& G) {
 
 )";
 
+// The types of its numbers.
+std::string taut_type(std::size_t rows, std::size_t numbers);
 // The arguments of impulses, of joints and of rows with bounds.
 std::string impulses_of(const Contents& has);
 // stiffen(), by the program tension().

@@ -236,7 +236,8 @@ Program reach_of(const RowBlocks& blocks, const JointRows& joints, Constants& co
   bounded.answer(
       answers, joints.system().size(),
       [&](std::size_t b) { return blocks.mechanism().on_accelerations() || has_ends(blocks, b); },
-      blocks.mechanism().has_loads() || blocks.mechanism().keeps_momenta() || !blocks.mechanism().bonds.empty()
+      blocks.mechanism().has_loads() || blocks.mechanism().has_rates() || blocks.mechanism().keeps_momenta() ||
+              !blocks.mechanism().bonds.empty()
           ? BoundedSystem::Outputs::impulses
           : BoundedSystem::Outputs::velocities);
   bounded.output_S({});

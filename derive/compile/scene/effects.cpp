@@ -141,6 +141,7 @@ class EffectReader {
     Effect effect = along(source.name, joint);
     effect.law = Effect::limit;
     effect.numbers = {0, std::numeric_limits<double>::infinity()};
+    effect.tensions = tensions_of(world_, record(joint).places[0]);
     add_bounded(source, effect, record(joint).places[0]);
   }
 
@@ -175,6 +176,7 @@ class EffectReader {
       return strong_motors_.push_back(effect);
     effect.name += "." + what;
     if (batch_of(place).ops->counters > 0) effect.angle = mechanism_.angles++;
+    effect.tensions = tensions_of(world_, place);
     if (is_bounded(place)) return add_bounded(source, effect, place);
     if (has_limits(place) && mechanism_.method == Method::euler) {
       effect.law = Effect::limited;
@@ -193,13 +195,9 @@ class EffectReader {
   // A motor without a largest force never slips, so it needs no events: it is an equation. In a mechanism with ends it
   // is the last of the rows with bounds: an end that is met stops it, as in the World.
   void add_strong_motor(Effect& effect, const std::vector<int>& groups) {
-    const auto group_of = [&](const Effect& of) {
-      int group = -1;
-      for (const int body : of.bodies) group = std::max(group, groups[static_cast<std::size_t>(body)]);
-      return group;
-    };
     const bool shared = std::ranges::any_of(mechanism_.bounded, [&](const Effect& other) {
-      return (other.law == Effect::limit || other.law == Effect::bound) && group_of(other) == group_of(effect);
+      return (other.law == Effect::limit || other.law == Effect::bound) &&
+             group_of(groups, other.bodies) == group_of(groups, effect.bodies);
     });
     if (shared) {
       effect.name += ".motor";
@@ -287,10 +285,23 @@ bool find_functions(const Scene& scene, const JointRecord& record, int place, Me
 bool is_rope(const JointType& type) { return type.row_kinds.size() == 1 && type.row_kinds[0] == RowKind::inequality; }
 
 template <class S>
+int tensions_of(BasicWorld<S>& world, const Place& place) {
+  prepare_topology(world.data());
+  for (const auto& island : world.data().islands)
+    for (const auto& tension : island.system.tensions)
+      if (tension.batch == world.data().batches[static_cast<std::size_t>(place.batch)].get() &&
+          tension.slot == slot_of(world.data(), place))
+        return tension.rows;
+  return 0;
+}
+
+template <class S>
 void read_effects(const Scene& scene, BasicWorld<S>& world, const RefuseEffect& refuse, Mechanism& mechanism) {
   EffectReader<S>(scene, world, refuse, mechanism).read();
 }
 
+template int tensions_of(BasicWorld<Planar<double>>&, const Place&);
+template int tensions_of(BasicWorld<Spatial<double>>&, const Place&);
 template void read_effects(const Scene&, BasicWorld<Planar<double>>&, const RefuseEffect&, Mechanism&);
 template void read_effects(const Scene&, BasicWorld<Spatial<double>>&, const RefuseEffect&, Mechanism&);
 

@@ -24,6 +24,10 @@ bool is_rope(const JointType& type);
 bool find_functions(const Scene& scene, const JointRecord& record, int place, Mechanism& mechanism,
                     std::map<std::size_t, InTime>& in_time);
 
+// The rows by which the World counts the stiffness of tension of a place.
+template <class S>
+int tensions_of(BasicWorld<S>& world, const Place& place);
+
 template <class S>
 void read_effects(const Scene& scene, BasicWorld<S>& world, const RefuseEffect& refuse, Mechanism& mechanism);
 

@@ -28,4 +28,10 @@ std::vector<int> groups_of(const Mechanism& mechanism) {
   return group;
 }
 
+int group_of(const std::vector<int>& groups, const std::vector<int>& bodies) {
+  int group = 0;
+  for (const int body : bodies) group = std::max(group, groups[static_cast<std::size_t>(body)]);
+  return group;
+}
+
 }  // namespace cdot::compile

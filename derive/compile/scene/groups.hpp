@@ -7,5 +7,7 @@ namespace cdot::compile {
 
 // By body: the number of its mechanism, from 0; -1 for a body that does not move.
 std::vector<int> groups_of(const Mechanism& mechanism);
+// Of bodies of one mechanism, some of which move.
+int group_of(const std::vector<int>& groups, const std::vector<int>& bodies);
 
 }  // namespace cdot::compile

@@ -148,6 +148,7 @@ void add_joint(const Scene& scene, BasicWorld<S>& world, int index, Mechanism& m
   Joint joint = joint_of(scene, world, index);
   joint.holds = number_among_breakable(world, index);
   const JointRecord& record = world.data().joints[static_cast<std::size_t>(index)];
+  if (!record.places.empty()) joint.tensions = tensions_of(world, record.places[0]);
   if (!find_functions(scene, record, -1, mechanism, joint.in_time)) {
     Refusals refusals(scene);
     refusals.add(scene.joints[static_cast<std::size_t>(index)].where,
@@ -194,21 +195,6 @@ void refuse_counters(const Scene& scene, BasicWorld<S>& world) {
   refusals.throw_any();
 }
 
-// There the first half of a step finds the forces of the other rows alone, as the World does: rows of velocities are
-// free in it. Without rows with bounds they are not.
-void refuse_rates_beside_bounds(const Scene& scene, const Mechanism& mechanism) {
-  if (mechanism.method != Method::rattle || mechanism.bounded.empty()) return;
-  Refusals refusals(scene);
-  for (const Joint& joint : mechanism.joints)
-    if (std::ranges::count(joint.is_rate, true) > 0)
-      refusals.add(
-          std::ranges::find(scene.joints, joint.name, &SceneJoint::name)->where,
-          fmt::format("{}: cdot compile knows no rows of velocities beside rows with bounds by rattle, as {} has",
-                      joint.name, joint.type),
-          "leave it to cdot-run");
-  refusals.throw_any();
-}
-
 // Their ends are kept by projections, and their loads count what these pull.
 void refuse_bounds_without_projection(const Scene& scene, const Mechanism& mechanism) {
   if (!mechanism.open || (mechanism.bounded.empty() && mechanism.bonds.empty())) return;
@@ -242,6 +228,22 @@ void note_own_specs(Mechanism& mechanism) {
     for (const Effect& effect : *list) note(effect.type), note(effect.law_type);
 }
 
+// The World solves joints that contradict each other in the sense of least squares.
+template <class S>
+void refuse_contradictions(const Scene& scene) {
+  constexpr double plain = 1e-6;
+  BasicWorld<S> probe = build_world_in<S>(scene);
+  const ProjectResult result = probe.project(plain);
+  const bool known = result.joint >= 0 && result.joint < static_cast<int>(scene.joints.size());
+  if (result.met || !known) return;
+  const SceneJoint& joint = scene.joints[static_cast<std::size_t>(result.joint)];
+  Refusals refusals(scene);
+  refusals.add(joint.where,
+               fmt::format("{}: cdot compile knows no joints that contradict each other at the start", joint.name),
+               "correct the anchors or the lengths of its loop, or leave it to cdot-run");
+  refusals.throw_any();
+}
+
 template <class S>
 void add_parts(const Scene& scene, Mechanism& mechanism) {
   BasicWorld<S> world = build_world_in<S>(scene);
@@ -260,9 +262,9 @@ void add_parts(const Scene& scene, Mechanism& mechanism) {
   if (mechanism.method == Method::radau5) refuse_large(scene, mechanism);
   add_effects(scene, world, mechanism);
   read_bonds(scene, world, mechanism);
-  refuse_rates_beside_bounds(scene, mechanism);
   refuse_bounds_without_projection(scene, mechanism);
   note_own_specs(mechanism);
+  refuse_contradictions<S>(scene);
 }
 
 }  // namespace

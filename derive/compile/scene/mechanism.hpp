@@ -58,6 +58,7 @@ struct Joint {
   std::map<std::size_t, InTime> in_time{};  // those of `parameters` that follow functions of time
   std::vector<bool> is_rate{};              // by row: of velocities, without C
   int holds = -1;                           // of a joint that may break: its number among these
+  int tensions = 0;                         // rows of the stiffness of tension (midpoint/tensions.hpp)
 };
 
 // A force along each row of a spec, or along one of its coordinates; a row with bounds on a coordinate.
@@ -89,6 +90,7 @@ struct Effect {
   int cone = -1;   // of a row of a force along several coordinates: the first one of these, among Mechanism::bounded
   int holds = -1;  // of a joint that may break, on which it acts: as Joint::holds
   bool by_own_force = false;  // an event of the row depends on the force that it carries
+  int tensions = 0;           // as Joint::tensions
   bool is_loaded() const { return loaded_by_row >= 0 || loaded_by_joint >= 0; }
 };
 

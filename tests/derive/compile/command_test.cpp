@@ -42,6 +42,11 @@ TEST(CompileCommand, RefusesPartsThatItDoesNotKnowWithTheirLines) {
                            "turns, as gear has"),
             std::string::npos)
       << gear.text;
+  const ShellResult misfit = compile("tests/hard_cases/incompatible_triangle/planar.toml --integrator euler");
+  EXPECT_EQ(misfit.status, 2);
+  EXPECT_NE(misfit.text.find("ab: cdot compile knows no joints that contradict each other at the start"),
+            std::string::npos)
+      << misfit.text;
   const ShellResult large = compile("specs/scenes/catenary_100.toml --integrator radau5");
   EXPECT_EQ(large.status, 2);
   EXPECT_NE(large.text.find("solves for all velocities at once: for 300 components, at most 128"), std::string::npos)

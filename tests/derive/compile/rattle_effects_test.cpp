@@ -7,6 +7,7 @@
 #include "bounds_rattle.hpp"
 #include "effects_rattle.hpp"
 #include "ends_rattle.hpp"
+#include "held_coin_rattle.hpp"
 #include "hinges_rattle.hpp"
 #include "machine_rattle.hpp"
 #include "planar_drive_rattle.hpp"
@@ -48,6 +49,12 @@ TEST(CompiledRattle, MovesWithEndsAsTheWorld) {
   cdot::runs_as_the_world<ends_rattle<double>>(scenes + "ends.toml", Integrator::rattle, 1e-11);
   cdot::runs_as_the_world<hinges_rattle<double>>(scenes + "hinges.toml", Integrator::rattle, 1e-11);
   cdot::runs_as_the_world<tethers_rattle<double>>(scenes + "tethers.toml", Integrator::rattle, 1e-11, 1);
+}
+
+// Beside effects and ends rows of velocities are free in the first half.
+TEST(CompiledRattle, RollsWithEffectsAndEndsAsTheWorld) {
+  cdot::runs_as_the_world<held_coin_rattle<double>>(scenes + "held_coin.toml", Integrator::rattle, 1e-11, 1);
+  cdot::runs_as_the_world<held_coin_rattle<double>>(scenes + "held_coin.toml", Integrator::rattle, 1e-11, 1, 1.0 / 60);
 }
 
 // An end that a step meets is met whatever the way of Newton's rounds: a World moved by 1e-15 m/s stays beside itself.

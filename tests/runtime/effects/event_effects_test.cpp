@@ -139,6 +139,20 @@ TEST(EventEffects, InSpaceARopeTearsAsInThePlane) {
   }
 }
 
+// A body whose centre turns at 0.5 m with 2 rad/s stops at once: its axle gives 1 N s, in a step 100 N beside 2 N.
+TEST(EventEffects, TheBlowOfALatchIsALoad) {
+  for (const IntegratorRow& row : integrator_rows)
+    for (const double strength : {90.0, 110.0}) {
+      World<double> world(with(row.integrator));
+      const int body = world.add_body({.x = 0.5, .vy = 1, .w = 2, .mass = 1, .inertia = 0.5});
+      const int axle = revolute(world, world.ground(), body, 0, 0, -0.5, 0);
+      add_effect(world, axle, "angle", SpecEffect{"latch", {{"at", {0.3}}}});
+      set_breaking_load(world, axle, strength);
+      advance(world, 0.3, 0.01);
+      EXPECT_EQ(world.broken(axle), strength < 100) << row.name << ", " << strength << " N";
+    }
+}
+
 // Past events are part of the State.
 TEST(EventEffects, ASnapshotBeforeAnEventUndoesIt) {
   for (const IntegratorRow& row : integrator_rows) {

@@ -15,7 +15,9 @@
 #include "four_bar_implicit.hpp"
 #include "four_bar_space_implicit.hpp"
 #include "gyroscope_space_implicit.hpp"
+#include "heavy_load_planar_beads_implicit.hpp"
 #include "heavy_load_planar_implicit.hpp"
+#include "heavy_load_spatial_beads_implicit.hpp"
 #include "pulley_ratio1_implicit.hpp"
 #include "pulley_ratio2_implicit.hpp"
 #include "simple_pendulum_implicit.hpp"
@@ -71,7 +73,16 @@ TEST(CompiledMidpoint, MovesUnderHeavyLoadsAsTheWorld) {
                                                                    Integrator::implicit, 1e-9, 2, 1.0 / 60);
 }
 
+// A taut bar couples the displacements of two beads. Without its stiffness between them a step goes in more parts.
+TEST(CompiledMidpoint, MovesBeadsOnTautBarsAsTheWorld) {
+  cdot::runs_as_the_world<heavy_load_planar_beads_implicit<double>>(cases + "heavy_load/planar_beads.toml",
+                                                                    Integrator::implicit, 1e-9, 2, 1.0 / 60);
+  cdot::runs_as_the_world<heavy_load_spatial_beads_implicit<double>>(cases + "heavy_load/spatial_beads.toml",
+                                                                     Integrator::implicit, 1e-9, 2, 1.0 / 60);
+}
+
 TEST(CompiledMidpoint, LanesAreAsAlone) {
+  cdot::lanes_are_as_alone<heavy_load_planar_beads_implicit>();
   cdot::lanes_are_as_alone<slider_crank_implicit>();
   cdot::lanes_are_as_alone<chain_10_implicit, float>();
   cdot::lanes_are_as_alone<three_bodies_space_implicit>();
