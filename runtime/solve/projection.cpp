@@ -162,7 +162,7 @@ template <class S>
 bool may_contradict(const Island<S>& island, typename S::Scalar at_start) {
   const auto prescribes = [](const Segment<S>& segment) {
     const Batch<S>& batch = *segment.batch;
-    return batch.law || batch.explicit_time() ||
+    return (batch.law && !batch.law->force) || batch.explicit_time() ||
            std::find(batch.kinds.begin(), batch.kinds.end(), RowKind::velocity) != batch.kinds.end();
   };
   return !(at_start <= foreign<typename S::Scalar> * island.scale) ||

@@ -49,7 +49,7 @@ template <class S>
 void restore_drift(WorldData<S>& world, const Island<S>& island, const Segment<S>& segment);
 
 // True if joints whose error was `at_start` at the start of the step may contradict each other at its end: they did
-// then, or time, a law or rolling prescribes a motion. Others that fitted still fit somewhere near.
+// then, or time, a law or rolling prescribes a motion. A force does not. Others that fitted still fit somewhere near.
 template <class S>
 bool may_contradict(const Island<S>& island, typename S::Scalar at_start);
 
