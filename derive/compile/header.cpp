@@ -175,7 +175,8 @@ class HeaderWriter {
          {"q", "v",     "a",     "time", "J",      "B", "b", "h",  "lambda", "force",  "C",    "rate",
           "K", "guess", "given", "end",  "before", "W", "g", "mu", "mean",   "missed", "side", "load"})
       if (reads(arguments, argument)) line(fmt::format("    (void){};", argument));
-    if (program.outputs.empty() && arguments.find("(&W)") != std::string::npos) line("    (void)W;");
+    const bool writes = std::ranges::any_of(program.outputs, [](const auto& o) { return o.name.starts_with("W["); });
+    if (!writes && arguments.find("(&W)") != std::string::npos) line("    (void)W;");
     line("  }");
   }
 
