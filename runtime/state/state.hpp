@@ -30,6 +30,7 @@ struct FlowState {
   StateArray<T> row_rates;               // J v + dC/dt
   StateArray<T> margins;                 // distance of rows from their next event
   StateArray<T> margins_chosen;          // the same when their modes were chosen
+  StateArray<T> largest_diagonals;       // of the rows in K so far
   StateNumber<T> next_step = T(0);       // [s] that the error control proposes; 0: none yet
   StateNumber<T> longest = T(0);         // [s] of the steps so far
   StateNumber<int> slivers = 0;          // consecutive steps that were far shorter

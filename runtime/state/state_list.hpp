@@ -100,11 +100,13 @@ struct StateList {
 
   template <class S, class Visitor>
   static void each_of_flow(Flow<S>& flow, int index, Visitor& visit) {
-    auto& [resolution, row_rates, margins, margins_chosen, next_step, longest, slivers, exhausted, known, ahead, length,
-           end_kept, start, end, end_forces, rates, further_terms, work] = static_cast<FlowState<S>&>(flow);
+    auto& [resolution, row_rates, margins, margins_chosen, largest_diagonals, next_step, longest, slivers, exhausted,
+           known, ahead, length, end_kept, start, end, end_forces, rates, further_terms, work] =
+        static_cast<FlowState<S>&>(flow);
     visit.item("flow.resolution", index, true), visit(resolution);
     visit.item("flow.row_rates", index, true), visit(row_rates);
     visit.item("flow.margins", index, true), visit(margins), visit(margins_chosen);
+    visit.item("flow.largest_diagonals", index, true), visit(largest_diagonals);
     visit.item("flow.lengths", index, true), visit(next_step), visit(longest), visit(ahead), visit(length);
     visit.item("flow.slivers", index, true), visit(slivers), visit(exhausted);
     visit.item("flow.flags", index, true), visit(known), visit(end_kept);

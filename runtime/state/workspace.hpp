@@ -56,8 +56,9 @@ struct FlowWorkspace {
   T fixed_step = 0;                 // its length; 0: the error chooses the steps
   bool projects_stages = false;     // in steps near a loss of rank
   bool astray = false;              // the last attempt at a step reversed a joint's direction
-  // Pivots of K at the stages of a step, as shares of their diagonals, [stage][row]; of one row (step/rank_loss.hpp).
-  std::vector<double> pivots, of_row;
+  // Pivots of K at the stages of a step, as shares of their diagonals, and these, [stage][row]; of one row
+  // (step/rank_loss.hpp).
+  std::vector<double> pivots, diagonals, of_row;
   T start_residual = 0;        // largest C at the start of the step
   std::vector<T> start_turns;  // counters of whole turns there
   CollocationWorkspace<T> collocation;

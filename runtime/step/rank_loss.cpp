@@ -91,11 +91,37 @@ double way_of_row(WorldData<S>& world, Island<S>& island, int row) {
   return way;
 }
 
-// The distance of that pose over the distance at the stage with the pivot `least`: ways grow by it.
+// The distance of that pose over the distance at the stage with the pivot `least`, a share of `diagonal`: ways grow by
+// it.
 template <class S>
-double now_over(const Island<S>& island, int row, double least) {
+double now_over(const Island<S>& island, int row, double least, double diagonal) {
   if (island.system.dependent(row)) return std::numeric_limits<double>::infinity();
-  return std::sqrt(double(island.system.pivot(row) / island.system.diagonal(row)) / std::max(least, 1e-300));
+  return std::sqrt(double(island.system.pivot(row)) / diagonal / std::max(least, 1e-300));
+}
+
+// The squares of a row's distances at the stages, and the diagonal of which they are shares of pivots. A row that
+// vanishes, as that of a constant-velocity joint whose shafts point against each other, takes its diagonal along: if
+// that falls so far below its largest since the start, all pivots are shares of the largest.
+struct Distances {
+  std::vector<double>& square;  // [stage]
+  double least = 1, most = 0, diagonal = 0;
+};
+template <class S>
+Distances distances_of(Island<S>& island, int row, int stages) {
+  const int rows = island.system.rows();
+  const auto at = [&](const std::vector<double>& of, int stage) { return of[static_cast<size_t>(stage * rows + row)]; };
+  const double largest = double(island.flow.largest_diagonals[static_cast<size_t>(row)]);
+  double smallest = largest;
+  for (int j = 1; j < stages; ++j) smallest = std::min(smallest, at(island.flow.diagonals, j));
+  const bool vanishes = smallest < near * near * largest;
+  Distances all{island.flow.of_row};
+  all.diagonal = vanishes ? largest : double(island.system.diagonal(row));
+  for (int j = 1; j < stages; ++j) {
+    double& square = all.square[static_cast<size_t>(j)];
+    square = at(island.flow.pivots, j) * (vanishes ? at(island.flow.diagonals, j) / largest : 1);
+    all.least = std::min(all.least, square), all.most = std::max(all.most, square);
+  }
+  return all;
 }
 
 template <class T>
@@ -119,17 +145,12 @@ Passage<typename S::Scalar> passage_of(WorldData<S>& world, Island<S>& island, c
   Passage<T> passage;
   double steepest = 0;
   for (size_t r = 0; r < rows && count < most_passings; ++r) {
-    double least = 1, most = 0;
-    for (int j = 1; j < method.stages; ++j) {
-      const double share = island.flow.pivots[static_cast<size_t>(j) * rows + r];
-      least = std::min(least, share), most = std::max(most, share);
-    }
+    const auto [square, least, most, diagonal] = distances_of(island, static_cast<int>(r), method.stages);
     if (!(least < near * near && least < changes * changes * most)) continue;
-    if (!(way_of_row(world, island, static_cast<int>(r)) * now_over(island, static_cast<int>(r), least) > far))
-      continue;
+    const double now = now_over(island, static_cast<int>(r), least, diagonal);
+    if (!(way_of_row(world, island, static_cast<int>(r)) * now > far)) continue;
     passage.near = true;
-    for (int j = 1; j < method.stages; ++j)
-      distance[j] = std::sqrt(island.flow.pivots[static_cast<size_t>(j) * rows + r]);
+    for (int j = 1; j < method.stages; ++j) distance[j] = std::sqrt(square[j]);
     const Passing one = passing_of(method, distance);
     if (!std::isfinite(one.at) || !(one.slope > 0)) continue;
     const bool asks = least < close * close && least < dip * dip * most;
@@ -156,6 +177,8 @@ template <class S>
 void prepare_rank_loss(Island<S>& island, const RungeKuttaOf<S>& method) {
   const auto rows = static_cast<size_t>(island.system.rows());
   island.flow.pivots.assign(rows * static_cast<size_t>(method.stages), 0.0);
+  island.flow.diagonals.assign(rows * static_cast<size_t>(method.stages), 0.0);
+  island.flow.largest_diagonals.assign(rows, 0);
   island.flow.of_row.assign(static_cast<size_t>(method.stages), 0.0);
 }
 
@@ -164,10 +187,14 @@ void note_pivots(Island<S>& island, int stage) {
   const System<S>& system = island.system;
   if (!island.solver->exact) return;
   const int rows = system.rows();
-  double* to = island.flow.pivots.data() + static_cast<size_t>(stage) * static_cast<size_t>(rows);
+  const size_t first = static_cast<size_t>(stage) * static_cast<size_t>(rows);
+  double *const to = island.flow.pivots.data() + first, *const diagonal = island.flow.diagonals.data() + first;
   for (int r = 0; r < rows; ++r) {
     const bool counts = !system.fixed[r] && !system.broken[r];
     to[r] = !counts ? 1.0 : system.dependent(r) ? 0.0 : double(system.pivot(r) / system.diagonal(r));
+    auto& largest = island.flow.largest_diagonals[static_cast<size_t>(r)];
+    if (counts) largest = std::max(largest, typename S::Scalar(system.diagonal(r)));
+    diagonal[r] = double(counts ? system.diagonal(r) : largest);
   }
 }
 
