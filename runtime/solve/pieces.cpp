@@ -31,9 +31,7 @@ void begin_span(WorldData<S>& world, Island<S>& island, Batch<S>& batch, int slo
 template <class S>
 double begin_piece(WorldData<S>& world, Island<S>& island, double time, double h, int order) {
   double until = unbounded;
-  // A jump this near was meant to be at the start.
-  const double near =
-      std::max(1e-9 * h, 4 * double(std::numeric_limits<typename S::Scalar>::epsilon()) * std::abs(time));
+  const double near = one_time<typename S::Scalar>(time, h);
   for (const auto& [batch, begin, end, whole] : island.segments) {
     if (!batch->driven()) continue;
     for (int slot = begin; slot < end; ++slot) {

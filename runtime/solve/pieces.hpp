@@ -2,6 +2,10 @@
 // there, so that each step sees one smooth piece and every method keeps its order.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "runtime/state/world_data.hpp"
 
 namespace cdot {
@@ -15,6 +19,13 @@ double begin_piece(WorldData<S>& world, Island<S>& island, double time, double h
 // The same for the awake islands, as methods with steps from outside need it: at jumps.
 template <class S>
 double begin_pieces(WorldData<S>& world, double time, double h);
+
+// Times this near count as one: a jump there was meant to be at the start of a step from `time` on of about h, or at
+// its end.
+template <class T>
+double one_time(double time, double h) {
+  return std::max(1e-9 * h, 4 * double(std::numeric_limits<T>::epsilon()) * std::abs(time));
+}
 
 // True if a number of the island has left its range, or is not finite.
 template <class S>

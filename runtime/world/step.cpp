@@ -43,7 +43,7 @@ StepResult advance_by_pieces(WorldData<S>& world, double h) {
   const double end = world.time + h;
   for (double left = h;;) {
     const double length = begin_pieces(world, world.time, h) - world.time;
-    if (!(length < left)) return advance(world, left);
+    if (!(length < left - one_time<typename S::Scalar>(end, h))) return advance(world, left);
     if (const StepResult result = advance(world, length); !result) return result;
     left = end - world.time;
   }
