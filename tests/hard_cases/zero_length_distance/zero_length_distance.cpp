@@ -16,7 +16,7 @@ void length_zero(Trial& t) {
   for (SceneJoint& joint : t.scene.joints)
     for (NamedValue& value : joint.definition.parameters)
       if (value.name == "l") value.numbers = {0};
-  t.at_most("accepted", t.refused("revolute") ? 0 : 1, 0);
+  t.at_most("accepted", t.refused("Hold the points together") ? 0 : 1, 0);
 }
 
 const Register planar({"zero_length_distance", "planar", all_ways(), coincident_start});
