@@ -18,6 +18,8 @@ namespace {
 // change of the row moves the bodies `far` times as far. (Light bodies and thin rods make pivots small as well, but
 // their rows move nothing far.)
 constexpr double near = 0.3, changes = 0.9, far = 2.5;
+// A row vanishes below this distance. (Stages of very long steps leave the joints, and rows get shorter there.)
+constexpr double vanishing = 0.1;
 // A stage within the distance `close`, and of the share `dip` of the largest, asks for another length, if that leads at
 // least `clearly` times further away.
 constexpr double close = 0.02, dip = 0.5, clearly = 1.5;
@@ -113,7 +115,7 @@ Distances distances_of(Island<S>& island, int row, int stages) {
   const double largest = double(island.flow.largest_diagonals[static_cast<size_t>(row)]);
   double smallest = largest;
   for (int j = 1; j < stages; ++j) smallest = std::min(smallest, at(island.flow.diagonals, j));
-  const bool vanishes = smallest < near * near * largest;
+  const bool vanishes = smallest < vanishing * vanishing * largest;
   Distances all{island.flow.of_row};
   all.diagonal = vanishes ? largest : double(island.system.diagonal(row));
   for (int j = 1; j < stages; ++j) {

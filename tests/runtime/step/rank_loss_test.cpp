@@ -3,6 +3,8 @@
 #include <cmath>
 #include <fmt/core.h>
 
+#include <cdot/methods.hpp>
+
 #include "tests/runtime/mechanisms.hpp"
 #include "tests/runtime/support.hpp"
 
