@@ -104,8 +104,11 @@ void step_gently(WorldData<S>& world, Island<S>& island, typename S::Scalar h, c
   go_back(world, island, start);
   if (try_step(world, island, h, {.last_step = 0})) return;
   if (!try_without_correction(world, island, h, start)) stand(world, island, h, start);
+  // C alone is rounded otherwise, by radians near a pose without direction: it may count another turn.
+  keep_turns(island);
   island.residual = find_errors(world, island, typename S::Scalar(world.time) + h);
-  island.evaluated = false;  // C alone is rounded otherwise, by radians near a pose without direction
+  restore_turns(island);
+  island.evaluated = false;
 }
 
 template <class S>

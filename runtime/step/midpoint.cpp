@@ -9,6 +9,7 @@
 // friction act at the ends of the step.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <cdot/spaces.hpp>
 
@@ -189,18 +190,54 @@ WorkAtEnd solve_end_of_part(WorldData<S>& world, Island<S>& island) {
   return {hit ? 0 : loss, std::max(given, 0.0)};
 }
 
-// Dampers act at both ends of a part, first on bodies without their joints. At the end the joints give back what those
-// took too much: with v0 the velocities before and M v1 = M v0 + J^T mu, J v1 = 0, only dampers make mu J v0 positive.
+// The power [W] that passes through an effect at the present rates. 0 if it takes some of it, as a damper does; a
+// magnetic field takes none.
 template <class S>
-void give_back(WorldData<S>& world, double energy) {
+double passing_power(const Batch<S>& batch, int slot) {
+  using T = typename S::Scalar;
+  const int rows = batch.ops->rows, first = slot * rows;
+  T rate[most_rows] = {}, force[most_rows] = {};
+  for (int r = 0; r < rows; ++r) rate[r] = batch.rate[first + r] + batch.bias[first + r];
+  batch.law->unstored(batch, slot, rate, force);
+  double sum = 0, size = 0;
+  for (int r = 0; r < rows; ++r) {
+    const double power = double(force[r]) * double(rate[r]);
+    sum += power, size += std::abs(power);
+  }
+  constexpr double rounded = 16 * double(std::numeric_limits<T>::epsilon());
+  return sum < -rounded * size ? 0 : size;
+}
+
+// Work of effects that take none, in proportion to the power that passes through them.
+template <class S>
+void give_by_effects(WorldData<S>& world, const Island<S>& island, double energy) {
+  const auto each_power = [&](auto f) {
+    for (const auto& [batch, begin, end, whole] : island.segments)
+      for (int slot = begin; is_force(*batch) && batch->law->is_of_effect() && slot < end; ++slot)
+        f(batch->source, passing_power(*batch, slot));
+  };
+  find_rates_of_effects(world, island);
+  double all = 0;
+  each_power([&](size_t, double power) { all += power; });
+  if (!(all > 0)) return;
+  each_power([&](size_t source, double power) { put_in(world, static_cast<Source>(source), energy * power / all); });
+}
+
+// Effects of rates act at both ends of a part, first on bodies without their joints. At the end the joints do work that
+// is theirs: with v0 the velocities before and M v1 = M v0 + J^T mu, J v1 = 0, only effects make mu J v0 positive.
+// Dampers have taken too much; effects that take nothing have given too little. Drives in time are joints.
+template <class S>
+void give_back(WorldData<S>& world, const Island<S>& island, double energy) {
   auto& now = world.accounts.by_source;
-  const auto& before = world.kept_by_source;
+  auto& before = world.kept_by_source;
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    if (!batch->law && batch->explicit_time()) before[batch->source] = now[batch->source];
   double taken = 0;
   for (size_t k = 0; k < now.size(); ++k) taken += std::max(before[k] - now[k], 0.0);
-  if (!(taken > 0)) return;
-  const double share = std::min(energy / taken, 1.0);
+  const double share = taken > 0 ? std::min(energy / taken, 1.0) : 0;
   for (size_t k = 0; k < now.size(); ++k) now[k] += share * std::max(before[k] - now[k], 0.0);
   world.accounts.taken -= share * taken;
+  if (energy > share * taken) give_by_effects(world, island, energy - share * taken);
 }
 
 // One part of a step, of length h. False, with the state of its start, if it is too long: Newton fails, or the joints
@@ -243,7 +280,7 @@ bool take_part(WorldData<S>& world, Island<S>& island, typename S::Scalar h, boo
   forget_dampers(world, island);
   if (!last && joints.taken > slight_work<T> * energy && !hardly_moves(world, island, h)) return give_up();
   book_kick(world, island, Impulses::end, h);
-  give_back(world, given + joints.given_back);
+  give_back(world, island, given + joints.given_back);
   island.evaluated = true;
   return true;
 }

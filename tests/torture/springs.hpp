@@ -12,10 +12,11 @@
 namespace cdot::torture {
 
 struct SpringRow {
-  int joint = -1;          // -1: none
-  double c = 0, rate = 0;  // stretch and its rate
-  double force = 0;        // without damping
-  double stiffness = 0;
+  int joint = -1;             // -1: none
+  double c = 0, rate = 0;     // stretch and its rate
+  double force = 0;           // without damping
+  double stiffness = 0;       // a difference over a small share of c
+  double tangent = 0;         // the slope that an implicit step takes: near a kink it may differ from that difference
   double mass = 0;            // K of the row: |M^-1 J'|^2 in the metric of the masses; 0: broken
   bool by_frequency = false;  // the stiffness changes with the pose
 };
@@ -48,6 +49,7 @@ void add_spring_rows(const WorldData<S>& state, const Batch<S>& batch, std::vect
   const int count = rows.ops->rows;
   const std::vector<T> no_rate(static_cast<std::size_t>(count));
   std::vector<T> force(no_rate), further(no_rate);
+  std::vector<SpringNumbers<T>> slopes(static_cast<std::size_t>(count));
   rows.ops->evaluate(rows, 0, rows.count(), state.bodies, T(state.time));
   rows.ops->effective_mass(rows, 0, rows.count(), state.bodies);
   rows.ops->velocity(rows, 0, rows.count(), state.bodies.velocity.data(), rows.rate.data());
@@ -56,14 +58,15 @@ void add_spring_rows(const WorldData<S>& state, const Batch<S>& batch, std::vect
     const double whole = state.joints[static_cast<std::size_t>(joint)].broken ? 0 : 1;
     rows.law->force(rows, slot, no_rate.data(), force.data());
     const bool by_frequency = rows.law->by_mass && rows.law->by_mass(rows, slot);
+    if (rows.law->spring) rows.law->spring(rows, slot, slopes.data());
     const std::vector<double> ways = find_ways_to(rows, slot, no_rate, further);
     for (int r = 0; r < count; ++r) {
       const auto of_row = static_cast<std::size_t>(r);
       const auto i = static_cast<std::size_t>(slot * count + r);
       const auto k = static_cast<std::size_t>(slot * rows.triangle() + r * (r + 1) / 2 + r);
       springs.push_back({joint, double(rows.C[i]), double(rows.rate[i]), whole * double(force[of_row]),
-                         double(further[of_row] - force[of_row]) / ways[of_row], whole * double(rows.factor[k]),
-                         by_frequency});
+                         double(further[of_row] - force[of_row]) / ways[of_row], double(slopes[of_row].k),
+                         whole * double(rows.factor[k]), by_frequency});
     }
   }
 }
@@ -92,10 +95,12 @@ inline double push_of(const std::vector<SpringRow>& springs, double h) {
 //   h J v f - (f0 + f1) (c1 - c0) / 2, at most |c1 - c0| |f1 - f0| / 2 + |beta| (|f0| + 2 |f1| + k |beta|),
 //   beta = (c1 - c0) - h J v0 - h J dv, |J dv| <= sqrt(K) |dv|.
 // A bent law leaves its tangent by e = |f1 - f0 + k0 (c1 - c0)|, and an implicit step takes the tangent. The law is
-// between tangent and chord: + |c1 - c0| (e + e / 2). The work of a stiffness that changes is c^2 (k1 - k0) / 2.
+// between tangent and chord: + |c1 - c0| (e + e / 2). Where a cord becomes taut, its slope is between those beside it,
+// and the larger e counts. The work of a stiffness that changes is c^2 (k1 - k0) / 2.
 inline double missed_work(const SpringRow& s, const SpringRow& e, double h, double dv) {
   if (e.mass == 0) return 0;
-  const double way = e.c - s.c, bent = std::abs(e.force - s.force + s.stiffness * way);
+  const double way = e.c - s.c, further = e.force - s.force;
+  const double bent = std::max(std::abs(further + s.stiffness * way), std::abs(further + s.tangent * way));
   const double beta = std::abs(way - h * s.rate) + h * std::sqrt(s.mass) * dv;
   const double stretch = std::max(std::abs(s.c), std::abs(e.c));
   return std::abs(way) * (std::abs(e.force - s.force) / 2 + 1.5 * bent) +
