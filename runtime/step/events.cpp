@@ -145,19 +145,29 @@ bool may_strike(const Guard<T>& guard, const Resolution<T>& resolution, bool loa
   return guard.bilateral() || (guard.of_rate && (std::isinf(guard.lower) || std::isinf(guard.upper)));
 }
 
+// The source of the row that strikes hardest, in units of its resolution; -1: none strikes.
+template <class S>
+int what_hits(Island<S>& island) {
+  using T = typename S::Scalar;
+  T hardest = 0;
+  int source = -1;
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
+    const T missing = guard.rate - (batch.rate[i] + batch.bias[i]), share = std::abs(missing) / resolution.rate;
+    if (!strikes(guard, resolution, missing, batch.law->distance && island.kinked < 0) || !(share > hardest)) return;
+    hardest = share, source = static_cast<int>(batch.source);
+  });
+  return source;
+}
+
 // Inelastic impacts: rows that close at contact stop, J v >= 0 with impulses >= 0. They become `held`, because sweeps
-// leave a rate that is not exactly 0. Motors with a bounded force do not act during an impact.
+// leave a rate that is not exactly 0. Motors with a bounded force do not act during an impact. The row that strikes
+// hardest takes the energy of all.
 template <class S>
 void stop_what_hits(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
-  bool hits = false;
   find_rates(world, island);
-  each_guarded_row(
-      island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
-        const T missing = guard.rate - (batch.rate[i] + batch.bias[i]);
-        hits |= strikes(guard, resolution, missing, batch.law->distance && island.kinked < 0);
-      });
-  if (!hits) return;
+  const int source = what_hits(island);
+  if (source < 0) return;
   clear_laws(island);
   each_guarded_row(
       island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
@@ -169,8 +179,8 @@ void stop_what_hits(WorldData<S>& world, Island<S>& island) {
   const double before = kinetic_energy(world, island);
   solve(world, island, world.bodies.velocity.data());
   const double lost = before - kinetic_energy(world, island);
-  if (lost >= 0) take(world, Source::limit, lost);
-  else put_in(world, Source::limit, -lost);  // by an end that moves
+  if (lost >= 0) take(world, static_cast<Source>(source), lost);
+  else put_in(world, static_cast<Source>(source), -lost);  // by an end that moves
   for (const Segment<S>& segment : island.segments)
     for (int i = segment.begin * segment.batch->ops->rows; i < segment.end * segment.batch->ops->rows; ++i)
       segment.batch->correction[i] += segment.batch->lambda[i];
