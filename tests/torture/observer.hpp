@@ -211,7 +211,7 @@ class Accounts {
 
  private:
   void add_error(const Motion& now, double energy);
-  // What a first-order step may miss of a spring's work, and how much its rate or its stiffness changes, relative.
+  // The work of a spring that a first-order step may miss, and the relative change of its rate or its stiffness.
   struct Missed {
     double work, rough;
   };

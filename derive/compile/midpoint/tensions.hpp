@@ -31,7 +31,7 @@ class Tensions {
 
   // As blocks of a system, one for each joint that has some.
   std::vector<RowBlock> blocks() const;
-  // What the block with this number reads.
+  // The numbers that the block with this number reads.
   Values inputs(Algebra& algebra, const RowBlocks& blocks, std::size_t number) const;
   // By row of that block: sqrt(h/4 D), by which an effect's rows count in a system.
   std::vector<int> share(Algebra& algebra, std::size_t number) const;
