@@ -2,10 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <cdot/spaces.hpp>
 
 namespace cdot {
+namespace {
+
+// Round-off of K lambda, in units of its largest term.
+template <class Real>
+constexpr Real rounded = 8 * std::numeric_limits<Real>::epsilon();
+
+}  // namespace
 
 template <class S>
 void System<S>::load_laws() {
@@ -66,6 +74,15 @@ typename System<S>::Real System<S>::largest_b(Of rows) const {
   return largest;
 }
 
+// The largest sqrt(K_cc) |lambda_c|. By |K_rc| <= sqrt(K_rr K_cc), sqrt(K_rr) times it bounds the terms of (K
+// lambda)_r.
+template <class S>
+typename System<S>::Real System<S>::largest_term() const {
+  Real largest = 0;
+  for (int c = 0; c < rows_; ++c) largest = std::max(largest, std::sqrt(ldlt_.diagonal(c)) * std::abs(lambda[c]));
+  return largest;
+}
+
 // The bound at which a free row has to stay: that which it lies beyond, or, for a redundant row, at which elimination
 // leaves it (a slack rope beside a rod pulls nothing). `excess`: J v + bias after it.
 template <class S>
@@ -76,15 +93,16 @@ char System<S>::bound_for(int r, Real excess, Real tolerance) const {
 }
 
 // Fixes rows outside their bounds at the bound, and frees rows whose bound has the wrong sign. True if nothing changed.
+// Two equal ropes would take turns by round-off: what they would pull, nearly redundant, cancels.
 template <class S>
 bool System<S>::revise_active_set(bool one_by_one) {
   find_excess();
-  const Real scale = largest_b(Of::all_rows);
-  const Real tolerance = by_precision<Real>(1e-12) * scale;
+  const Real scale = largest_b(Of::all_rows), term = largest_term();
   bool settled = true;
   for (int r = rows_ - 1; r >= 0; --r) {
     if (broken[r]) continue;
     const Real excess = this->excess(r);
+    const Real tolerance = by_precision<Real>(1e-12) * scale + rounded<Real> * std::sqrt(ldlt_.diagonal(r)) * term;
     if (!fixed[r]) {
       fixed[r] = bound_for(r, excess, tolerance);
       if (fixed[r] == free) continue;

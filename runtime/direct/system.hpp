@@ -181,6 +181,7 @@ class System {
   std::vector<int> movable_bodies(const Block& block, const Bodies<S>& bodies) const;
   enum class Of : char { all_rows, free_rows };
   Real largest_b(Of rows) const;
+  Real largest_term() const;
   char bound_for(int row, Real excess, Real tolerance) const;
   bool revise_active_set(bool one_by_one);
   int find_active_set();

@@ -229,7 +229,7 @@ typename S::Scalar find_errors_but_misfits(WorldData<S>& world, Island<S>& islan
   island.residual = at_start;
   if (!stays_misfit(world, island, error, h)) return island.residual = error;
   for (const auto& [batch, begin, end, whole] : island.segments)
-    if (!batch->law) each_row(*batch, begin, end, [of = batch](int i) { of->error[i] = T(0); });
+    each_row(*batch, begin, end, [of = batch](int i) { of->error[i] = T(0); });
   return T(0);
 }
 

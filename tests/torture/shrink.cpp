@@ -37,8 +37,8 @@ void round_settings(Scene& scene, int digits) {
 
 class Shrinker {
  public:
-  Shrinker(const Scene& scene, const Verdict& verdict, const Asked& asked, int most_tries)
-      : asked_(asked), most_tries_(most_tries), best_{scene, verdict, 0} {}
+  Shrinker(const Scene& scene, const Verdict& verdict, const Judge& judge, int most_tries)
+      : judge_(judge), most_tries_(most_tries), best_{scene, verdict, 0} {}
 
   Shrunk run() {
     for (bool smaller = true; smaller && best_.tries < most_tries_;) {
@@ -59,7 +59,7 @@ class Shrinker {
     Scene scene = best_.scene;
     change(scene);
     ++best_.tries;
-    const Verdict seen = judge(scene, asked_);
+    const Verdict seen = judge_(scene);
     if (!seen.broken() || seen.what != best_.verdict.what) return false;
     best_.scene = std::move(scene), best_.verdict = seen;
     return true;
@@ -162,15 +162,15 @@ class Shrinker {
     }
   }
 
-  const Asked& asked_;
+  const Judge& judge_;
   int most_tries_;
   Shrunk best_;
 };
 
 }  // namespace
 
-Shrunk shrink(const Scene& scene, const Verdict& verdict, const Asked& asked, int most_tries) {
-  return Shrinker(scene, verdict, asked, most_tries).run();
+Shrunk shrink(const Scene& scene, const Verdict& verdict, const Judge& judge, int most_tries) {
+  return Shrinker(scene, verdict, judge, most_tries).run();
 }
 
 }  // namespace cdot::torture

@@ -2,6 +2,8 @@
 // plain settings, round numbers, fewer steps.
 #pragma once
 
+#include <functional>
+
 #include "tests/torture/invariants.hpp"
 
 namespace cdot::torture {
@@ -12,6 +14,8 @@ struct Shrunk {
   int tries = 0;
 };
 
-Shrunk shrink(const Scene& scene, const Verdict& verdict, const Asked& asked = {}, int most_tries = 600);
+using Judge = std::function<Verdict(const Scene&)>;
+
+Shrunk shrink(const Scene& scene, const Verdict& verdict, const Judge& judge, int most_tries = 600);
 
 }  // namespace cdot::torture

@@ -60,6 +60,11 @@ std::string told(const Verdict& v) {
                      v.value, v.bound, v.step);
 }
 
+Verdict judged(const Options& options, const Scene& scene, const Asked& asked) {
+  if (options.advice) return judge_advice(scene);
+  return options.misfit ? judge_misfit(scene) : judge(scene, asked);
+}
+
 void keep(const Options& options, const std::string& name, const std::string& text) {
   std::filesystem::create_directories(options.keep);
   std::ofstream(options.keep + "/" + name) << text;
@@ -69,17 +74,23 @@ void keep(const Options& options, const std::string& name, const std::string& te
 void report(const Options& options, std::uint64_t seed, const Scene& scene, const Verdict& verdict, Asked asked) {
   fmt::print("\nBROKEN {}\n  seed {:#x}, {}\n", told(verdict), seed, way_of(scene));
   std::fflush(stdout);  // shrinking may take a while
-  if (options.no_shrink || options.advice || options.misfit) return;
+  if (options.no_shrink || options.advice) return;
   asked.bits = verdict.what.starts_with("bits");
-  Shrunk small = shrink(scene, verdict, asked);
+  Shrunk small = shrink(scene, verdict, [&](const Scene& of) {
+    const bool settles = !options.misfit || steps_of(of) == steps_of(scene);
+    return settles ? judged(options, of, asked) : Verdict{};
+  });
   small.scene.title = fmt::format("seed {:#x}: {}", seed, small.verdict.what);
   const std::string text = text_of(small.scene), name = fmt::format("{:016x}.toml", seed);
   fmt::print("  shrunk in {} tries: {} bodies, {} joints, {} steps: {}\n", small.tries, small.scene.bodies.size(),
              small.scene.joints.size(), steps_of(small.scene), told(small.verdict));
+  const std::string how = asked.swept      ? fmt::format(" --sweeps {:#x}", *asked.swept)
+                          : options.misfit ? " --misfit"
+                                           : "";
   fmt::print(
       "  again: torture --seed {:#x} --count 1 --steps {}; the small one: torture --scene {}{}; cdot-run simulate "
       "{}\n\n{}\n",
-      seed, options.wish.steps, name, asked.swept ? fmt::format(" --sweeps {:#x}", *asked.swept) : "", name, text);
+      seed, options.wish.steps, name, how, name, text);
   if (!options.keep.empty()) keep(options, name, text);
 }
 
@@ -89,14 +100,9 @@ void say(const Verdict& verdict) {
   fmt::print("{}{}\n", words[static_cast<int>(verdict.outcome)], why);
 }
 
-Verdict judged(const Options& options, const Scene& scene) {
-  if (options.advice) return judge_advice(scene);
-  return options.misfit ? judge_misfit(scene) : judge(scene, options.asked());
-}
-
 int judge_file(const Options& options) {
   const Scene scene = read_scene(options.scene);
-  const Verdict verdict = judged(options, scene);
+  const Verdict verdict = judged(options, scene, options.asked());
   say(verdict);
   return verdict.broken();
 }
@@ -110,8 +116,8 @@ int torture(const Options& options) {
     const Mechanism mechanism = options.misfit ? nearly_misfitting(seed, options.wish) : generate(seed, options.wish);
     if (options.print) fmt::print("{}\n", text_of(mechanism.scene));
     const std::clock_t began = std::clock();
-    Verdict verdict = judged(options, mechanism.scene);
     Asked asked = options.asked();
+    Verdict verdict = judged(options, mechanism.scene, asked);
     if (verdict.outcome != Outcome::refused && !verdict.broken() && !options.misfit && !options.advice) {
       asked.swept = seed;
       const Verdict by_sweeps = judge(mechanism.scene, asked);

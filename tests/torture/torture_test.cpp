@@ -336,7 +336,7 @@ TEST(Torture, FindsAndShrinksWhatIsSabotaged) {
       ++sound;
       continue;
     }
-    const Shrunk small = shrink(mechanism.scene, verdict, asked);
+    const Shrunk small = shrink(mechanism.scene, verdict, [&](const Scene& scene) { return judge(scene, asked); });
     ++found;
     EXPECT_EQ(small.verdict.what, verdict.what);
     EXPECT_LE(small.scene.bodies.size(), 3u) << text_of(small.scene);
