@@ -137,7 +137,7 @@ class HeaderWriter {
       line("  // Of rows with bounds: 1 if they have begun, if they have ended, if they act.");
       line("  struct Events {\n    T began[bounded], ended[bounded], acts[bounded];\n  };");
     }
-    if (has().bonds) text_ += bonds_type(mechanism_);
+    if (has().bonds) text_ += bonds_type(mechanism_, has());
     text_ += state_of(mechanism_, has(), has_inputs());
   }
 
@@ -355,10 +355,6 @@ class HeaderWriter {
     if (breaks(mechanism_)) {
       step.replace(step.find(step_head), step_head.size(), "advance(State& s, const T& h)");
       step += step_in_parts(mechanism_.method, has());
-    }
-    if (has().snaps) {
-      step.replace(step.find(step_head), step_head.size(), "go(State& s, const T& h)");
-      step += snaps_after(has());
     }
     text_ += step;
   }

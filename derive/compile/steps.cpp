@@ -248,11 +248,10 @@ long operations_of(const Equations& e, const Calls& calls) {
 namespace {
 
 // Of the member `modes`: margins are those of rows with bounds and of joints that may break.
-long numbers_of_modes(const Mechanism& mechanism, const Equations& equations, const Contents& has) {
+long numbers_of_modes(const Mechanism& mechanism, const Contents& has) {
   if (!has.strides()) return 0;
   const long bounded = long(mechanism.bounded.size()), strengths = has.snaps ? long(mechanism.bonds.size()) : 0;
-  const long struck = has.modes && has.snaps ? bounded + long(equations.rows.size()) : 0;
-  return (has.cones ? 2 : 1) + (has.loads ? 7 : 6) * bounded + 2 * strengths + struck;
+  return (has.cones ? 2 : 1) + (has.loads ? 7 : 6) * bounded + 2 * strengths;
 }
 
 }  // namespace
@@ -262,8 +261,9 @@ long state_bytes_of(const Mechanism& mechanism, const Equations& equations, cons
   for (const Body& body : mechanism.bodies) of_bodies += numbers_of(mechanism, body, has.pulls());
   const long of_rows = long{has.foresees ? 1 + foreseen_by(has.rattle) : 1} * long(equations.rows.size()) +
                        long(equations.stored.size()) + (has.closes() ? 1 : 0) + (has.foresees ? 2 : 0) +
-                       (has.exerts ? equations.groups : 0) + numbers_of_modes(mechanism, equations, has) +
-                       2 * mechanism.breakable() + (has.events ? 3 * long(mechanism.bounded.size()) : 0);
+                       (has.exerts ? equations.groups : 0) + numbers_of_modes(mechanism, has) +
+                       (has.weighs_blows() ? 3 : 2) * mechanism.breakable() +
+                       (has.events ? 3 * long(mechanism.bounded.size()) : 0);
   return long{sizeof(double)} *
          (1 + of_bodies + of_rows + long(mechanism.bounded.size()) +
           (has.midpoint || has.weighs ? long(mechanism.bounded.size()) : 0) +

@@ -1,10 +1,10 @@
 // Joints that break by effects of specs: after each substep, by the impulses of the joint's own rows. Methods that
-// locate events in time also look within it (runtime/step/events.cpp).
+// locate events in time have found them within it (runtime/events).
 #include <cdot/coordinate/breaking.hpp>
 #include <cdot/detail/coordinate_effects.hpp>
 
 #include "runtime/effects/effect.hpp"
-#include "runtime/solve/bonds.hpp"
+#include "runtime/events/bonds.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/state/add_rows.hpp"
 #include "runtime/world/rollback.hpp"
@@ -19,7 +19,7 @@ void break_overloaded(WorldData<S>& world, typename S::Scalar h) {
   const double time = double(world.time) + double(h);
   for (std::size_t k = 0; k < world.bonds.size(); ++k) {
     Island<S>& island = world.islands[world.island_of[movable_body(world, world.joints[world.bonds[k].joint])]];
-    if (island.asleep || island.bonds.front() != static_cast<int>(k)) continue;  // each island once
+    if (island.asleep || island.flow.locates || island.bonds.front() != static_cast<int>(k)) continue;  // once each
     if (overloaded_joint(world, island, time, double(h)) < 0) continue;
     island.solver->share(world, island);
     const int joint = overloaded_joint(world, island, time, double(h));

@@ -55,6 +55,7 @@ struct FlowWorkspace {
   int guarded = 0;                  // number of guarded rows
   T fixed_step = 0;                 // its length; 0: the error chooses the steps
   bool projects_stages = false;     // in steps near a loss of rank
+  bool locates = false;             // this step locates all loads in time, so its end need not look for them
   bool astray = false;              // the last attempt at a step reversed a joint's direction
   // Pivots of K at the stages of a step, as shares of their diagonals, and these, [stage][row]; of one row
   // (step/rank_loss.hpp).

@@ -5,8 +5,9 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/events/events.hpp"
+#include "runtime/events/guarded.hpp"
 #include "runtime/solve/projection.hpp"
-#include "runtime/step/events.hpp"
 
 namespace cdot {
 namespace {

@@ -7,12 +7,12 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/balance/balance.hpp"
+#include "runtime/events/events.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/step/collocation.hpp"
-#include "runtime/step/events.hpp"
 #include "runtime/step/rank_loss.hpp"
 
 namespace cdot {

@@ -7,6 +7,7 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/events/events.hpp"
 #include "runtime/solve/pieces.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
@@ -14,7 +15,6 @@
 #include "runtime/state/pace.hpp"
 #include "runtime/step/between.hpp"
 #include "runtime/step/collocation.hpp"
-#include "runtime/step/events.hpp"
 #include "runtime/step/integrators.hpp"
 #include "runtime/step/rank_loss.hpp"
 #include "runtime/step/runge_kutta.hpp"
@@ -240,6 +240,7 @@ template <class S>
 void fall_back(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h, bool astray) {
   using T = typename S::Scalar;
   ++world.counts->rescued;
+  island.flow.locates = false;
   fill_lambda(island, T(0));
   evaluate_anew(world, island, time);
   island.factored = false;
@@ -363,6 +364,7 @@ void step_runge_kutta(WorldData<S>& world, Island<S>& island, const RungeKuttaOf
   if (world.last_step > 0) scale_forces(island, T(1 / world.last_step));
   clear_correction(world, island);
   flow.projects_stages = false;  // of the last call
+  flow.locates = island.solver->exact;
   flow.fixed_step = world.settings.local_error > 0 ? T(0) : h;
   T end = flow.ahead;
   if (end > T(0) && end <= h) go_to_end(world, island, method, T(world.time) + end);

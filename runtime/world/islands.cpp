@@ -10,7 +10,7 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/balance/balance.hpp"
-#include "runtime/solve/latch.hpp"
+#include "runtime/events/latch.hpp"
 #include "runtime/solve/loads.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/solve/sweep_order.hpp"

@@ -5,8 +5,8 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/events/bonds.hpp"
 #include "runtime/motion/motion.hpp"
-#include "runtime/solve/bonds.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/step/integrators.hpp"
 

@@ -23,6 +23,7 @@ StepResult advance(WorldData<S>& world, double h) {
   const auto dt = typename S::Scalar(h);
   for (int index : world.awake) {
     Island<S>& island = world.islands[index];
+    island.flow.locates = false;
     stepper_of<S>(world.settings.integrator).step(world, island, dt);
     const bool lost = !finite(world, island) || (world.driven && leaves_its_range(island));
     if (island.trouble == StepProblem::none && lost) island.trouble = StepProblem::not_finite;

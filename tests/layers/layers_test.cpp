@@ -65,6 +65,7 @@ const std::vector<std::string> rooms = {
     "runtime/motion",      // forces, poses and momentum, without joints
     "runtime/balance",     // energy, work and momentum of a World
     "runtime/solve",       // rows of an island, their forces and projection
+    "runtime/events",      // rows under a law between events; impacts, latches, joints that break
     "runtime/sweeps",      // steps by sweeps whose energy does not rise: soft rows, the price of a gain
     "runtime/step",        // integrators
     "runtime/world",       // step() itself; islands, sleep, queries

@@ -9,12 +9,12 @@ namespace cdot::compile {
 namespace {
 
 constexpr const char* bonds_type_text =
-    R"(  // 1 for a joint that holds, 0 for one that is broken for good; the load on each, as of the last step [N], [N m].
+    R"(  static constexpr int joints = {0}, strengths = {1}, mechanisms = {2};
+  // 1 for a joint that holds, 0 for one that is broken for good; the load on each, as of the last step [N], [N m].
   struct Bonds {{
     T holds[{0}], load[{0}];
-  }};
+{5}  }};
   // The joint of each strength, and its mechanism.
-  static constexpr int joints = {0}, strengths = {1}, mechanisms = {2};
   static constexpr int joint_of[strengths] = {{{3}}}, mechanism_of[strengths] = {{{4}}};
 )";
 
@@ -46,7 +46,7 @@ constexpr const char* snap_chooses = R"(    strain($ss.time, s.bonds.load, from)
 {2}{3}  }}
 )";
 
-// A step that passes the strength of a joint ends there: runtime/solve/bonds.cpp.
+// A step that passes the strength of a joint ends there: runtime/events/bonds.cpp.
 constexpr const char* margins_of_joints = R"({0}    weigh_joints(s, {1});
     T from[strengths];
     strain($ss.time, s.bonds.load, from);
@@ -71,23 +71,6 @@ constexpr const char* chooses_joints = R"(
     find_margins(s);
     s.modes.known = T(1);
   }}
-)";
-
-// The World counts in the load of a whole step all impacts in it.
-constexpr const char* snaps_after_step = R"(
-  // A step, after which joints break that carry too much by the forces at its end and by the impulses of impacts.
-  static T step(State& s, T h = T(default_step)) {{
-{0}    const T residual = go(s, h);
-{1}    const Mask some = snap(s, {2}T(0));
-    s.modes.known = select(some, T(0), s.modes.known);
-    return residual;
-  }}
-)";
-constexpr const char* struck_rows = R"(    T force[rows];
-    for (int i = 0; i < rows; ++i) force[i] = s.lambda[i] + s.modes.struck[i] / h;
-)";
-constexpr const char* struck_bounds = R"(    T of_bounds[bounded];
-    for (int i = 0; i < bounded; ++i) of_bounds[i] = s.modes.force[i] + s.modes.struck_bounds[i] / h;
 )";
 
 const std::vector<int>& bodies_of(const Mechanism& mechanism, const Bond& bond) {
@@ -139,14 +122,16 @@ std::string forces_of_state(const Contents& has) {
          (has.bounded ? "s.modes.force" : "");
 }
 
-std::string bonds_type(const Mechanism& mechanism) {
+std::string bonds_type(const Mechanism& mechanism, const Contents& has) {
   const std::vector<int> groups = groups_of(mechanism);
   std::vector<int> joints, of;
   for (const Bond& bond : mechanism.bonds) {
     joints.push_back(bond.holds), of.push_back(group_of(groups, bodies_of(mechanism, bond)));
   }
-  return fmt::format(bonds_type_text, mechanism.breakable(), mechanism.bonds.size(),
-                     1 + *std::ranges::max_element(groups), fmt::join(joints, ", "), fmt::join(of, ", "));
+  return fmt::format(
+      bonds_type_text, mechanism.breakable(), mechanism.bonds.size(), 1 + *std::ranges::max_element(groups),
+      fmt::join(joints, ", "), fmt::join(of, ", "),
+      has.weighs_blows() ? "    T struck[joints];  // the largest load of an impact in this step\n" : "");
 }
 
 std::string arguments_of_strain(const Mechanism& mechanism) {
@@ -162,18 +147,6 @@ std::string arguments_of_draw(const Contents& has) {
 std::string margins_of_bonds(const Contents& has) {
   return fmt::format(margins_of_joints, "    const T near = T(single ? 1e-5 : 1e-10);\n", forces_of_state(has),
                      has.modes ? "bounded + " : "");
-}
-
-std::string snaps_after(const Contents& has) {
-  std::string clears, sums;
-  const bool of_rows = has.rows && has.modes;
-  if (of_rows) clears += "    for (T& of_row : s.modes.struck) of_row = T(0);\n", sums += struck_rows;
-  if (has.modes) clears += "    for (T& of_row : s.modes.struck_bounds) of_row = T(0);\n", sums += struck_bounds;
-  return fmt::format(snaps_after_step, clears, sums,
-                     std::string(!has.rows ? ""
-                                 : of_rows ? "force, "
-                                           : "s.lambda, ") +
-                         (has.modes ? "of_bounds, " : ""));
 }
 
 std::string snap_of(const Mechanism& mechanism, const std::vector<std::size_t>& rows, const Contents& has) {

@@ -10,7 +10,7 @@
 namespace cdot::compile {
 
 // The type of State::bonds.
-std::string bonds_type(const Mechanism& mechanism);
+std::string bonds_type(const Mechanism& mechanism, const Contents& has);
 std::string arguments_of_strain(const Mechanism& mechanism);
 inline constexpr const char* draws = "d = M^-1 (J^T lambda + R^T mu), R the rows that prescribe a rate";
 // After its poses.
@@ -22,7 +22,5 @@ std::string snap_of(const Mechanism& mechanism, const std::vector<std::size_t>& 
 // By Runge-Kutta methods: these forces at the end of a stride, and lines that find the margins of joints.
 std::string forces_of_state(const Contents& has);
 std::string margins_of_bonds(const Contents& has);
-// step() of the whole step, after its strides: impulses of impacts are loads, too.
-std::string snaps_after(const Contents& has);
 
 }  // namespace cdot::compile

@@ -41,6 +41,7 @@ struct Contents {
   bool weighs_joints() const { return weighs && (bonds || loads) && rows; }
   bool closes() const { return (rows || ends) && !open; }
   bool stiffens() const { return midpoint && (rows || bounded) && (turns || taut); }  // by tension
+  bool weighs_blows() const { return snaps && modes; }                                // of impacts, as loads of joints
   bool replaces() const { return strides() || midpoint || collocated > 0; }           // some lanes of a State
   bool pulls() const { return rattle && (rows || bounded); }  // a State has its joints' accelerations
 };

@@ -5,7 +5,7 @@
 namespace cdot::compile {
 namespace {
 
-// As the World does it: runtime/solve/latch.cpp. Where a time is unlimited the distance is no number: no event.
+// As the World does it: runtime/events/latch.cpp. Where a time is unlimited the distance is no number: no event.
 constexpr const char* latch_begins = R"(
   // Events at the end of a step.
   static void latch(State& s) {{

@@ -39,7 +39,7 @@ $w{5}{13}    Velocity a[bodies];
 constexpr const char* adds_forces =
     "      for (int i = 0; i < rows; ++i) lambda[i] = lambda[i] + force[e] * B.l[e][i];\n";
 
-// As the World does it: runtime/step/events.cpp.
+// As the World does it: runtime/events/events.cpp.
 constexpr const char* kinds_of_rows = R"(
   static Mask is_endless(const T& bound) { return magnitude(bound) > T(1e29); }
   // Of row i: its value and its force have one end each; it holds on both sides; its distance from its end.
@@ -73,45 +73,6 @@ constexpr const char* resolutions = R"(
     }
   }
 )";
-
-constexpr const char* stops = R"(
-  // Inelastic impacts: rows that close at their end stop by impulses. True for those that have one.
-  static void stop_what_hits(State& s, Mask (&stopped)[bounded]) {{
-    Guards G;
-    Bounded B;
-    guard($ss.q, s.time, s.v, G);
-    Mask hits = T(1) < T(0);
-    for (int i = 0; i < bounded; ++i) {{
-      stopped[i] = T(1) < T(0);
-      const T bound = select(G.missing[i] > T(0), G.high[i], G.low[i]);
-      const Mask one = has_one_end(G, i), meets = one && gap(G, i) <= s.modes.of_value[i];
-      const Mask drives = is_rate[i] ? !is_equation(G, i) : T(1) < T(0);
-{6}      hits = hits || ((meets || drives{7}) && is_endless(bound) && magnitude(G.missing[i]) > s.modes.of_rate[i]);
-    }}
-    if (!any(hits)) return;
-    reach($ss.q, s.time, {0}B);
-    T hold[bounded], mu[bounded];
-    for (int i = 0; i < bounded; ++i) {{
-      const Mask low = is_endless(G.low[i]), high = is_endless(G.high[i]), one = has_one_end(G, i);
-      const Mask both = low && high, some = is_rate[i] ? low || high : both;
-      const Mask may = (one && gap(G, i) <= s.modes.of_value[i]) || (!one && some);
-      B.low[i] = select(may && low, G.low[i], T(0)), B.high[i] = select(may && high, G.high[i], T(0));
-      B.c[i] = G.missing[i], B.K[i] = entry(B.S, i, i);
-{1}    }}
-    const auto solve = [&](T (&now)[bounded]) {{
-      for (T& of_row : hold) of_row = T(0);
-      settle(B, hold, now);
-    }};
-{5}{2}{4}    for (int e = 0; e < bounded; ++e) {{
-      stopped[e] = hits && magnitude(mu[e]) > T(0){3};
-      for (int i = 0; i < bodies; ++i) s.v[i] = choose(hits, s.v[i] + mu[e] * B.g[e][i], s.v[i]);
-    }}
-  }}
-)";
-
-// From its event on a latch holds its bodies on both sides.
-constexpr const char* latches_close =
-    "      const Mask closes = (is_rate[i] ? T(0) : s.events.began[i]) > T(0) && is_equation(G, i);\n";
 
 constexpr const char* decides = R"(
   // Forces and accelerations are complementary: a row stays held if its force lies within its bounds.
@@ -177,34 +138,26 @@ constexpr const char* margins_of_events = R"(    constexpr bool waits[bounded] =
 )";
 
 constexpr const char* chooses = R"(
-  // The modes from now on, for steps of about h.
-  static void {2}(State& s, const T& h) {{
+  // The modes from now on, for steps of about h.{3}
+  static {4} {2}(State& s, const T& h) {{
 {1}    for (T& of_row : s.modes.of_rate) of_row = T(0);
     for (T& of_row : s.modes.of_force) of_row = T(0);
     Velocity a[bodies];
     fall($ss.q, s.time, s.v, a);
     raise_resolutions(s, a, h);
     Mask stopped[bounded];
-    stop_what_hits(s, stopped);
-    decide(s, stopped);
+{5}    decide(s, stopped);
     project(s);
     pull($ss.q, s.time, s.v, {0});
     raise_resolutions(s, s.a, h);
     find_margins(s);
     for (int i = 0; i < watched; ++i) s.modes.chosen[i] = s.modes.margin[i];
     s.modes.known = T(1);
-  }}
+{6}  }}
 )";
 
-// Impulses of impacts are loads.
-constexpr const char* notes_impulses = R"(    for (int e = 0; e < bounded; ++e) {{
-      const T now = select(hits, mu[e], T(0));
-      s.modes.struck_bounds[e] = s.modes.struck_bounds[e] + now;
-{}    }}
-)";
-constexpr const char* notes_impulses_of_rows =
-    "      for (int i = 0; i < rows; ++i) s.modes.struck[i] = s.modes.struck[i] + now * B.l[e][i];\n";
-
+constexpr const char* stops_and_keeps =
+    "    const Mask ended = stop_what_hits(s, h, stopped);\n    const State struck = s;\n";
 // Forces may make events happen, as of a pin that is too weak: then the modes are others.
 constexpr const char* latches = R"(
   // True in lanes where an event happens.
@@ -219,12 +172,12 @@ constexpr const char* latches = R"(
 )";
 constexpr const char* chooses_again = R"(
   static void choose_modes(State& s, const T& h) {{
-    choose_once(s, h);
+    Mask ended = choose_once(s, h);
     for (;;) {{
       const Mask {};
       if (!any(again)) return;
       State next = s;
-      choose_once(next, h);
+      ended = choose_once(next, h) && again;
       replace(s, next, again);
     }}
   }}
@@ -268,13 +221,6 @@ constexpr const char* grows = R"(
   }
 )";
 
-// Rows that a load moves get bounds of impulses by it; a row that slips in the impact is not stopped.
-constexpr const char* impacts_by_load = "      B.by_low[i] = G.by_low[i], B.by_high[i] = G.by_high[i];\n";
-constexpr const char* settles_impact = R"(    T load[bounded];
-    for (T& of_row : load) of_row = T(0);
-    {}settle_loads($ss.q, s.time, {}B, mu, load, solve);
-)";
-constexpr const char* unless_it_slips = " && (!is_loaded(B, e) || (B.low[e] < mu[e] && mu[e] < B.high[e]))";
 constexpr const char* bounds_by_load = R"(      B.by_low[i] = select(off, T(0), select(up, G.by_high[i], G.by_low[i]));
       B.by_high[i] = select(off, T(0), select(down, G.by_low[i], G.by_high[i]));
 )";
@@ -312,33 +258,22 @@ std::string pull_of(const Contents& has) {
                      has.cones ? "" : "    T force[bounded];\n");
 }
 
-std::string stops_of(const Contents& has) {
-  const std::string J = has.rows ? "s.J, " : "";
-  const std::string notes = has.snaps ? fmt::format(notes_impulses, has.rows ? notes_impulses_of_rows : "") : "";
-  const char *const of_latches = has.events ? latches_close : "", *const closes = has.events ? " || closes" : "";
-  if (!has.loads) return fmt::format(stops, J, "", "    solve(mu);\n", "", notes, "", of_latches, closes);
-  const std::string none = has.rows ? "T none[rows];\n    for (T& of_row : none) of_row = T(0);\n    " : "";
-  return fmt::format(stops, J, impacts_by_load,
-                     fmt::format(settles_impact, none, (has.rows ? "s.J, none, " : "") + corners(has)), unless_it_slips,
-                     notes, has.cones ? std::string(all_turn) + none_turned : "", of_latches, closes);
-}
-
 // Where forces of a choice call for another one.
 std::string choices_of(const Contents& has) {
-  const bool again = has.forces || has.snaps;
-  std::string text = fmt::format(chooses, arguments_of_pull(has), has.events ? "    latch(s);\n" : "",
-                                 again ? "choose_once" : "choose_modes");
+  const bool again = yields_to_loads(has);
+  std::string text =
+      fmt::format(chooses, arguments_of_pull(has), has.events ? "    latch(s);\n" : "",
+                  again ? "choose_once" : "choose_modes", again ? " Not in lanes where a blow ended something." : "",
+                  again ? "Mask" : "void", again ? stops_and_keeps : "    stop_what_hits(s, stopped);\n",
+                  again ? "    replace(s, struck, ended);\n    return ended;\n" : "");
   if (!again) return text;
-  if (has.forces) text += latches;
-  const char* const near = "T(single ? 1e-5 : 1e-10)";
-  const auto snaps = [&](const std::string& most) {
-    return fmt::format("snap(s, {}, {})", forces_of_state(has), most);
+  const auto snaps = [&](const char* unless) {
+    return fmt::format("snap(s, {}, select({}, T(-1e30), {}))", forces_of_state(has), unless, near_event);
   };
   // First events; other modes have other forces.
-  const std::string asks = !has.forces ? "again = " + snaps(near)
-                           : has.snaps ? "happens = latches(s), again = happens || " +
-                                             snaps(fmt::format("select(happens, T(-1e30), {})", near))
-                                       : "again = latches(s)";
+  const std::string asks = !has.forces ? "again = ended || " + snaps("ended")
+                           : has.snaps ? "happens = latches(s) || ended, again = happens || " + snaps("happens")
+                                       : "again = latches(s) || ended";
   return text + fmt::format(chooses_again, asks);
 }
 
@@ -363,10 +298,6 @@ std::string modes_types(const Contents& has) {
   if (!has.modes) return watched + types_of_bonds;
   std::string more = has.loads ? "    T load[bounded];  // forces with which bounds grow\n" : "";
   if (has.cones) more += "    T step;  // [s]\n";
-  if (has.snaps) {
-    more += "    T struck_bounds[bounded];  // impulses of impacts\n";
-    if (has.rows) more += "    T struck[rows];\n";
-  }
   return watched +
          fmt::format(types, more,
                      has.loads ? "    T by_low[bounded], by_high[bounded];  // what each unit of a load adds\n" : "");
@@ -382,6 +313,7 @@ std::string modes_of(const Contents& has, const std::string& waits, const std::s
   std::string text = pull_of(has) + kinds_of_rows + resolutions;
   if (has.loads) text += grows + settle_loads_of(has, cones);
   if (has.cones) text += aims_cones;
+  if (has.forces) text += latches;
   text += stops_of(has) + decides_of(has);
   std::string margins = margins_begin;
   const std::string_view growing = "    grow(G, m);\n";

@@ -14,5 +14,10 @@ std::string modes_types(const Contents& has);
 std::string modes_of(const Contents& has, const std::string& waits, const std::string& cones);
 // Those of pull(), after the pose, the time and the velocities of a State.
 std::string arguments_of_pull(const Contents& has);
+// True if loads may end a row or a joint; the distance from such an event that counts as none.
+bool yields_to_loads(const Contents& has);
+inline constexpr const char* near_event = "T(single ? 1e-5 : 1e-10)";
+// stop_what_hits().
+std::string stops_of(const Contents& has);
 
 }  // namespace cdot::compile

@@ -62,6 +62,7 @@ constexpr const char* steps = R"(
     const T start = s.time;
     T done = T(0), residual = T(0), events = T(0);
     s.modes.step = h;
+    for (T& of_joint : s.bonds.struck) of_joint = T(0);
     for (Mask goes_on = T(0) < T(1); any(goes_on);) {
       const Mask unknown = goes_on && s.modes.known < T(0.5);
       if (any(unknown)) {
@@ -82,11 +83,15 @@ constexpr const char* steps = R"(
       events = events + T(1);
       goes_on = meets && done < h;
     }
+    for (int k = 0; k < joints; ++k) s.bonds.load[k] = larger(s.bonds.load[k], s.bonds.struck[k]);
     return residual;
   }
 )";
 
 constexpr std::string_view of_loads = "      forget_jammed(next.modes);\n";
+constexpr std::string_view of_blows[] = {
+    "    for (T& of_joint : s.bonds.struck) of_joint = T(0);\n",
+    "    for (int k = 0; k < joints; ++k) s.bonds.load[k] = larger(s.bonds.load[k], s.bonds.struck[k]);\n"};
 constexpr std::string_view of_cones[] = {
     "    T last[bounded];  // forces: as cones that slip know them\n"
     "    for (int i = 0; i < bounded; ++i) last[i] = next.modes.force[i];\n",
@@ -99,6 +104,7 @@ std::string step_by_events(const Contents& has) {
   std::string text = steps;
   const auto leave_out = [&](std::string_view lines) { text.erase(text.find(lines), lines.size()); };
   if (!has.cones) std::ranges::for_each(of_cones, leave_out);
+  if (!has.weighs_blows()) std::ranges::for_each(of_blows, leave_out);
   if (!has.loads) leave_out(of_loads);
   return text;
 }

@@ -281,7 +281,7 @@ BoundWriter::Guard BoundWriter::guard_while_it_acts() const {
           zero};
 }
 
-// As the World's (runtime/step/events.cpp):
+// As the World's (runtime/events/events.cpp):
 //   value  c, the largest change of C by a displacement of the mechanism's size or a rotation of 1 rad
 //   rate   the largest of the sum of all |J v|, sqrt(c dJv/dt), and epsilon c / (slight h)
 //   force  (dJv/dt + rate^2 / c) / K

@@ -253,5 +253,68 @@ TEST(BreakingLoad, IsLocatedForTheMostOverloadedJointAlone) {
   EXPECT_FALSE(below.world.broken(rod));
 }
 
+// A weight falls from its peg on a cord of length 1 that becomes taut at t = sqrt(2 l / g). The blow m v stops it; over
+// the time of a blow it is a load. Where that breaks the cord, the weight falls on at once, from rest.
+struct WeightOnACord {
+  WeightOnACord(const Settings& settings, double strength) : world(settings) {
+    weight = world.add_body({.mass = 2, .fixed_rotation = true});
+    cord = world.add_joint({.type = "max_distance",
+                            .bodies = {world.ground(), weight},
+                            .parameters = {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {1}}},
+                            .soft = {}});
+    set_breaking_load(world, cord, strength);
+  }
+  static constexpr double g = 10, end = 0.9;
+  static double blow() { return 2 * std::sqrt(2 * g); }
+  static double fallen() {
+    const double since = end - std::sqrt(2 / g);
+    return 1 + g / 2 * since * since;
+  }
+  World<double> world;
+  int weight, cord;
+};
+
+TEST(BreakingLoad, ABlowBreaksAtOnce) {
+  for (const IntegratorRow& row : integrator_rows) {
+    if (row.level != Level::acceleration) continue;
+    for (const double local_error : {0.0, 1e-10})
+      for (const int steps : {9, 20, 300}) {
+        Settings s = settings(Solver::direct, Drift::projection, -WeightOnACord::g);
+        s.integrator = row.integrator, s.local_error = local_error;
+        const double h = WeightOnACord::end / steps, lasts = local_error > 0 ? 1e-3 : h;
+        WeightOnACord weak(s, 0.99 * WeightOnACord::blow() / lasts), strong(s, 1.01 * WeightOnACord::blow() / lasts);
+        run(weak.world, WeightOnACord::end, h), run(strong.world, WeightOnACord::end, h);
+        EXPECT_TRUE(weak.world.broken(weak.cord)) << row.name << " by " << h;
+        EXPECT_NEAR(weak.world.pose(weak.weight).y, -WeightOnACord::fallen(), 1e-8) << row.name << " by " << h;
+        EXPECT_FALSE(strong.world.broken(strong.cord)) << row.name << " by " << h;
+        EXPECT_NEAR(strong.world.pose(strong.weight).y, -1, 1e-8) << row.name << " by " << h;
+      }
+  }
+}
+
+// The same cord between two weights, of which a pin holds the upper one on a rail. The blow shears the pin, and both
+// fall on together.
+TEST(BreakingLoad, ABlowShearsAPinAtOnce) {
+  for (const double h : {0.1, 0.003}) {
+    Settings s = settings(Solver::direct, Drift::projection, -WeightOnACord::g);
+    s.integrator = Integrator::dop853, s.local_error = 1e-10;
+    WeightOnACord hangs(s, unlimited);
+    const int upper = hangs.world.add_body({.mass = 3, .fixed_rotation = true});
+    const int rail = hangs.world.add_joint({.type = "line",
+                                            .bodies = {upper, hangs.world.ground()},
+                                            .parameters = {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {1, 0}}},
+                                            .soft = {}});
+    add_effect(hangs.world, rail, "slide", SpecEffect{"shear_pin", {{"strength", {0.99e3 * WeightOnACord::blow()}}}});
+    hangs.world.remove_joint(hangs.cord);
+    hangs.world.add_joint({.type = "max_distance",
+                           .bodies = {upper, hangs.weight},
+                           .parameters = {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {1}}},
+                           .soft = {}});
+    run(hangs.world, WeightOnACord::end, h);
+    EXPECT_NEAR(hangs.world.pose(hangs.weight).y, -WeightOnACord::fallen(), 1e-8) << h;
+    EXPECT_NEAR(hangs.world.pose(upper).y, 1 - WeightOnACord::fallen(), 1e-8) << h;
+  }
+}
+
 }  // namespace
 }  // namespace cdot::test::breaking_test

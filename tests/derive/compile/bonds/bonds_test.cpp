@@ -80,7 +80,7 @@ TEST(CompiledBonds, BreakByALatchAsInTheWorld) {
   EXPECT_EQ(state.bonds.holds[0], 0);
 }
 
-// The blow of the latch, 124 N by RATTLE beside 5 N, is a load of the step in which it closes.
+// The blow of the latch is a load of the step in which it closes.
 TEST(CompiledBonds, CarryTheBlowOfALatchAsInTheWorld) {
   cdot::runs_as_the_world<latched_rk4<double>>(scenes + "latched.toml", Integrator::rk4, 1e-10, 1);
   cdot::runs_as_the_world<latched_dop853<double>>(scenes + "latched.toml", Integrator::dop853, 1e-10, 1);
@@ -91,10 +91,16 @@ TEST(CompiledBonds, CarryTheBlowOfALatchAsInTheWorld) {
   EXPECT_LT(state.bonds.load[0], 5);
   latched_rk4<double>::step(state, 0.001);
   EXPECT_EQ(state.events.acts[0], 1);
-  EXPECT_NEAR(state.bonds.load[0], 128.6, 1);
+  const double blow = state.bonds.load[0] * 0.001;
+  // The last pin alone pushes the last link, beside its weight.
+  latched_rk4<double>::reset(state);
+  for (int k = 0; k < 62; ++k) latched_rk4<double>::step(state, 0.001);
+  auto before = state.v[2];
+  while (state.events.acts[0] < 1) before = state.v[2], latched_rk4<double>::step(state, 1e-6);
+  EXPECT_NEAR(std::hypot(state.v[2].x - before.x, state.v[2].y - before.y) * 3, blow, 1e-4);
 }
 
-// The time at which a joint breaks is located. An impact breaks it at the end of the step.
+// The time at which a joint breaks is located.
 template <class Scene>
 void breaks_in_time_as_in_the_world(const std::string& file, Integrator integrator, double step = 0.001) {
   cdot::runs_as_the_world<Scene>(scenes + file, integrator, 1e-9, 1.1, step);
@@ -156,7 +162,7 @@ void blow_is_a_load() {
     blow = std::max(blow, state.bonds.load[0]);
   }
   EXPECT_EQ(state.bonds.holds[0], 1);
-  EXPECT_NEAR(blow, 3 * (60 * std::sqrt(2 * 9.81 * 0.1) + 9.81), 1e-5);
+  EXPECT_NEAR(blow, 3 * 60 * std::sqrt(2 * 9.81 * 0.1), 1e-5);
 }
 
 TEST(CompiledBonds, BreakByBlowsAsInTheWorld) {

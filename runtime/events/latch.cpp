@@ -1,4 +1,4 @@
-#include "runtime/solve/latch.hpp"
+#include "runtime/events/latch.hpp"
 
 #include <algorithm>
 
@@ -12,12 +12,33 @@ bool has_events(const Segment<S>& segment) {
   return segment.batch->law && segment.batch->law->distance && segment.begin < segment.end;
 }
 
-// A hook of Model::after_substep.
+// Notes the events of the island's rows with the load of row i by load(batch, i).
+template <class S, class Load>
+bool latch_events(Island<S>& island, Load load) {
+  using T = typename S::Scalar;
+  bool any = false;
+  for (const Segment<S>& segment : island.segments) {
+    if (!has_events(segment)) continue;
+    Batch<S>& batch = *segment.batch;
+    for (int i = segment.begin; i < segment.end; ++i) {  // a coordinate has one row
+      T from[2];
+      batch.law->distance(batch, i, batch.rate[i], load(batch, i), from);
+      const int before = static_cast<int>(batch.happened[i]);
+      const int now = before | (from[0] <= at_event<T> ? 1 : 0) | (from[1] <= at_event<T> ? 2 : 0);
+      batch.happened[i] = static_cast<Event>(now);  // where a time is unlimited, `from` is NaN: no event
+      any |= now != before;
+    }
+  }
+  return any;
+}
+
+// A hook of Model::after_substep. Methods that locate events have found those of the step.
 template <class S>
 void latch_after_substep(WorldData<S>& world, typename S::Scalar h) {
   using T = typename S::Scalar;
   for (const int index : world.awake) {
     Island<S>& island = world.islands[index];
+    if (island.flow.locates) continue;
     bool any = false;
     for (const Segment<S>& segment : island.segments) {
       if (!has_events(segment)) continue;
@@ -26,7 +47,7 @@ void latch_after_substep(WorldData<S>& world, typename S::Scalar h) {
       batch.ops->position(batch, segment.begin, segment.end, world.bodies, T(world.time) + h);
       batch.ops->velocity(batch, segment.begin, segment.end, world.bodies.velocity.data(), batch.rate.data());
     }
-    if (!any || !latch_events(island, h)) continue;
+    if (!any || !latch_by_impulses(island, h)) continue;
     island.evaluated = island.factored = false;
     island.rested = 0.0;
     island.flow.forget();
@@ -36,22 +57,14 @@ void latch_after_substep(WorldData<S>& world, typename S::Scalar h) {
 }  // namespace
 
 template <class S>
-bool latch_events(Island<S>& island, typename S::Scalar h) {
-  using T = typename S::Scalar;
-  bool any = false;
-  for (const Segment<S>& segment : island.segments) {
-    if (!has_events(segment)) continue;
-    Batch<S>& batch = *segment.batch;
-    for (int i = segment.begin; i < segment.end; ++i) {  // a coordinate has one row
-      T from[2];
-      batch.law->distance(batch, i, batch.rate[i], (batch.lambda[i] + batch.correction[i]) / h, from);
-      const int before = static_cast<int>(batch.happened[i]);
-      const int now = before | (from[0] <= at_event<T> ? 1 : 0) | (from[1] <= at_event<T> ? 2 : 0);
-      batch.happened[i] = static_cast<Event>(now);  // where a time is unlimited, `from` is NaN: no event
-      any |= now != before;
-    }
-  }
-  return any;
+bool latch_by_impulses(Island<S>& island, typename S::Scalar h) {
+  return latch_events(island,
+                      [h](const Batch<S>& batch, int i) { return (batch.lambda[i] + batch.correction[i]) / h; });
+}
+
+template <class S>
+bool latch_by_lambda(Island<S>& island, typename S::Scalar over) {
+  return latch_events(island, [over](const Batch<S>& batch, int i) { return batch.lambda[i] / over; });
 }
 
 template <class S>
@@ -67,12 +80,13 @@ void watch_events(WorldData<S>& world) {
       batch.ops->evaluate(batch, segment.begin, segment.end, world.bodies, typename S::Scalar(world.time));
       batch.ops->velocity(batch, segment.begin, segment.end, world.bodies.velocity.data(), batch.rate.data());
     }
-    latch_events(island, typename S::Scalar(1));
+    latch_by_lambda(island, typename S::Scalar(1));
   }
 }
 
-#define CDOT_INSTANTIATE(S)                          \
-  template bool latch_events(Island<S>&, S::Scalar); \
+#define CDOT_INSTANTIATE(S)                               \
+  template bool latch_by_impulses(Island<S>&, S::Scalar); \
+  template bool latch_by_lambda(Island<S>&, S::Scalar);   \
   template void watch_events(WorldData<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

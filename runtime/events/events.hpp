@@ -7,15 +7,6 @@
 
 namespace cdot {
 
-// f(batch, slot) for all slots with guarded rows, in the order of Flow::margins.
-template <class S, class F>
-void each_guarded_slot(const Island<S>& island, F f) {
-  for (const Segment<S>& segment : island.segments) {
-    if (!segment.batch->law || !segment.batch->law->guard) continue;
-    for (int slot = segment.begin; slot < segment.end; ++slot) f(*segment.batch, slot);
-  }
-}
-
 // Allocates the numbers of the island's guarded rows and of its bonds, the joints that may break.
 template <class S>
 void count_guarded_rows(Island<S>& island);

@@ -9,10 +9,14 @@ namespace cdot {
 template <class T>
 inline constexpr T at_event = T(by_precision<T>(1e-5, 1e-10));
 
-// Notes the events of the island's rows at the present C, for impulses over h, or forces if h is 1. Batch::rate must
-// have J v. True if there was one.
+// Notes the events of the island's rows at the present C, for impulses over h, drift correction included. Batch::rate
+// must have J v. True if there was one.
 template <class S>
-bool latch_events(Island<S>& island, typename S::Scalar h);
+bool latch_by_impulses(Island<S>& island, typename S::Scalar h);
+
+// The same for Batch::lambda alone: forces if `over` is 1, or impulses of a blow that lasts so long.
+template <class S>
+bool latch_by_lambda(Island<S>& island, typename S::Scalar over);
 
 // Lets the World look for events after every substep, if any row has some.
 template <class S>

@@ -1,4 +1,4 @@
-#include "runtime/solve/bonds.hpp"
+#include "runtime/events/bonds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/balance/balance.hpp"
-#include "runtime/solve/latch.hpp"
+#include "runtime/events/latch.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/state/state_list.hpp"
@@ -76,9 +76,10 @@ int overloaded_joint(const WorldData<S>& world, const Island<S>& island, double 
 }
 
 template <class S>
-bool break_by_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
+bool break_by_lambda(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar over) {
   if (island.bonds.empty() || !island.solver->exact) return false;
-  const int joint = nearest(world, island, double(time), double(at_event<typename S::Scalar>), force_on<S>);
+  const auto load = [&](const auto&, const JointRecord& record) { return force_on(world, record) / double(over); };
+  const int joint = nearest(world, island, double(time), double(at_event<typename S::Scalar>), load);
   if (joint < 0) return false;
   break_joint(world, island, joint, double(time));
   evaluate_anew(world, island, time);
@@ -134,7 +135,7 @@ void measure_margins_of_bonds(const WorldData<S>& world, Island<S>& island, doub
 
 #define CDOT_INSTANTIATE(S)                                                             \
   template int overloaded_joint(const WorldData<S>&, const Island<S>&, double, double); \
-  template bool break_by_forces(WorldData<S>&, Island<S>&, S::Scalar);                  \
+  template bool break_by_lambda(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar);       \
   template void break_joint(WorldData<S>&, Island<S>&, int, double);                    \
   template void find_rows(WorldData<S>&, Island<S>&);                                   \
   template void measure_margins_of_bonds(const WorldData<S>&, Island<S>&, double);

@@ -14,10 +14,10 @@ int overloaded_joint(const WorldData<S>& world, const Island<S>& island, double 
 template <class S>
 void break_joint(WorldData<S>& world, Island<S>& island, int joint, double time);
 
-// Breaks the joint that carries most beyond its strength, by its present forces, which Batch::lambda holds at
-// acceleration level, and evaluates the others. False if none breaks.
+// Breaks the joint that carries most beyond its strength and evaluates the others. Batch::lambda holds the forces, then
+// `over` is 1, or the impulses of a blow that lasts so long. False if none breaks.
 template <class S>
-bool break_by_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar time);
+bool break_by_lambda(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar over);
 
 // Updates the places of rows from BatchState::home and the broken joints, after slots changed places.
 template <class S>

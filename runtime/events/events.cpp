@@ -1,4 +1,4 @@
-#include "runtime/step/events.hpp"
+#include "runtime/events/events.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,12 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/balance/balance.hpp"
+#include "runtime/events/bonds.hpp"
+#include "runtime/events/guarded.hpp"
+#include "runtime/events/impacts.hpp"
+#include "runtime/events/latch.hpp"
 #include "runtime/motion/motion.hpp"
-#include "runtime/solve/bonds.hpp"
 #include "runtime/solve/cones.hpp"
-#include "runtime/solve/latch.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
@@ -18,22 +20,8 @@
 namespace cdot {
 namespace {
 
-// Relative resolution: below this share of their terms, C, its rate and its force count as 0.
-template <class T>
-constexpr T slight = T(by_precision<T>(1e-4, 1e-9));
 template <class T>
 constexpr T infinite = std::numeric_limits<T>::infinity();
-
-// f(batch, index, guard, resolution) for every guarded row, with guards at the present C.
-template <class S, class F>
-void each_guarded_row(Island<S>& island, F f) {
-  Guard<typename S::Scalar> guards[most_rows];
-  auto resolution = island.flow.resolution.begin();
-  each_guarded_slot(island, [&](Batch<S>& batch, int slot) {
-    batch.law->guard(batch, slot, guards);
-    for (int r = 0; r < batch.ops->rows; ++r) f(batch, slot * batch.ops->rows + r, guards[r], *resolution++);
-  });
-}
 
 // Raises the resolutions of the rows of one slot to the share `slight` of
 //   C       its largest change by a displacement of the island's size or a rotation of 1 rad: c
@@ -87,34 +75,6 @@ void find_resolution(const WorldData<S>& world, Island<S>& island, typename S::S
   });
 }
 
-// J v of every row under a law, into Batch::rate.
-template <class S>
-void find_rates(WorldData<S>& world, Island<S>& island) {
-  for (const Segment<S>& segment : island.segments) {
-    if (!segment.batch->law) continue;
-    const auto* velocity = world.bodies.velocity.data();
-    segment.batch->ops->velocity(*segment.batch, segment.begin, segment.end, velocity, segment.batch->rate.data());
-  }
-}
-
-template <class S>
-void clear_laws(Island<S>& island) {
-  for (const Segment<S>& segment : island.segments) {
-    Batch<S>& batch = *segment.batch;
-    if (!batch.law) continue;
-    for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i)
-      batch.softness[i] = batch.lower[i] = batch.upper[i] = 0;
-    std::fill(batch.load.begin() + segment.begin, batch.load.begin() + segment.end, typename S::Scalar(0));
-  }
-}
-
-// v (velocities or accelerations) such that J v = -bias within the bounds.
-template <class S>
-void solve(WorldData<S>& world, Island<S>& island, typename S::Velocity* v) {
-  island.solver->renew(world, island);
-  island.solver->velocities(world, island, v, typename S::Scalar(0));
-}
-
 // True if a row reaches a speed of its own by an impulse.
 template <class S>
 bool has_strong_motor(Island<S>& island) {
@@ -124,73 +84,6 @@ bool has_strong_motor(Island<S>& island) {
     any |= guard.bilateral() && guard.rate != T(0);
   });
   return any;
-}
-
-// True if a row stops or drives its bodies by an impulse: an end that is met, a latch that closes, or a clutch of
-// unlimited force that meets a rate beyond its own. `missing` is what the row lacks to its rate; has_events: it may be
-// a latch, which from its event on holds its bodies on both sides.
-template <class T>
-bool strikes(const Guard<T>& guard, const Resolution<T>& resolution, T missing, bool has_events) {
-  const T bound = missing > T(0) ? guard.upper : guard.lower;
-  const bool may_act = guard.one_sided() ? guard.gap() <= resolution.C
-                       : guard.of_rate   ? !guard.bilateral()
-                                         : has_events;
-  return may_act && std::isinf(bound) && std::abs(missing) > resolution.rate;
-}
-// True if an impact at another row may call for an impulse of this one.
-template <class T>
-bool may_strike(const Guard<T>& guard, const Resolution<T>& resolution, bool loaded) {
-  if (loaded) return true;
-  if (guard.one_sided()) return guard.gap() <= resolution.C;
-  return guard.bilateral() || (guard.of_rate && (std::isinf(guard.lower) || std::isinf(guard.upper)));
-}
-
-// The source of the row that strikes hardest, in units of its resolution; -1: none strikes.
-template <class S>
-int what_hits(Island<S>& island) {
-  using T = typename S::Scalar;
-  T hardest = 0;
-  int source = -1;
-  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
-    const T missing = guard.rate - (batch.rate[i] + batch.bias[i]), share = std::abs(missing) / resolution.rate;
-    if (!strikes(guard, resolution, missing, batch.law->distance && island.kinked < 0) || !(share > hardest)) return;
-    hardest = share, source = static_cast<int>(batch.source);
-  });
-  return source;
-}
-
-// Inelastic impacts: rows that close at contact stop, J v >= 0 with impulses >= 0. They become `held`, because sweeps
-// leave a rate that is not exactly 0. Motors with a bounded force do not act during an impact. The row that strikes
-// hardest takes the energy of all.
-template <class S>
-void stop_what_hits(WorldData<S>& world, Island<S>& island) {
-  using T = typename S::Scalar;
-  find_rates(world, island);
-  const int source = what_hits(island);
-  if (source < 0) return;
-  clear_laws(island);
-  each_guarded_row(
-      island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
-        if (!may_strike(guard, resolution, batch.law->by_load != nullptr)) return;
-        batch.lower[i] = std::isinf(guard.lower) ? guard.lower : T(0);
-        batch.upper[i] = std::isinf(guard.upper) ? guard.upper : T(0);
-        batch.bias[i] -= guard.rate;
-      });
-  const double before = kinetic_energy(world, island);
-  solve(world, island, world.bodies.velocity.data());
-  const double lost = before - kinetic_energy(world, island);
-  if (lost >= 0) take(world, static_cast<Source>(source), lost);
-  else put_in(world, static_cast<Source>(source), -lost);  // by an end that moves
-  for (const Segment<S>& segment : island.segments)
-    for (int i = segment.begin * segment.batch->ops->rows; i < segment.end * segment.batch->ops->rows; ++i)
-      segment.batch->correction[i] += segment.batch->lambda[i];
-  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard,
-                               const Resolution<typename S::Scalar>& resolution) {
-    if (!may_strike(guard, resolution, batch.law->by_load != nullptr)) return;
-    batch.bias[i] += guard.rate;
-    const bool slips = batch.law->by_load && !(batch.lower[i] < batch.lambda[i] && batch.lambda[i] < batch.upper[i]);
-    if (batch.lambda[i] != T(0) && !slips) batch.mode[i] = Mode::held;
-  });
 }
 
 // Sets the bounds of each row's force and a first mode. True if the forces must decide about some rows.
@@ -297,16 +190,17 @@ void count_guarded_rows(Island<S>& island) {
 
 namespace {
 
+// False if a blow ended a joint or a row: choose again.
 template <class S>
-void choose_modes_once(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
+bool choose_modes_once(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   using T = typename S::Scalar;
   if (island.flow.guarded > 0) {
     std::fill(island.flow.resolution.begin(), island.flow.resolution.end(), Resolution<typename S::Scalar>{});
     find_rates(world, island);
-    latch_events(island, T(1));
+    latch_by_lambda(island, T(1));
     free_accelerations(world, island);
     find_resolution(world, island, h);
-    stop_what_hits(world, island);
+    if (stop_what_hits(world, island, time, h)) return false;
     if (offer_bounds(world, island)) {
       decide_by_forces(world, island, time);
       evaluate_anew(world, island, time);
@@ -319,6 +213,7 @@ void choose_modes_once(WorldData<S>& world, Island<S>& island, typename S::Scala
   note_rates(world, island);
   accelerate(world, island, time);
   find_resolution(world, island, h);
+  return true;
 }
 
 // True if forces at the present state make events happen: a pin that is too weak from the start.
@@ -328,15 +223,16 @@ bool forces_make_events(WorldData<S>& world, Island<S>& island) {
   each_guarded_slot(island, [&](Batch<S>& batch, int) { any |= batch.law->distance != nullptr; });
   if (!any) return false;
   find_rates(world, island);
-  return latch_events(island, typename S::Scalar(1));
+  return latch_by_lambda(island, typename S::Scalar(1));
 }
 
 }  // namespace
 
 template <class S>
 void choose_modes(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
-  do choose_modes_once(world, island, time, h);
-  while ((island.flow.guarded > 0 && forces_make_events(world, island)) || break_by_forces(world, island, time));
+  while (!choose_modes_once(world, island, time, h) || (island.flow.guarded > 0 && forces_make_events(world, island)) ||
+         break_by_lambda(world, island, time, typename S::Scalar(1))) {
+  }
   measure_margins(world, island, time);
   island.flow.margins_chosen = island.flow.margins;
 }

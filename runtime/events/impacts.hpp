@@ -1,0 +1,18 @@
+// Inelastic impacts of rows under a law.
+#pragma once
+
+#include "runtime/state/world_data.hpp"
+
+namespace cdot {
+
+// A blow lasts so long [s] where the method chooses its steps (Settings::local_error), otherwise one step.
+inline constexpr double impact_time = 1e-3;
+
+// Rows that close at contact stop by impulses: J v >= 0 with impulses >= 0. Joints take part, motors with a bounded
+// force do not. The row that strikes hardest takes the energy of all. The load of such a blow is its impulse over h,
+// the length of step(h), or over impact_time. By it a joint may break and a latch
+// open, at once: true if one does. Choose modes again then.
+template <class S>
+bool stop_what_hits(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h);
+
+}  // namespace cdot
