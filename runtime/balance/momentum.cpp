@@ -31,7 +31,7 @@ typename S::Velocity rigid_motion(const typename S::Pose& pose, int c) {
 
 // True if no row of the slot resists rigid motions along, or about, the axes [first, last). Displacements are tried at
 // generic poses, where no direction vanishes by chance. Rotations turn C with the bodies, so they leave it alone only
-// where C = 0.
+// where C = 0. The effect of one body that has no force there acts elsewhere, as a liquid on a ball in the air.
 template <class S>
 bool lets_move(const Batch<S>& batch, int slot, const Bodies<S>& at, typename S::Scalar time, int first, int last) {
   using Real = ExactNumber<typename S::Scalar>;
@@ -49,6 +49,8 @@ bool lets_move(const Batch<S>& batch, int slot, const Bodies<S>& at, typename S:
   Real K[most_rows * most_rows];
   batch.ops->dense(one, 0, at, J.data(), weighted.data(), K, most_rows);
   for (int r = 0; r < rows; ++r) {
+    const auto row = J.begin() + r * width;
+    if (bodies == 1 && std::all_of(row, row + width, [](Real entry) { return entry == Real(0); })) return false;
     for (int c = first; c < last; ++c) {
       double sum = 0, size = 0;
       for (int k = 0; k < bodies; ++k) {

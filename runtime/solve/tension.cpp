@@ -111,6 +111,20 @@ int rows_of(const WorldData<S>& world, const Batch<S>& batch, int slot, const Bo
   return stiffness.only_turns() ? rows : 0;
 }
 
+// Where a track hardly bends, elimination takes the radius of the bend for an arm: the row holds rotations, and what is
+// left for them is negative, which no step takes. Such rows are left out, as those of straight tracks are. In units of
+// Island::size.
+constexpr double longest_arm = 2;
+
+// True if a turn of 1 rad of a body moves the row by more than a length [m].
+template <class S>
+bool turns_by_more(const double* w, int bodies, double length) {
+  for (int k = 0; k < bodies; ++k)
+    for (int c = S::lengths; c < S::freedom; ++c)
+      if (std::abs(w[S::freedom * k + c]) > length) return true;
+  return false;
+}
+
 // Subtracts the stiffness of the row from the body's own rotation.
 template <class S>
 void leave_to_row(typename S::Stiffness& own, const double* w, double pivot) {
@@ -151,6 +165,7 @@ void tighten_tensions(WorldData<S>& world, Island<S>& island, typename S::Scalar
     double pivot;
     const int bodies = batch.ops->bodies;
     for (int r = 0; r < tension.rows && stiffness.find_row(w, pivot, false); ++r) {
+      if (turns_by_more<S>(w.data(), bodies, longest_arm * double(island.size))) break;
       if (r + 1 < tension.rows) stiffness.eliminate(w, pivot);
       system.tighten(tension, r, w.data(), pivot * double(h));
       for (int k = 0; k < bodies; ++k)

@@ -8,11 +8,13 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/balance/balance.hpp"
+#include "runtime/motion/momentum.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/step/integrators.hpp"
+#include "runtime/step/kick_drift.hpp"
 #include "runtime/sweeps/gain.hpp"
 #include "runtime/sweeps/soft.hpp"
 
@@ -49,8 +51,12 @@ struct Try {
   double speed = 1;  // of the bodies against each other while the poses move, as a share
 };
 
+// Poses of the start in Flow::pose. The stiffness of tension holds back the rotation of a free island as well, and
+// gives it back.
 template <class S>
 void advance(WorldData<S>& world, Island<S>& island, typename S::Scalar h, const Try& by) {
+  const bool held_back = island.stiffened && island.floats;
+  const auto momentum = held_back ? momentum_of(world, island) : MomentumOf<S>{};
   project_start(world, island);
   begin_kick(world, island);
   if (island.stiffened) {
@@ -63,6 +69,7 @@ void advance(WorldData<S>& world, Island<S>& island, typename S::Scalar h, const
   else integrate(world, island, h);
   project_step(world, island, h);
   book_kick(world, island, Impulses::drift, h);
+  if (held_back) restore_momentum(world, island, momentum, h);
 }
 
 // A spring by frequency stores energy by the masses without their stiffness.
@@ -126,6 +133,7 @@ void step_euler(WorldData<S>& world, Island<S>& island, typename S::Scalar h, do
   if (world.settings.drift == Drift::soft) return step_soft(world, island, h, last_step);
   if (sweeps(world.settings.solver)) step_by_sweeps(world, island, h, last_step);
   else {
+    if (island.stiffened) note_start(world, island);
     advance(world, island, h, {last_step});
     relieve(world, island);
     book_stiffness(world, island);

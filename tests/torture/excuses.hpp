@@ -2,12 +2,15 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <cdot/balance.hpp>
 #include <cdot/jacobian.hpp>
 
 #include "runtime/direct/ldlt.hpp"
 #include "runtime/tool/scene/scene.hpp"
+#include "tests/torture/observer.hpp"
 
 namespace cdot::torture {
 
@@ -45,6 +48,18 @@ SystemMatrix exact_system_matrix(BasicWorld<S>& world, const Scene& scene) {
   BasicWorld<typename S::Exact> exact = build_world_in<typename S::Exact>(scene);
   for (int k = 0; k < static_cast<int>(scene.bodies.size()); ++k) exact.set_pose(k, world.place(k));
   return system_matrix(exact);
+}
+
+// Why elimination cannot tell rows apart; nullptr if it can.
+template <class S>
+const char* rows_in_doubt(BasicWorld<S>& world, const Scene& scene) {
+  constexpr double told = told_apart<typename S::Scalar>;
+  const SystemMatrix now = system_matrix(world), exact = exact_system_matrix(world, scene);
+  if (rows_told_apart(exact, told) < exact.rank) return "rows that light bodies between heavy ones hide";
+  if (least_share_of_a_body(world, now) < told) return "a body with less than a pivot's resolution of its row";
+  if (independence(now, 8 * std::numeric_limits<double>::epsilon()) < std::sqrt(told))
+    return "rows so near to dependent that pivots are not told from round-off";
+  return nullptr;
 }
 
 // Steps that Runge-Kutta leaves to an implicit method may each take thousands of parts. Where the energy's balance has

@@ -25,21 +25,31 @@ bool may_be_the_step(const Verdict& v) {
          judged_by_order(v.what);
 }
 
-// True if an effect's force grows so much as bodies approach that no step resolves it from the start on, or if it moves
-// them within the round-off of their poses.
-bool unresolved(const Scene& scene, double step) {
+// True if an effect's force grows so much as bodies approach that no such step resolves it, or if it moves them within
+// the round-off of their poses.
+template <class S>
+bool unresolved_now(BasicWorld<S>& world, double step) {
   constexpr double rounded = 1e-13;
-  bool found = false;
-  in_space_of<double>(scene, [&](auto space) {
-    auto world = build_world_in<decltype(space)>(scene);
-    const Motion motion = motion_of(world);
-    double farthest = 0;
-    for (const BodyMotion& body : motion.bodies) farthest = std::max(farthest, norm(body.x));
-    for (const SpringRow& row : spring_rows(world))
-      found |= step * std::sqrt(std::max(0.0, -row.stiffness * row.mass)) > 2 ||
-               std::abs(row.force) * rounded * farthest > motion.kinetic;
+  const Motion motion = motion_of(world);
+  double farthest = 0;
+  for (const BodyMotion& body : motion.bodies) farthest = std::max(farthest, norm(body.x));
+  return std::ranges::any_of(spring_rows(world), [&](const SpringRow& row) {
+    return step * std::sqrt(std::max(0.0, -row.stiffness * row.mass)) > 2 ||
+           std::abs(row.force) * rounded * farthest > motion.kinetic;
   });
-  return found;
+}
+
+// The same at a pose of the run by sweeps, up to a time.
+bool unresolved(const Scene& scene, const test::SweptWay& way, double until) {
+  return in_space_of(scene, [&](auto space) {
+    auto world = build_world_in<decltype(space)>(test::with_sweeps(scene, way));
+    if (scene.project) world.project(by_precision<typename decltype(space)::Scalar>(1e-5, 1e-12));
+    for (int k = 0;; ++k) {
+      const double step = way.jitter.length(k) * way.unit;
+      if (unresolved_now(world, step / way.substeps)) return true;
+      if (world.time() >= until || !world.step(step)) return false;
+    }
+  });
 }
 
 // Its work has no potential, and a step of first order knows it to first order only.
@@ -75,7 +85,7 @@ Verdict judge_swept(const Scene& scene, std::uint64_t seed) {
   if (!std::isfinite(seen.bound + seen.risen))
     return limited("an effect has no energy at a pose, which cdot-run tells");
   if (has_torques_in_space(scene)) return limited("torques in space put in work of first order");
-  if (unresolved(scene, way.unit / way.substeps)) return limited("no step resolves the force of an effect");
+  if (unresolved(scene, way, seen.time)) return limited("no step resolves the force of an effect");
   const std::string words =
       fmt::format("{} {}, {} sweeps, {} substeps, steps of {:.3g} to {:.3g} s", name_of(integrators, way.integrator),
                   name_of(drifts, way.drift), way.sweeps, way.substeps, way.jitter.shortest * way.unit, way.unit);

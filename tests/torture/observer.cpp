@@ -184,7 +184,7 @@ double Accounts::by_order(const std::vector<Missed>& all, double rough) const {
 // to the largest so far. dv does not show joint forces against the turning of a tensor, so the larger dv, with or
 // without that turning, counts.
 void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double energy, double operations,
-                    long long taken, double h, double across) {
+                    long long taken, double h, AtJoints joints) {
   const VelocityChange d = change(last_, now);
   pushed_ = std::max(pushed_, constant_ + push_of(springs, substep_));
   for (const SpringRow& spring : springs_)
@@ -194,7 +194,7 @@ void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double en
   const double size = std::sqrt(square(now, d));
   const double done = std::max(
       {size, std::sqrt(square(now, d, turning(last_, step_))), order_ == 1 ? parts_of_change(last_, now, d, h) : 0});
-  const double first_order = done * (done + pushed_);
+  const double first_order = done * (done + pushed_), across = joints.left_across;
   largest_change_ = std::max(largest_change_, size);
   largest_speed_ = std::max(largest_speed_, std::sqrt(2 * now.kinetic));
   largest_energy_ = std::max({largest_energy_, now.kinetic, std::abs(energy - start_energy_)});
@@ -206,11 +206,12 @@ void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double en
     const double most = std::max(rough, rough_before_), rho = std::pow(most, order_ - 1);
     add_error(now, (first_order + pending_) * rho + by_order(pending_springs_, most) +
                        by_order(work_missed(springs, size), most));
+    driven_error_ += (joints.kicks * done + pending_drives_) * rho;
     roughest_ = std::max(roughest_, rough);
     rough_before_ = rough;
-    pending_ = 0, pending_springs_.clear();
+    pending_ = pending_drives_ = 0, pending_springs_.clear();
   } else {
-    pending_ = first_order, pending_springs_ = work_missed(springs, size);
+    pending_ = first_order, pending_drives_ = joints.kicks * done, pending_springs_ = work_missed(springs, size);
   }
   // An error of local_error in every pose and velocity, at the end of each step taken.
   add_error(now, double(taken - taken_) * local_error_ *

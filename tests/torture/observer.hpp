@@ -143,44 +143,32 @@ double speed_left_across(BasicWorld<S>& world, const Scene& scene) {
   return paid ? 0 : speed_across(world, scene);
 }
 
-// The place of a body that turns on by its own rotation in h.
+// Sum |lambda| |M^-1 J'| of the exact rows over a step, in the metric of the masses, where time drives some of them.
 template <class S>
-typename S::Place turned_on(const BasicWorld<S>& world, int body, double h) {
-  auto v = world.velocity(body);
-  v.x = v.y = 0;
-  if constexpr (S::dimension == Dimension::spatial) v.z = 0;
-  const auto pose = S::moved(world.pose(body), S::sum({}, v, typename S::Scalar(h)));
-  auto place = world.place(body);
-  if constexpr (S::dimension == Dimension::planar) place.angle = pose.angle;
-  else place.e0 = pose.e0, place.e1 = pose.e1, place.e2 = pose.e2, place.e3 = pose.e3;
-  return place;
+double kicks_of_joints(BasicWorld<S>& world, const Scene& scene) {
+  const auto exact = [&](int joint) {
+    const auto j = static_cast<std::size_t>(joint);  // springs between points follow
+    return j < scene.joints.size() && !world.joint_type(joint).is_effect && !scene.joints[j].definition.soft;
+  };
+  double sum = 0;
+  bool driven = false;
+  for (int joint = 0; joint < world.joint_count(); ++joint)
+    driven |= exact(joint) && world.joint_type(joint).explicit_time;
+  if (!driven) return 0;
+  const SystemMatrix system = system_matrix(world);
+  for (const SystemMatrix::Joint& joint : system.joints) {
+    if (!exact(joint.joint)) continue;
+    const std::vector<double> impulse = world.impulse(joint.joint);
+    for (int r = 0; r < joint.rows; ++r)
+      sum += std::abs(impulse[static_cast<std::size_t>(r)]) *
+             std::sqrt(system.K[static_cast<std::size_t>((joint.first + r) * (system.rows + 1))]);
+  }
+  return scene.settings.substeps * sum;
 }
 
-// The torques of a linearly implicit step: its M contains h dJ'lambda/dq of each body's own rotation, as if the
-// impulses acted along rows that turn with it. Sum of |lambda| |J(turned) - J| over the columns of that rotation.
-template <class S>
-double torques_of_own_turns(BasicWorld<S>& world, const Scene& scene, double h) {
-  constexpr int lengths = S::dimension == Dimension::planar ? 2 : 3;
-  const SystemMatrix at = system_matrix(world);
-  BasicWorld<S> other = build_world_in<S>(scene);
-  for (int body = 0; body < static_cast<int>(scene.bodies.size()); ++body) other.set_pose(body, world.place(body));
-  double sum = 0;
-  for (std::size_t b = 0; b < at.bodies.size(); ++b) {
-    other.set_pose(at.bodies[b], turned_on(world, at.bodies[b], h));
-    const SystemMatrix turned = system_matrix(other);
-    for (const SystemMatrix::Joint& joint : at.joints) {
-      const std::vector<double> impulse = world.impulse(joint.joint);
-      for (int r = 0; r < joint.rows; ++r) {
-        double square = 0;
-        for (int c = at.freedom * static_cast<int>(b) + lengths; c < at.freedom * static_cast<int>(b + 1); ++c)
-          square += std::pow(turned.entry(joint.first + r, c) - at.entry(joint.first + r, c), 2);
-        sum += std::abs(impulse[static_cast<std::size_t>(r)]) * std::sqrt(square);
-      }
-    }
-    other.set_pose(at.bodies[b], world.place(at.bodies[b]));
-  }
-  return sum;
-}
+struct AtJoints {
+  double left_across, kicks;  // speed_left_across(), kicks_of_joints()
+};
 
 // The bounds of energy and angular momentum after the steps so far; see README.md.
 class Accounts {
@@ -190,9 +178,9 @@ class Accounts {
            double epsilon, double across);
 
   // `taken`: adaptive steps so far; h: the length of the step.
-  // `across`: speed_left_across() at its end.
+  // `joints`: at its end.
   void step(const Motion& now, std::vector<SpringRow> springs, double energy, double operations, long long taken,
-            double h, double across);
+            double h, AtJoints joints);
 
   // For RATTLE plus the distance to the energy that its steps conserve, h^2 (v'V''v / 12 - F'M^-1 F / 24). The force
   // of a velocity row has no V: in the last half kick it does the work h^2 lambda (dJ/dt) v / 8, which the first half
@@ -201,6 +189,8 @@ class Accounts {
     const double away = largest_change_ + pushed_;
     return order_error_ + (order_ == 2 ? away * away * (rolls_ ? 7.0 / 24 : 1.0 / 8) : 0);
   }
+  // The balance knows what time puts in by some joints [J]. Others may act against them, and dv does not show that.
+  double error_of_drives() const { return driven_error_; }
   double round_off_energy() const { return round_off_; }  // [J]
   double roughest() const { return roughest_; }           // the largest change of acceleration in a step, relative
   // [1/s]: the largest rate at which a force turns round or, where springs are implicit, grows as bodies approach.
@@ -232,7 +222,8 @@ class Accounts {
   double across_;
   std::optional<VelocityChange> change_;
   std::vector<Missed> pending_springs_;  // of the first step, as pending_
-  double rough_before_ = 0, pending_ = 0, largest_change_ = 0, largest_speed_ = 0, largest_energy_ = 0;
+  double rough_before_ = 0, pending_ = 0, pending_drives_ = 0, driven_error_ = 0, largest_change_ = 0,
+         largest_speed_ = 0, largest_energy_ = 0;
   double fastest_ = 0, order_error_ = 0, round_off_ = 0, roughest_ = 0, momentum_ = 0, angular_ = 0, angular_order_ = 0;
 };
 

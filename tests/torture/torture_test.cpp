@@ -189,6 +189,17 @@ TEST(Torture, StartsWithGapsAreNotJudgedBySweeps) {
   EXPECT_EQ(judge(generate(*asked.swept, {.steps = 30}).scene, asked).outcome, Outcome::limited);
 }
 
+// Gravity along a coordinate: two bodies fall onto each other, which no step resolves, long after the start.
+TEST(Torture, PolesMetByStepsBySweepsAreLimits) {
+  Asked asked;
+  asked.swept = 0x12aeb55ba;
+  Wish wish{.effects = true, .steps = 30};
+  wish.integrator = Integrator::rattle;
+  const Verdict verdict = judge(generate(*asked.swept, wish).scene, asked);
+  EXPECT_EQ(verdict.outcome, Outcome::limited) << verdict.detail << verdict.value;
+  EXPECT_EQ(verdict.what, "steps by sweeps: no step resolves the force of an effect");
+}
+
 TEST(Torture, FoundMisfitsStay) {
   each_scene_in(CDOT_FOUND "/misfit", [](const std::string& file, const Scene& scene) {
     for (const Integrator integrator :

@@ -62,5 +62,35 @@ TEST(FreeBodies, OnlyEqualSpringsOfAVectorKeepTheSpin) {
   }
 }
 
+// The stiffness of tension holds back what turns, but not the whole mechanism. The midpoint rule needs no such care.
+TEST(FreeBodies, TurnAsFastUnderEveryImplicitStep) {
+  for (const Method& method : methods()) {
+    if (method.integrator != Integrator::implicit) continue;
+    for (const Drift drift : {Drift::none, Drift::baumgarte, Drift::projection}) {
+      World<double> world(Settings{.solver = method.solver, .integrator = method.integrator, .drift = drift});
+      const int a = world.add_body({.x = -1, .vy = -2, .w = 2, .mass = 1, .inertia = 0.4});
+      const int b = world.add_body({.x = 1, .vy = 2, .w = 2, .mass = 1, .inertia = 0.3});
+      world.add_joint({"weld", {a, b}, {{"pa", {1, 0}}, {"pb", {-1, 0}}}, {}});
+      for (int k = 0; k < 200; ++k) ASSERT_TRUE(world.step(0.02));
+      const Balance balance = world.balance();
+      EXPECT_EQ(balance.angular.body, a);
+      EXPECT_LT(balance.angular.error, 1e-11 * balance.angular.scale) << method.name() << name_of(drifts, drift);
+    }
+  }
+}
+
+// A ball is held by the liquid below it, although no force acts as long as it flies.
+TEST(FreeBodies, ABallAboveALiquidIsNotFree) {
+  SpatialWorld<double> world({.gravity_z = -9.81});
+  const int ball = world.add_body({.z = 1, .mass = 1, .inertia = {0.01, 0.01, 0.01}});
+  const int stone = world.add_body({.x = 2, .z = 1, .mass = 1, .inertia = {0.01, 0.01, 0.01}});
+  world.add_joint({"buoyancy", {ball}, {{"surface", {0, 0, 0}}, {"radius", {0.1}}, {"weight", {30}}}, {}});
+  for (int k = 0; k < 600; ++k) ASSERT_TRUE(world.step(1e-3));
+  EXPECT_GT(world.velocity(ball).z, world.velocity(stone).z + 1);
+  const Balance balance = world.balance();
+  EXPECT_EQ(balance.linear.body, stone);
+  EXPECT_LT(balance.linear.error, 1e-9);
+}
+
 }  // namespace
 }  // namespace cdot::test::free_bodies_test

@@ -112,7 +112,7 @@ SweptRise watch(const Scene& scene, const SweptWay& way) {
 
 }  // namespace
 
-SweptRise swept_rise(Scene scene, const SweptWay& way) {
+Scene with_sweeps(Scene scene, const SweptWay& way) {
   scene.settings = {.solver = Solver::iterative,
                     .integrator = way.integrator,
                     .drift = way.drift,
@@ -121,8 +121,12 @@ SweptRise swept_rise(Scene scene, const SweptWay& way) {
                     .gravity_x = scene.settings.gravity_x,
                     .gravity_y = scene.settings.gravity_y,
                     .gravity_z = scene.settings.gravity_z};
+  return scene;
+}
+
+SweptRise swept_rise(const Scene& scene, const SweptWay& way) {
   SweptRise seen;
-  const auto run = [&](auto space) { seen = watch<decltype(space)>(scene, way); };
+  const auto run = [&](auto space) { seen = watch<decltype(space)>(with_sweeps(scene, way), way); };
   if (scene.single) in_space_of<float>(scene, run);
   else in_space_of<double>(scene, run);
   return seen;

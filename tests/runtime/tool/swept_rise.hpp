@@ -35,6 +35,9 @@ struct SweptRise {
   bool holds() const { return risen < bound; }
 };
 
-SweptRise swept_rise(Scene scene, const SweptWay& way);
+// The scene by these sweeps; its step and duration stay.
+Scene with_sweeps(Scene scene, const SweptWay& way);
+
+SweptRise swept_rise(const Scene& scene, const SweptWay& way);
 
 }  // namespace cdot::test
