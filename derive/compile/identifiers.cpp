@@ -26,7 +26,7 @@ std::set<std::string> taken_names() {
       "has_one_end is_equation is_endless of_value of_rate of_force latch events Events distances after until "
       "go rescue improve stiffen weigh_effects farthest moved_energy hardly_moves drag "
       "advance pass tension stiffened inverse_of positive_part effect_rows Inertia W power before middle mean "
-      "mean_of find_mean_spins missed side given end guess load from bonds Bonds snap strain struck choose_once "
+      "mean_of find_mean_spins missed side given end guess load from bonds Bonds snap strain struck Search RootSearch choose_once "
       "latches "
       "Bits WordOf Exponential Logarithm Complex Differences Newton LU freedom unknowns place_of reciprocal set_zero "
       "factor turn_back turn_on numbers_of "

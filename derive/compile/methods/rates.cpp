@@ -12,7 +12,7 @@ constexpr const char* damping = R"(
 
 constexpr const char* finds_rates = R"(
   // The rate of one row by Newton: the sides found so far bracket it.
-  struct Search {{
+  struct RootSearch {{
     T low = T(-1e30), high = T(1e30), best = T(0), least = T(1e30), before = T(1e30);
     T step(const T& guess, const T& newton, const T& miss, const Mask& busy) {{
       const auto better = busy && miss < least, above = newton < T(0);
@@ -31,7 +31,7 @@ constexpr const char* finds_rates = R"(
     constexpr int effect[damped] = {{{0}}};
     constexpr bool alone[dampers] = {{{1}}};
     T guess[damped], step[damped], miss[dampers], size[dampers];
-    Search of_row[damped];
+    RootSearch of_row[damped];
     Mask busy[dampers], now[dampers];
     for (int i = 0; i < damped; ++i) guess[i] = rate[i];
     look($pC, rate, K, guess, time, h, step, given, end, miss, size);

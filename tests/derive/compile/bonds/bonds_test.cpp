@@ -19,6 +19,12 @@
 #include "bonds_radau5.hpp"
 #include "bonds_rattle.hpp"
 #include "bonds_rk4.hpp"
+#include "everything_dop853.hpp"
+#include "everything_euler.hpp"
+#include "everything_implicit.hpp"
+#include "everything_radau5.hpp"
+#include "everything_rattle.hpp"
+#include "everything_rk4.hpp"
 #include "latched_dop853.hpp"
 #include "latched_rattle.hpp"
 #include "latched_rk4.hpp"
@@ -271,6 +277,19 @@ TEST(CompiledBonds, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<links_radau5>();
   cdot::lanes_are_as_alone<pins_rattle>();
   cdot::lanes_are_as_alone<pins_rk4>();
+}
+
+// Two types of such a header once had the same name.
+TEST(CompiledBonds, GoBesideEverythingElse) {
+  const auto runs = [](auto of, Integrator integrator) {
+    cdot::runs_as_the_world<decltype(of)>(scenes + "everything.toml", integrator, 1e-9, 1.5);
+  };
+  runs(everything_euler<double>{}, Integrator::euler);
+  runs(everything_implicit<double>{}, Integrator::implicit);
+  runs(everything_rattle<double>{}, Integrator::rattle);
+  runs(everything_rk4<double>{}, Integrator::rk4);
+  runs(everything_dop853<double>{}, Integrator::dop853);
+  runs(everything_radau5<double>{}, Integrator::radau5);
 }
 
 }  // namespace
