@@ -104,6 +104,10 @@ struct Way {
     return rest * rest * (from + share * (T(2) * from + rate_from)) +
            share * share * (to + rest * (T(2) * to - rate_to));
   }
+  T bend() const { return rate_from + rate_to - T(2) * (to - from); }
+  T rate_at(T share) const { return rate_from + share * (rate_to - rate_from - T(3) * bend() * (T(1) - share)); }
+  // Where that rate turns back.
+  T turn() const { return T(0.5) + (rate_from - rate_to) / (T(6) * bend()); }
 };
 
 // A bound that rises and falls is seen at this many points of the way. More than `unseen` of its largest value, up and
@@ -147,6 +151,15 @@ bool leaps_over_end(Batch<S>& batch, int i, const Way<typename S::Scalar>& way,
   return any;
 }
 
+// A row that slips comes to rest within the step and slips on in its end. Between them it may have stuck.
+template <class S>
+bool leaps_over_rest(const Batch<S>& batch, int i, const Way<typename S::Scalar>& way,
+                     const Resolution<typename S::Scalar>& resolution, double least, typename S::Scalar h) {
+  if (batch.mode[i] != Mode::pushed && batch.mode[i] != Mode::pulled) return false;
+  const auto turn = way.turn();
+  return turn > 0 && turn < 1 && double(margin_of_row(batch, i, resolution, way.rate_at(turn) / h)) < least;
+}
+
 // Takes a step of h again and projects its end. If an implicit method finds none, stays at the start.
 template <class S>
 bool go_to(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
@@ -186,7 +199,8 @@ bool leaps(Island<S>& island, typename S::Scalar h) {
     const double least = std::min(double(island.flow.margins_chosen[first]), 0.0) + passed;
     const Way<typename S::Scalar> way{C, batch.C[slot], h * rate, h * island.flow.row_rates[first]};
     any = leaps_over_bound(batch, slot, way) ||
-          leaps_over_end(batch, slot, way, island.flow.resolution[first], least, island.flow.row_rates[first]);
+          leaps_over_end(batch, slot, way, island.flow.resolution[first], least, island.flow.row_rates[first]) ||
+          leaps_over_rest(batch, slot, way, island.flow.resolution[first], least, h);
   });
   return any;
 }

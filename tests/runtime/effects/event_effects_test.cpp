@@ -204,7 +204,25 @@ TEST(EventEffects, AWayThatTurnsBackWithinAStepMeetsItsEnd) {
   });
 }
 
-// The same with a switch at `end`, which takes the drive away for good.
+// Friction of 1 N slows a block of 1 kg that F = 12 t - 4 pushes: v = 6 t^2 - 5 t + 1 until t = 1/3. There it sticks
+// until F = 1, at t = 5/12, and slips on with v = 6 (t - 5/12)^2. A step over all of it follows the first v exactly.
+TEST(EventEffects, ABlockThatComesToRestWithinAStepSticks) {
+  each_adaptive([&](const Settings& settings, const auto& name) {
+    World<double> world(settings);
+    const int block = world.add_body({.vx = 1, .mass = 1, .fixed_rotation = true});
+    const int rail = world.add_joint({.type = "line",
+                                      .bodies = {block, world.ground()},
+                                      .parameters = {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0, 1}}},
+                                      .soft = {}});
+    add_effect(world, rail, "slide", DryFriction{.max_force = 1});
+    const Profile rises = Profile::table({.times = {0, 1}, .values = {-4, 8}});
+    world.add_joint({"push", {block}, {{"pa", {0, 0}}, in_time("F", {rises, 0.0})}, {}});
+    ASSERT_TRUE(world.step(1)) << name;
+    EXPECT_NEAR(world.pose(block).x, 7.0 / 54 + 2 * std::pow(7.0 / 12, 3), 1e-6) << name;
+  });
+}
+
+// The way of the first with a switch at `end`, which takes the drive away for good.
 TEST(EventEffects, AWayThatTurnsBackWithinAStepMeetsItsSwitch) {
   constexpr double w = 3, end = 2.24, met = 1.4, I = 0.5, drive = 4, brake = 5, left = 3 - met;
   each_adaptive([&](const Settings& settings, const auto& name) {
