@@ -179,11 +179,16 @@ bool passed_event(const Flow<S>& flow) {
 }
 
 template <class S>
-void note_ways(Island<S>& island) {
+void note_ways(const WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
+  using T = typename S::Scalar;
   size_t k = 0;
-  each_guarded_slot(island, [&](const Batch<S>& batch, int slot) {
-    for (int i = slot * batch.ops->rows; i < (slot + 1) * batch.ops->rows; ++i, ++k)
-      island.flow.ways[k] = {batch.C[i], island.flow.row_rates[k]};
+  each_guarded_slot(island, [&](Batch<S>& batch, int slot) {
+    const auto first = batch.C.begin() + slot * batch.ops->rows;
+    T C[most_rows];
+    std::copy_n(first, batch.ops->rows, C);
+    batch.ops->position(batch, slot, slot + 1, world.bodies, time);
+    for (int r = 0; r < batch.ops->rows; ++r, ++k) island.flow.ways[k] = {first[r], island.flow.row_rates[k]};
+    std::copy_n(C, batch.ops->rows, first);
   });
 }
 
@@ -256,7 +261,7 @@ void go_to_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& me
 
 #define CDOT_INSTANTIATE(S)                                                                                \
   template bool passed_event(const Flow<S>&);                                                              \
-  template void note_ways(Island<S>&);                                                                     \
+  template void note_ways(const WorldData<S>&, Island<S>&, S::Scalar);                                     \
   template bool leaps(Island<S>&, S::Scalar);                                                              \
   template S::Scalar go_to_event(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar); \
   template void go_between(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                  \

@@ -13,10 +13,10 @@ bool passed_event(const Flow<S>& flow);
 
 // Call at the start of a step.
 template <class S>
-void note_ways(Island<S>& island);
+void note_ways(const WorldData<S>& world, Island<S>& island, typename S::Scalar time);
 
-// True if a step of h leapt over an event: a row met its end within the step and came back,
-// or the bound of a force rose and fell, as over the tooth of a ratchet. No estimate of the error sees that.
+// True if a step of h leapt over an event: a row met its end within the step and came back, or came to rest and slipped
+// on, or the bound of a force rose and fell, as over the tooth of a ratchet. No estimate of the error sees that.
 template <class S>
 bool leaps(Island<S>& island, typename S::Scalar h);
 
