@@ -176,12 +176,12 @@ std::string BodyTexts::judged() const {
       }
       speeds += fmt::format("    most = larger({}, most);\n", square);
       const double mass = turns ? b.inv_I : b.inv_m;
-      const std::string moves = fmt::format("{} > T(single ? 1e-4 : 1e-9) * ({})", change, size);
+      const std::string share =
+          fmt::format("select({0} > T({1}) * ({2}), T(1), T({1}))", change, "single ? 1e-4 : 1e-9", size);
       if (turns && b.inertia_turns)
-        energies +=
-            fmt::format("    before = sum;\n{}    sum = select({}, sum, before);\n", spin_energy_of(b, name), moves);
-      else if (mass > 0)
-        energies += fmt::format("    sum = sum + select({}, T({}) * ({}), T(0));\n", moves, 1 / mass, square);
+        energies += fmt::format("    before = sum;\n{}    sum = before + {} * (sum - before);\n",
+                                spin_energy_of(b, name), share);
+      else if (mass > 0) energies += fmt::format("    sum = sum + {} * T({}) * ({});\n", share, 1 / mass, square);
     }
   });
   return fmt::format(R"(
@@ -195,7 +195,7 @@ std::string BodyTexts::judged() const {
     T most = T(0);
 {}    return most * h * h < T(single ? {} : {});
   }}
-  // Twice the kinetic energy of the motions that changed from others: a wheel that merely spins has no say.
+  // Twice the kinetic energy of the motions that changed from others: others count by round-off.
   static T moved_energy(const Pose (&q)[bodies], const Velocity (&v)[bodies], const Velocity (&from)[bodies]) {{
     T sum = T(0), before = sum;
     (void)q, (void)before;

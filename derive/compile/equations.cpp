@@ -211,6 +211,7 @@ class EquationWriter {
     out_.past = past_of(blocks_, out_.constants);
     if (mechanism_.method == Method::rattle || mechanism_.method == Method::implicit)
       out_.nearest = nearest_of(blocks_, out_.constants);
+    if (mechanism_.method == Method::implicit) out_.drift_of_ends = drift_of_ends(blocks_, out_.constants);
     out_.along = along_of(blocks_, out_.constants);
     if (mechanism_.keeps_momenta())
       out_.displace =
@@ -242,13 +243,15 @@ std::vector<const Program*> programs_of_equations(const Equations& e) {
   return {&e.evaluate, &e.errors,  &e.rates,     &e.accelerate, &e.solve,     &e.apply,  &e.aim,     &e.solve_aimed,
           &e.fall,     &e.kick,    &e.potential, &e.reach,      &e.past,      &e.along,  &e.angles,  &e.dampen,
           &e.notice,   &e.look,    &e.finish,    &e.exert,      &e.distances, &e.guard,  &e.resolve, &e.carry,
-          &e.weigh,    &e.stiffen, &e.improve,   &e.displace,   &e.nearest,   &e.strain, &e.draw};
+          &e.weigh,    &e.stiffen, &e.improve,   &e.displace,   &e.nearest,   &e.strain, &e.draw,    &e.drift_of_ends};
 }
 
 std::set<std::string> functions_of(const Program& program) {
   std::set<std::string> functions;
-  for (const Operation& op : program.ops)
-    if (op.kind == OpKind::function && !derive::function_of(op.fn).of_contract)
+  const std::vector<int> uses = derive::use_counts(program);
+  for (std::size_t k = 0; k < program.ops.size(); ++k)
+    if (const Operation& op = program.ops[k];
+        uses[k] > 0 && op.kind == OpKind::function && !derive::function_of(op.fn).of_contract)
       functions.insert(std::string(derive::function_of(op.fn).name));
   return functions;
 }

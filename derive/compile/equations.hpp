@@ -49,15 +49,16 @@ struct Equations {
   std::string is_rate;  // "true, false", by row
   std::string cones;    // "-1, 1, 1", by row: the first row of its cone
   bool has_ends = false, has_events = false;
-  std::string waits;  // "true, false", by row: it waits for an event
-  Program reach;      // q, time, J -> B: their part in a projection
-  Program past;       // q, time -> past: errors
-  Program nearest;    // q, time -> off, side: of the nearer end; not by Euler's steps
-  Program along;      // q, v, time -> along: J v
-  Program displace;   // q, time, J, lambda, mu -> d; where inertias turn
-  Program distances;  // q, v, time -> after, until: distances from events
-  Program draw;       // by RATTLE: q, time, J, lambda, mu -> d: the pull of joints and of rows that prescribe a rate
-  Program strain;     // load, time -> from: the distances of joints from their end
+  std::string waits;      // "true, false", by row: it waits for an event
+  Program reach;          // q, time, J -> B: their part in a projection
+  Program past;           // q, time -> past: errors
+  Program nearest;        // q, time -> off, side: of the nearer end; not by Euler's steps
+  Program drift_of_ends;  // by the midpoint rule: q, time -> moves: how C leaves that end while bodies rest
+  Program along;          // q, v, time -> along: J v
+  Program displace;       // q, time, J, lambda, mu -> d; where inertias turn
+  Program distances;      // q, v, time -> after, until: distances from events
+  Program draw;    // by RATTLE: q, time, J, lambda, mu -> d: the pull of joints and of rows that prescribe a rate
+  Program strain;  // load, time -> from: the distances of joints from their end
   std::vector<std::size_t> first_rows;  // by joint; the last one is the number of all rows
   Program guard;                        // by Runge-Kutta methods (methods/modes.hpp): q, v, time -> B
   Program carry;                        // q, time, J, lambda, force -> load: the forces with which bounds grow

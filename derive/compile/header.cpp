@@ -307,6 +307,9 @@ class HeaderWriter {
     if (has().rattle || has().midpoint)
       write_function("C - end of the nearer end, and its side: 1 for the lower one, -1 for the upper one, 0 for both",
                      "nearest(" + at + ", T (&off)[bounded], T (&side)[bounded])", equations_.nearest);
+    if (has().ends_drift)
+      write_function("Rates of C from the nearer end of bodies at rest",
+                     "drift_of_ends(" + at + ", T (&moves)[bounded])", equations_.drift_of_ends);
     write_function("J v of rows with bounds", "along(" + at + ", " + moving + ", T (&along)[bounded])",
                    equations_.along);
     if (mechanism_.keeps_momenta())

@@ -177,6 +177,7 @@ Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
           .exerts = equations.exerts,
           .frees = !equations.freed.empty(),
           .carries = mechanism.method == Method::rattle && carries_spin(mechanism, !equations.effect_of.empty()),
+          .ends_drift = !equations.drift_of_ends.outputs.empty(),
           .modes = !mechanism.bounded.empty() && mechanism.on_accelerations(),
           .loads = mechanism.has_loads(),
           .cones = mechanism.has_cones(),

@@ -33,9 +33,12 @@ function(cdot_add_scene)
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/cdot_scenes/${arg_TARGET})
   file(MAKE_DIRECTORY ${folder})
   set(header ${folder}/${arg_NAME}.hpp)
+  # Tables and specs that the scene may read.
+  cmake_path(GET arg_SCENE PARENT_PATH beside)
+  file(GLOB beside ${beside}/*.csv ${beside}/*.joint ${beside}/*.effect)
   add_custom_command(OUTPUT ${header}
     COMMAND cdot::cdot compile ${arg_SCENE} --specs ${CDOT_SPECS} ${options} -o ${header}
-    DEPENDS cdot::cdot cdot::cdot-compile ${arg_SCENE} COMMENT "Compiling the scene ${arg_NAME}" VERBATIM)
+    DEPENDS cdot::cdot cdot::cdot-compile ${arg_SCENE} ${beside} COMMENT "Compiling the scene ${arg_NAME}" VERBATIM)
   target_sources(${arg_TARGET} PRIVATE ${header})
   target_include_directories(${arg_TARGET} PRIVATE ${folder})
 endfunction()

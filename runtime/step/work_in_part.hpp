@@ -26,7 +26,8 @@ double work_of_joints(const Island<S>& island) {
   return work;
 }
 
-// The kinetic energy of the motions that the joints changed in this part. A wheel that merely spins has no say.
+// The kinetic energy of the motions that the joints changed in this part. A wheel that merely spins counts by the
+// round-off of its energy: else where nothing changes, as of a cart on a rail, any round-off would be too much work.
 template <class S>
 double moved_energy(const WorldData<S>& world, const Island<S>& island) {
   using T = typename S::Scalar;
@@ -43,7 +44,7 @@ double moved_energy(const WorldData<S>& world, const Island<S>& island) {
         own += 0.5 * double(momentum[c]) * double(v[c]);
         change += std::abs(double(v[c]) - double(before[c])), size += std::abs(double(v[c]));
       }
-      if (change > same * size) energy += own;
+      energy += change > same * size ? own : same * own;
     }
   }
   return energy;

@@ -19,6 +19,7 @@ struct Contents {
   bool rattle = false, midpoint = false, dampens = false, looks = false, finishes = false, exerts = false;
   bool frees = false;          // by RATTLE, rows of velocities are free in the first half
   bool carries = false;        // by RATTLE, forces at the end read the spin of a body whose inertia turns
+  bool ends_drift = false;     // by the midpoint rule, ends move, or coordinates by time alone
   bool modes = false;          // of rows with bounds by Runge-Kutta methods
   bool loads = false;          // bounds of these that grow with loads
   bool cones = false;          // one force along several of these

@@ -165,9 +165,13 @@ constexpr const char* forgets_bounded = "    for (T& of_row : mu) of_row = T(0);
 constexpr const char* aims_at_ends = R"(    T off[bounded], side[bounded], missed_ends[bounded];
     nearest($ss.q, s.time, off, side);
     along($ss.q, s.time, s.v, missed_ends);
-    for (int i = 0; i < bounded; ++i)
-      missed_ends[i] = missed_ends[i] + select(side[i] * off[i] > T(0), off[i] / h, T(0));
+{}    for (int i = 0; i < bounded; ++i)
+      missed_ends[i] = missed_ends[i]{} + select(side[i] * off[i] > T(0), off[i] / h, T(0));
 )";
+constexpr const char* declares_drift = R"(    T of_ends[bounded];
+    drift_of_ends($ss.q, s.time, of_ends);
+)";
+constexpr const char* adds_drift = " + of_ends[i]";
 constexpr const char* rescue_settles = R"({1}    for (int i = 0; i < bounded; ++i) s.force[i] = x[i] / h;
 {0})";
 constexpr const char* rescue_moves = "    for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + d[i];\n";
@@ -322,7 +326,8 @@ std::string rescue(const Contents& has) {
   text += stiffens(has, "s.q", "twice");
   if (has.rows) text += forgets_rows;
   if (has.bounded) text += forgets_bounded;
-  if (has.ends) text += aims_at_ends;
+  if (has.ends)
+    text += fmt::format(aims_at_ends, has.ends_drift ? declares_drift : "", has.ends_drift ? adds_drift : "");
   if (has.effects) text += weighs;
   if (has.gyroscopes) text += "    for (int i = 0; i < bodies; ++i) mean[i] = s.v[i];\n";
   text += improves(has, "s.q", "twice");

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <fmt/format.h>
-#include <numbers>
 
 #include "derive/kernel/factor.hpp"
 #include "derive/kernel/plan.hpp"
@@ -16,125 +15,6 @@ namespace {
 constexpr double boundless = 1e30;  // in float, too
 
 }  // namespace
-
-bool prescribes_rate(const RowBlocks& blocks, std::size_t bounded) {
-  const Effect& effect = blocks.mechanism().bounded[bounded];
-  return effect.law == Effect::motor || (effect.law == Effect::bound && blocks.law(effect).bounded[effect.row].of_rate);
-}
-
-bool has_events(const RowBlocks& blocks, std::size_t bounded) {
-  const Effect& effect = blocks.mechanism().bounded[bounded];
-  return effect.law == Effect::bound && blocks.law(effect).bounded[effect.row].has_events();
-}
-
-bool waits(const RowBlocks& blocks, std::size_t bounded) {
-  const Effect& effect = blocks.mechanism().bounded[bounded];
-  return effect.law == Effect::bound && blocks.law(effect).bounded[effect.row].after;
-}
-
-Program distances_of(const RowBlocks& blocks, Constants& constants) {
-  Algebra algebra(constants);
-  for (std::size_t b = 0; b < blocks.mechanism().bounded.size(); ++b) {
-    const Effect& effect = blocks.mechanism().bounded[b];
-    const BoundWriter row(blocks, algebra, b);
-    const bool of_spec = effect.law == Effect::bound;
-    const std::optional<Program> none;
-    algebra.output(element("after", b), row.distance(of_spec ? blocks.law(effect).bounded[effect.row].after : none));
-    algebra.output(element("until", b), row.distance(of_spec ? blocks.law(effect).bounded[effect.row].until : none));
-  }
-  return algebra.finish_as_kernels();
-}
-
-Program strain_of(const RowBlocks& blocks, Constants& constants) {
-  Algebra algebra(constants);
-  for (std::size_t k = 0; k < blocks.mechanism().bonds.size(); ++k) {
-    const Bond& bond = blocks.mechanism().bonds[k];
-    const SpecPrograms& spec = blocks.bond(bond);
-    const std::string& owner = bond.joint < 0 ? blocks.bounded(static_cast<std::size_t>(bond.rope)).name
-                                              : blocks.joint(static_cast<std::size_t>(bond.joint)).name;
-    Values in;
-    for (std::size_t p = 0; p < spec.parameters.size(); ++p)
-      in[spec.parameters[p]] =
-          algebra.value(bond.numbers[p], fmt::format("{}_{}_{}", owner, bond.type, spec.parameters[p]));
-    in["pi"] = algebra.value(std::numbers::pi);
-    in["time"] = algebra.input("time");
-    in[derive::bounded_load] = algebra.input(element("load", static_cast<std::size_t>(bond.holds)));
-    const Values out = algebra.inlined(
-        *spec.bounded.front().breaks, [&](const std::string& text) { return in.at(text); }, "bond");
-    algebra.output(element("from", k), out.at("D"));
-  }
-  return algebra.finish();
-}
-
-Program guard_of(const RowBlocks& blocks, Constants& constants) {
-  Algebra algebra(constants);
-  for (std::size_t b = 0; b < blocks.mechanism().bounded.size(); ++b) {
-    const BoundWriter row(blocks, algebra, b);
-    const BoundWriter::Guard guard = row.guard();
-    const int missing = algebra.sum({{guard.rate, row.rate()}, {1, -1}});
-    algebra.output("B." + element("off", b), guard.off);
-    algebra.output("B." + element("missing", b), missing);
-    algebra.output("B." + element("low", b), guard.low);
-    algebra.output("B." + element("high", b), guard.high);
-    if (blocks.mechanism().has_loads()) row.output_by_load();
-  }
-  return algebra.finish_as_kernels();
-}
-
-Program resolve_of(const RowBlocks& blocks, Constants& constants) {
-  Algebra algebra(constants);
-  for (std::size_t b = 0; b < blocks.mechanism().bounded.size(); ++b) {
-    const BoundWriter::Resolution resolution = BoundWriter(blocks, algebra, b).resolution();
-    algebra.output(element("of_value", b), resolution.value);
-    algebra.output(element("of_rate", b), resolution.rate);
-    algebra.output(element("of_force", b), resolution.force);
-  }
-  return algebra.finish();
-}
-
-namespace {
-
-// The resultant force of a joint's rows, by the linear columns of its last body that moves.
-int force_of(const RowBlocks& blocks, const JointRows& joints, Algebra& algebra, int joint) {
-  const Mechanism& all = blocks.mechanism();
-  const RowSystem& system = joints.system();
-  std::size_t k = 0;
-  while (system.blocks()[k].name != blocks.joint(static_cast<std::size_t>(joint)).name) ++k;
-  const RowBlock& block = system.blocks()[k];
-  std::size_t last = block.bodies->size() - 1;
-  while (last > 0 && !all.bodies[static_cast<std::size_t>((*block.bodies)[last])].moves) --last;
-  const Values J = blocks.call(algebra, block, "dense", joints.inputs(algebra, k));
-  Summands squares;
-  for (std::size_t c = 0; c < all.linear(); ++c) {
-    Summands force;
-    for (std::size_t r = 0; r < block.rows->count(); ++r)
-      force.add(1, algebra.times(J.at(element(element("D", r), all.columns() * last + c)),
-                                 algebra.input(element("lambda", system.first_row(k) + r))));
-    squares.add(1, algebra.product({algebra.sum(force)}, {2}));
-  }
-  return algebra.function(Fn::sqrt, {algebra.sum(squares)});
-}
-
-}  // namespace
-
-Program carry_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants) {
-  Algebra algebra(constants);
-  for (std::size_t b = 0; b < blocks.mechanism().bounded.size(); ++b) {
-    const Effect& effect = blocks.mechanism().bounded[b];
-    int load = algebra.value(0);
-    if (effect.loaded_by_row >= 0) {
-      const std::string force = element("force", static_cast<std::size_t>(effect.loaded_by_row));
-      load = algebra.function(Fn::abs, {algebra.input(force)});
-    }
-    if (effect.loaded_by_joint >= 0) load = force_of(blocks, joints, algebra, effect.loaded_by_joint);
-    algebra.output(element("load", b), load);
-  }
-  return algebra.finish();
-}
-
-bool has_ends(const RowBlocks& blocks, std::size_t bounded) {
-  return !prescribes_rate(blocks, bounded) && blocks.mechanism().bounded[bounded].law != Effect::limited;
-}
 
 BoundWriter::BoundWriter(const RowBlocks& blocks, Algebra& algebra, std::size_t bounded)
     : blocks_(blocks),
@@ -186,15 +66,42 @@ bool BoundWriter::is_rate() const {
   return effect_.law == Effect::motor || (effect_.law == Effect::bound && law_.spec().bounded[effect_.row].of_rate);
 }
 
-bool BoundWriter::are_equal(int lower, int upper) const {
+BoundWriter::Ends BoundWriter::ends() const {
+  const Values B = bounds();
+  const int lower = bound(B, "B.lower", -boundless), given = bound(B, "B.upper", boundless), C = law_.C()[0];
+  const int upper = effect_.in_time.empty() ? given : law_.most(given, lower), zero = algebra_.value(0);
+  const auto from = [&](int end) { return algebra_.sum({{C, end}, {1, -1}}); };
+  Ends ends{from(lower), algebra_.sum({{upper, C}, {1, -1}}), zero, is_apart(lower, upper), zero, zero};
+  ends.at_low = algebra_.sum({{ends.below, ends.above}, {1, -1}});
+  if (effect_.in_time.empty()) return ends;
+  const int low_rate = algebra_.by_time(lower), rate = algebra_.by_time(given);
+  const auto of_nearer = [&](int low, int high) { return unless_held(ends, nearer(ends, low, high), low); };
+  ends.rate = of_nearer(low_rate, rate);
+  ends.acceleration = of_nearer(algebra_.by_time(low_rate), algebra_.by_time(rate));
+  return ends;
+}
+
+// Constants decide at once, and ends of which one is missing; a coordinate that ends hold in time may be let go.
+int BoundWriter::is_apart(int lower, int upper) const {
   const std::optional<double> low = algebra_.constant(lower), high = algebra_.constant(upper);
-  return effect_.law == Effect::lock || (low && high && *low >= *high);
+  if (effect_.law == Effect::lock || lower == upper || (low && high && *low >= *high)) return algebra_.value(0);
+  if ((low && *low <= -boundless) || (high && *high >= boundless) || effect_.in_time.empty()) return algebra_.value(1);
+  return algebra_.sum({{upper, lower}, {1, -1}});
+}
+
+int BoundWriter::nearer(const Ends& ends, int lower, int upper) const {
+  return lower == upper ? lower : algebra_.function(Fn::select, {ends.at_low, lower, upper});
+}
+
+// Where equal ends hold the coordinate it is `held`.
+int BoundWriter::unless_held(const Ends& ends, int number, int held) const {
+  if (const std::optional<double> apart = algebra_.constant(ends.apart)) return *apart > 0 ? number : held;
+  return algebra_.function(Fn::select, {ends.apart, number, held});
 }
 
 int BoundWriter::rate_change() const {
-  const auto speed = effect_.in_time.find(0);
-  if (effect_.law != Effect::motor || speed == effect_.in_time.end()) return algebra_.value(0);
-  return blocks_.in_time(algebra_, speed->second, "rate", block_.name + "_speed");
+  const Values B = bounds();
+  return effect_.in_time.empty() ? bound(B, "B.acceleration", 0) : algebra_.by_time(bound(B, "B.rate", 0));
 }
 
 BoundWriter::Kick BoundWriter::kick(int h) const { return while_it_acts(kick_while_it_acts(h)); }
@@ -241,12 +148,13 @@ BoundWriter::Guard BoundWriter::guard() const {
 BoundWriter::Kick BoundWriter::while_it_is_met() const {
   constexpr double foreign = 1e-8;
   const Guard at = guard();
-  const int zero = algebra_.value(0);
-  if (algebra_.is_zero(nearest_while_it_acts().side)) return {zero, zero, zero, zero};  // a lock
-  const int within = algebra_.value(foreign * std::min(1.0, 10 * effect_.size));
+  const Ends ends = this->ends();
+  const int zero = algebra_.value(0), within = algebra_.value(foreign * std::min(1.0, 10 * effect_.size));
   const int off = algebra_.sum({{algebra_.function(Fn::abs, {at.off}), within}, {1, -1}});
-  return {zero, zero, algebra_.function(Fn::select, {off, zero, at.low}),
-          algebra_.function(Fn::select, {off, zero, at.high})};
+  const auto met = [&](int bound) {
+    return unless_held(ends, algebra_.function(Fn::select, {off, zero, bound}), zero);
+  };
+  return {zero, zero, met(at.low), met(at.high)};
 }
 
 BoundWriter::ByLoad BoundWriter::by_load() const {
@@ -266,19 +174,16 @@ void BoundWriter::output_by_load() const {
 }
 
 BoundWriter::Guard BoundWriter::guard_while_it_acts() const {
-  const Values B = bounds();
-  const int zero = algebra_.value(0), least = algebra_.value(-boundless), most = algebra_.value(boundless);
-  const int lower = bound(B, "B.lower", -boundless), upper = law_.most(bound(B, "B.upper", boundless), lower);
+  const int zero = algebra_.value(0);
   if (is_rate()) {
-    const int acceleration = effect_.law == Effect::motor ? rate_change() : bound(B, "B.acceleration", 0);
-    return {zero, bound(B, "B.rate", 0), lower, upper, acceleration};
+    const Values B = bounds();
+    const int lower = bound(B, "B.lower", -boundless), upper = law_.most(bound(B, "B.upper", boundless), lower);
+    return {zero, bound(B, "B.rate", 0), lower, upper, rate_change()};
   }
-  const int C = law_.C()[0], above = algebra_.sum({{C, lower}, {1, -1}}), below = algebra_.sum({{upper, C}, {1, -1}});
-  if (are_equal(lower, upper)) return {above, zero, least, most, zero};
-  const int at_low = algebra_.sum({{below, above}, {1, -1}});
-  return {algebra_.function(Fn::select, {at_low, above, algebra_.sum({{below}, {-1}})}), zero,
-          algebra_.function(Fn::select, {at_low, zero, least}), algebra_.function(Fn::select, {at_low, most, zero}),
-          zero};
+  const Ends ends = this->ends();
+  const int off = nearer(ends, ends.above, algebra_.sum({{ends.below}, {-1}}));
+  const Kick served = bounds_at(ends);
+  return {unless_held(ends, off, ends.above), ends.rate, served.low, served.high, ends.acceleration};
 }
 
 // As the World's (runtime/events/events.cpp):
@@ -339,18 +244,22 @@ BoundWriter::Kick BoundWriter::of_rate(int h) const {
   return {algebra_.sum({{rate}, {-1}}), algebra_.value(0), algebra_.times(h, lower), algebra_.times(h, upper)};
 }
 
-// One row serves the nearer end: C may shrink to it within the step, but not further. Equal ends hold the coordinate.
-BoundWriter::Kick BoundWriter::of_ends(int h) const {
-  const Values B = bounds();
+// The force pushes away from the nearer end. Equal ends hold the coordinate.
+BoundWriter::Kick BoundWriter::bounds_at(const Ends& ends) const {
   const int zero = algebra_.value(0), most = algebra_.value(boundless), least = algebra_.value(-boundless);
-  const int lower = bound(B, "B.lower", -boundless), upper = bound(B, "B.upper", boundless), C = law_.C()[0];
-  if (are_equal(lower, upper)) return {zero, zero, least, most};
-  const int above = algebra_.sum({{C, lower}, {1, -1}}), below = algebra_.sum({{upper, C}, {1, -1}});
-  const int at_low = algebra_.sum({{below, above}, {1, -1}}), per_time = algebra_.function(Fn::inverse, {h});
-  const int gap = algebra_.function(Fn::select, {at_low, above, below});
-  const int bias = algebra_.times(law_.most(gap, zero), per_time);
-  return {algebra_.function(Fn::select, {at_low, bias, algebra_.sum({{bias}, {-1}})}), zero,
-          algebra_.function(Fn::select, {at_low, zero, least}), algebra_.function(Fn::select, {at_low, most, zero})};
+  return {zero, zero, unless_held(ends, nearer(ends, zero, least), least),
+          unless_held(ends, nearer(ends, most, zero), most)};
+}
+
+// One row serves the nearer end: C may shrink to it within the step, but not further than the end moves.
+BoundWriter::Kick BoundWriter::of_ends(int h) const {
+  const Ends ends = this->ends();
+  const int zero = algebra_.value(0), gap = nearer(ends, ends.above, ends.below);
+  const int way = algebra_.times(law_.most(gap, zero), algebra_.function(Fn::inverse, {h}));
+  const int bias = unless_held(ends, nearer(ends, way, algebra_.sum({{way}, {-1}})), zero);
+  Kick kick = bounds_at(ends);
+  kick.bias = algebra_.sum({{bias, ends.rate}, {1, -1}});
+  return kick;
 }
 
 // As an effect by its force, but with that within limits: lambda = h (F + d rate) - s J v', s = h (d + h k).
@@ -368,9 +277,11 @@ BoundWriter::Kick BoundWriter::of_force(int h) const {
 
 // The part of C beyond the end.
 int BoundWriter::past() const {
-  const End end = nearest_while_it_acts();
-  const int zero = algebra_.value(0), low = law_.least(end.off, zero), high = law_.most(end.off, zero);
-  const int past = algebra_.is_zero(end.side) ? end.off : algebra_.function(Fn::select, {end.side, low, high});
+  const int zero = algebra_.value(0);
+  if (!has_ends(blocks_, number_)) return zero;
+  const Ends ends = this->ends();
+  const int minus = algebra_.sum({{ends.below}, {-1}});
+  const int past = unless_held(ends, nearer(ends, law_.least(ends.above, zero), law_.most(minus, zero)), ends.above);
   return may_rest() ? algebra_.function(Fn::select, {acts(), past, zero}) : past;
 }
 
@@ -381,16 +292,20 @@ BoundWriter::End BoundWriter::nearest() const {
   return end;
 }
 
+int BoundWriter::drift_from_end() const {
+  if (!has_ends(blocks_, number_)) return algebra_.value(0);
+  const int moves = algebra_.sum({{drift(), ends().rate}, {1, -1}});
+  const bool may_vanish = may_rest() && !algebra_.is_zero(moves);
+  return may_vanish ? algebra_.function(Fn::select, {acts(), moves, algebra_.value(0)}) : moves;
+}
+
 BoundWriter::End BoundWriter::nearest_while_it_acts() const {
-  const int zero = algebra_.value(0), C = law_.C()[0];
-  if (effect_.law == Effect::limited || is_rate()) return {zero, zero};
-  const Values B = bounds();
-  const int lower = bound(B, "B.lower", -boundless), upper = bound(B, "B.upper", boundless);
-  const int above = algebra_.sum({{C, lower}, {1, -1}}), below = algebra_.sum({{upper, C}, {1, -1}});
-  if (are_equal(lower, upper)) return {above, zero};
-  const int at_low = algebra_.sum({{below, above}, {1, -1}}), minus = algebra_.sum({{below}, {-1}});
-  return {algebra_.function(Fn::select, {at_low, above, minus}),
-          algebra_.function(Fn::select, {at_low, algebra_.value(1), algebra_.value(-1)})};
+  const int zero = algebra_.value(0);
+  if (!has_ends(blocks_, number_)) return {zero, zero};
+  const Ends ends = this->ends();
+  const int side = nearer(ends, algebra_.value(1), algebra_.value(-1));
+  return {unless_held(ends, nearer(ends, ends.above, algebra_.sum({{ends.below}, {-1}})), ends.above),
+          unless_held(ends, side, zero)};
 }
 
 }  // namespace cdot::compile

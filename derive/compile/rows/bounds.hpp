@@ -13,7 +13,7 @@ class BoundWriter {
 
   const RowBlock& block() const { return block_; }
   const Values& inputs() const { return in_; }  // with J
-  int rate_change() const;                      // of the rate that a motor prescribes
+  int rate_change() const;                      // of the rate that a row prescribes
   // J v of these velocities alone, by the names of components.
   int along(const Values& velocities) const;
   int drift() const { return law_.drift()[0]; }  // dC/dt
@@ -53,6 +53,8 @@ class BoundWriter {
     int off, side;
   };
   End nearest() const;
+  // The rate of C from that end while the bodies rest: dC/dt less the rate of the end.
+  int drift_from_end() const;
   // The distance from an event, far without one.
   int distance(const std::optional<Program>& event) const;
 
@@ -72,7 +74,16 @@ class BoundWriter {
   bool has_events() const;
   int acts() const;
   bool is_rate() const;
-  bool are_equal(int lower, int upper) const;  // they hold the coordinate
+  // C - lower, upper - C; at_low > 0 where the lower end is the nearer one, apart > 0 where they do not hold the
+  // coordinate; how the nearer one moves.
+  struct Ends {
+    int above, below, at_low, apart, rate, acceleration;
+  };
+  Ends ends() const;
+  int is_apart(int lower, int upper) const;
+  int nearer(const Ends& ends, int lower, int upper) const;
+  int unless_held(const Ends& ends, int number, int held) const;
+  Kick bounds_at(const Ends& ends) const;
   Kick of_rate(int h) const;
   Kick of_ends(int h) const;
   Kick of_force(int h) const;

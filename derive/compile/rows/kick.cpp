@@ -285,6 +285,17 @@ Program nearest_of(const RowBlocks& blocks, Constants& constants) {
   return algebra.finish_as_kernels();
 }
 
+Program drift_of_ends(const RowBlocks& blocks, Constants& constants) {
+  Algebra algebra(constants);
+  bool some = false;
+  for (std::size_t b = 0; b < blocks.mechanism().bounded.size(); ++b) {
+    const int moves = BoundWriter(blocks, algebra, b).drift_from_end();
+    some |= !algebra.is_zero(moves);
+    algebra.output(element("moves", b), moves);
+  }
+  return some ? algebra.finish_as_kernels() : Program{};
+}
+
 Program along_of(const RowBlocks& blocks, Constants& constants) {
   Algebra algebra(constants);
   const Values velocities = velocities_in(blocks, algebra, "v");

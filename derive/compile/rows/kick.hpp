@@ -47,6 +47,8 @@ Program past_of(const RowBlocks& blocks, Constants& constants);
 
 // q, time -> off, side: C - end of the nearer end of each, and 1 for a lower end, -1 for an upper one, 0 for both.
 Program nearest_of(const RowBlocks& blocks, Constants& constants);
+// q, time -> moves: rates of C from that end while bodies rest; without outputs if all are 0.
+Program drift_of_ends(const RowBlocks& blocks, Constants& constants);
 
 // q, v, time -> along: J v of rows with bounds.
 Program along_of(const RowBlocks& blocks, Constants& constants);

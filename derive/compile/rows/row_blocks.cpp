@@ -118,20 +118,18 @@ RowBlock RowBlocks::block_of(const std::string& name, const Effect& effect) cons
                  &spec,          coordinate.empty() ? &spec.rows : &spec.coordinates.at(coordinate),
                  &effect.bodies, &effect.parameters};
   block.holds = effect.holds;
-  if (effect.coordinate.empty()) check_functions(effect, block);
-  else block.in_time = functions_of(effect.name);
+  if (!effect.coordinate.empty()) block.in_time = functions_of(effect.name);
+  else if (move_in_time(effect, block)) block.in_time = &effect.in_time;
+  if (!effect.parameters_in_time.empty()) block.in_time = &effect.parameters_in_time;
+  check_time(block, effect.name);
   return block;
 }
 
-// dC/dt and gamma know nothing of their rates.
-void RowBlocks::check_functions(const Effect& effect, const RowBlock& block) const {
+// True if C of an effect between bodies reads numbers that follow functions of time, as a place.
+bool RowBlocks::move_in_time(const Effect& effect, const RowBlock& block) {
   const std::set<std::string> read = derive::inputs_read(block.rows->function("position"), {});
-  for (const auto& [number, function] : effect.in_time)
-    if (const std::string& field = block.spec->parameters[number]; read.contains(field))
-      throw std::runtime_error(
-          fmt::format("{}: cdot compile knows no place or direction that follows a function of time, as {} does. Fix: "
-                      "leave it to cdot-run",
-                      effect.name, field.starts_with("p.") ? field.substr(2) : field));
+  return std::ranges::any_of(effect.in_time,
+                             [&](const auto& one) { return read.contains(block.spec->parameters[one.first]); });
 }
 
 int RowBlocks::number(Algebra& algebra, const Effect& effect, std::size_t k, const std::string& name) const {

@@ -114,7 +114,7 @@ class RowBlocks {
   const std::map<std::size_t, InTime>* functions_of(const std::string& effect) const;
   static void check_time(const RowBlock& block, const std::string& name);
   RowBlock block_of(const std::string& name, const Effect& effect) const;
-  void check_functions(const Effect& effect, const RowBlock& block) const;
+  static bool move_in_time(const Effect& effect, const RowBlock& block);
   void add_body(Algebra& algebra, Values& in, const std::string& L, int index) const;
   void add_place(Algebra& algebra, Values& in, const std::string& L, int index) const;
   void add_masses(Algebra& algebra, Values& in, const std::string& L, int index) const;

@@ -45,11 +45,13 @@ class EffectReader {
     for (int j = 0; j < joints; ++j) {
       const SceneJoint& source = scene_.joints[static_cast<std::size_t>(j)];
       if (record(j).places.empty()) continue;  // between immovable bodies
+      if (!notes_parameters(source, j)) continue;
       if (world_.joint_type(j).is_effect) add_of_joint(source, j);
       else if (source.definition.soft) add_soft(source.name, j);
       else if (is_rope(world_.joint_type(j))) add_rope(source, j);
       add_on_coordinates(source, j);
     }
+    parameters_in_time_.clear();
     for (int j = joints; j < world_.joint_count(); ++j)
       if (!record(j).places.empty()) add_soft(fmt::format("spring{}", j - joints + 1), j);
     const std::vector<int> groups = groups_of(mechanism_);
@@ -75,13 +77,22 @@ class EffectReader {
     effect.name = name, effect.type = world_.joint_type(joint).name, effect.bodies = record(joint).bodies;
     const int ground = static_cast<int>(scene_.bodies.size());
     for (int& body : effect.bodies) body = body == world_.ground() ? ground : body;
-    effect.parameters = world_.joint_parameters(joint);
+    effect.parameters = world_.joint_parameters(joint), effect.parameters_in_time = parameters_in_time_;
     effect.holds = number_among_breakable(world_, joint);
     prepare_topology(world_.data());
     for (const int body : record(joint).bodies)
       if (const int island = world_.data().island_of[static_cast<std::size_t>(body)]; island >= 0)
         effect.size = double(world_.data().islands[static_cast<std::size_t>(island)].size);
     return effect;
+  }
+
+  // Of a rope or a soft joint. False if it is refused.
+  bool notes_parameters(const SceneJoint& source, int joint) {
+    parameters_in_time_.clear();
+    if (!source.definition.soft && !is_rope(world_.joint_type(joint))) return true;
+    const bool known = find_functions(scene_, record(joint), -1, mechanism_, parameters_in_time_);
+    if (!known) refuse_(source, fmt::format("{}: numbers that follow a function of a program", source.name));
+    return known;
   }
 
   // Places: its own rows, then those with bounds.
@@ -115,11 +126,6 @@ class EffectReader {
     const auto& law = *batch_of(place).law;
     if (law.by_load && !effect.is_loaded())
       refuse_(source, fmt::format("{}: bounds that grow with the load of a joint that is soft", effect.name));
-    else if (law.error && !effect.in_time.empty())
-      refuse_(source, fmt::format("{}: ends that follow functions of time", effect.name));
-    else if (mechanism_.method != Method::euler && effect.law == Effect::bound && !law.error && !effect.in_time.empty())
-      refuse_(source, fmt::format("{}: a rate of a spec that follows a function of time by {}", effect.name,
-                                  mechanism_.method_name));
     else {
       mechanism_.bounded.push_back(effect);
       mechanism_.bounded.back().by_own_force = law.distance && by_own_force(place);
@@ -222,6 +228,7 @@ class EffectReader {
   std::string name_law(const SpecEffect& kind, Effect& effect) {
     if (kind.type == "motor") return name_law(Motor{}, effect);
     if (kind.type == "load") return name_law(Load{}, effect);
+    if (kind.type == "limit") return name_limit(effect, false);
     if (kind.type == "friction") {
       std::map<std::size_t, InTime> in_time;
       for (const auto& [number, function] : effect.in_time) in_time[number + 1] = function;
@@ -254,7 +261,10 @@ class EffectReader {
     return "friction";
   }
   static std::string name_law(const Limit& kind, Effect& effect) {
-    effect.law = kind.lower == kind.upper ? Effect::lock : Effect::limit;
+    return name_limit(effect, kind.lower == kind.upper);
+  }
+  static std::string name_limit(Effect& effect, bool holds) {
+    effect.law = holds ? Effect::lock : Effect::limit;
     return "limit";
   }
 
@@ -262,6 +272,7 @@ class EffectReader {
   BasicWorld<S>& world_;
   const RefuseEffect& refuse_;
   Mechanism& mechanism_;
+  std::map<std::size_t, InTime> parameters_in_time_;  // of the joint that is read
   std::vector<Effect> strong_motors_;
 };
 

@@ -46,8 +46,6 @@ void refuse_joint(const SceneJoint& joint, const Scene& scene, Refusals& refusal
   const JointType* type = find_joint_type(scene.dimension, joint.definition.type);
   if (!joint.bonds.empty() && (joint.definition.soft || (type && type->is_effect)))
     refuse("effects and soft joints that break");
-  if (type && (joint.definition.soft || is_rope(*type)) && in_time(joint.definition.parameters))
-    refuse("ropes and soft joints whose numbers follow functions of time");
   const auto has = [&](RowKind kind) {
     return type && std::ranges::find(type->row_kinds, kind) != type->row_kinds.end();
   };

@@ -83,8 +83,9 @@ struct Effect {
   int angle = -1;        // of a coordinate in space that counts whole turns: its number among the mechanism's
   std::size_t row = 0;
   std::vector<double> numbers;
-  std::map<std::size_t, InTime> in_time{};  // those of `numbers` that follow functions of time
-  double size = 1;                          // Island::size of its mechanism [m]
+  std::map<std::size_t, InTime> in_time{};             // those of `numbers` that follow functions of time
+  std::map<std::size_t, InTime> parameters_in_time{};  // on a rope or a soft joint: those of its `parameters`
+  double size = 1;                                     // Island::size of its mechanism [m]
   // Of a row whose bounds grow with a load: what carries it, among Mechanism::bounded or Mechanism::joints.
   int loaded_by_row = -1, loaded_by_joint = -1;
   int cone = -1;   // of a row of a force along several coordinates: the first one of these, among Mechanism::bounded

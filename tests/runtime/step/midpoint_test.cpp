@@ -102,7 +102,6 @@ TEST(Midpoint, AFreeChainInSpaceKeepsMomentum) {
   EXPECT_LT(norm(after.angular - before.angular), 1e-10);
 }
 
-// Light links between loads of some hundred kg, both ends fixed: 2 m of slack in 20 m.
 // Nothing turns here, or can: the momentum that the step restores must not divide by an inertia of round-off.
 TEST(Midpoint, ABodyThatDoesNotTurnFliesAlongItsParabola) {
   for (const bool fixed_rotation : {true, false}) {
@@ -125,6 +124,7 @@ TEST(Midpoint, ABodyThatDoesNotTurnFliesAlongItsParabola) {
   }
 }
 
+// Light links between loads of some hundred kg, both ends fixed: 2 m of slack in 20 m.
 TEST(Midpoint, ALoadedBridgeKeepsItsEnergy) {
   World<double> world(by(Integrator::implicit, -g));
   std::vector<Point> points;
@@ -270,6 +270,16 @@ TEST(Midpoint, PartsOfAStepFillIt) {
   }
   fmt::print("  turns off by at most {:.1e} of a step\n", worst);
   EXPECT_LT(worst, 0.04);
+}
+
+// Nothing changes on a level rail but round-off, which is no work of the joint.
+TEST(Midpoint, ACartOnARailTakesWholeSteps) {
+  World<double> world(by(Integrator::implicit, -g));
+  const int cart = world.add_body({.y = 2, .vx = 0.6, .mass = 3, .inertia = 0.05});
+  world.add_joint({"prismatic", {world.ground(), cart}, {{"pa", {0, 2}}, {"pb", {0, 0}}, {"t", {0, 1}}}, {}});
+  run(world, 0.7, 0.001);
+  EXPECT_EQ(world.step_counts().rescued, 0);
+  EXPECT_NEAR(world.place(cart).x, 0.6 * 0.7, 1e-13);
 }
 
 // From rest, a motor without a bound has its speed in the first step.
