@@ -11,6 +11,7 @@
 #include "runtime/events/guarded.hpp"
 #include "runtime/events/impacts.hpp"
 #include "runtime/events/latch.hpp"
+#include "runtime/events/resolution.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/cones.hpp"
 #include "runtime/solve/projection.hpp"
@@ -23,51 +24,9 @@ namespace {
 template <class T>
 constexpr T infinite = std::numeric_limits<T>::infinity();
 
-// Raises the resolutions of the rows of one slot to the share `slight` of
-//   C       its largest change by a displacement of the island's size or a rotation of 1 rad: c
-//   rate    the largest of the sum of all |J v|; sqrt(c dJv/dt), the rate after the way c; epsilon c / (slight h)
-//   force   dJv/dt + rate^2 / c over K
-// where dJv/dt is the larger of two numbers: the sum of all |J dv/dt|, in which angular accelerations are at least
-// linear / size, and K lambda of the row's own force. A row with J = 0 counts as a length.
+// Those of all guarded rows at the present dv/dt. choose_modes() calls this without and with the joints' forces.
 template <class S>
-void find_resolution(const WorldData<S>& world, const Island<S>& island, const Batch<S>& batch, int slot,
-                     typename S::Scalar h, Resolution<typename S::Scalar>* resolution) {
-  using T = typename S::Scalar;
-  using Real = ExactNumber<T>;
-  const Bodies<S>& all = world.bodies;
-  const int rows = batch.ops->rows, bodies = batch.ops->bodies, width = S::freedom * bodies;
-  Real J[most_rows * S::freedom * most_bodies], weighted[most_rows * S::freedom * most_bodies],
-      K[most_rows * most_rows];
-  batch.ops->dense(batch, slot, all, J, weighted, K, rows);
-  for (int r = 0; r < rows; ++r) {
-    T c = 0, rate = 0, acceleration = 0, inverse_mass = 0;
-    for (int k = 0; k < bodies; ++k) {
-      const int body = batch.body[slot * bodies + k];
-      if (all.immovable(body)) continue;
-      T v[S::freedom], dv[S::freedom], linear = 0;
-      S::write(all.velocity[body], v), S::write(all.velocity_rate[body], dv);
-      for (int i = 0; i < S::freedom; ++i) {
-        const T j = T(std::abs(J[r * width + S::freedom * k + i]));
-        if (i < S::lengths) linear = std::max(linear, std::abs(dv[i]));
-        c = std::max(c, i < S::lengths ? j * island.size : j);
-        rate += j * std::abs(v[i]);
-        acceleration += j * (i < S::lengths ? std::abs(dv[i]) : std::max(std::abs(dv[i]), linear / island.size));
-      }
-      inverse_mass += all.inverse_mass[body].m;
-    }
-    const T k = K[r * rows + r] > 0 ? T(K[r * rows + r]) : inverse_mass;  // no motion: bodies that never turn
-    if (!(c > T(0))) c = island.size;
-    acceleration = std::max(acceleration, k * std::abs(batch.lambda[slot * rows + r]));
-    rate = std::max({rate, std::sqrt(acceleration * c), std::numeric_limits<T>::epsilon() / slight<T> * c / h});
-    resolution[r].C = slight<T> * c;
-    resolution[r].rate = std::max(resolution[r].rate, slight<T> * rate);
-    resolution[r].force = std::max(resolution[r].force, slight<T> * (acceleration + rate * rate / c) / k);
-  }
-}
-
-// The same for all guarded rows at the present dv/dt. choose_modes() calls this without and with the joints' forces.
-template <class S>
-void find_resolution(const WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+void find_resolution(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   auto* resolution = island.flow.resolution.data();
   each_guarded_slot(island, [&](Batch<S>& batch, int slot) {
     find_resolution(world, island, batch, slot, h, resolution);

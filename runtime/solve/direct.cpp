@@ -241,7 +241,7 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   using T = typename S::Scalar;
   System<S>& system = island.at_work();
   T before = std::numeric_limits<T>::infinity();
-  bool renewed = false, fitted = island.residual <= converged<T> * island.scale;
+  bool renewed = false, fitted = is_round_off(world, island, T(island.residual));
   // Near a loss of rank the error is magnified, so nothing but round-off may stay.
   const T tolerance = island.flow.projects_stages ? std::numeric_limits<T>::epsilon() : converged<T>;
   system.blur(0);

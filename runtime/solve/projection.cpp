@@ -73,6 +73,11 @@ typename S::Scalar round_off_of(const WorldData<S>& world, const Island<S>& isla
 }
 
 template <class S>
+bool is_round_off(const WorldData<S>& world, const Island<S>& island, typename S::Scalar error) {
+  return error <= std::max(converged<typename S::Scalar> * island.scale, round_off_of(world, island));
+}
+
+template <class S>
 bool stays_misfit(const WorldData<S>& world, const Island<S>& island, typename S::Scalar error, typename S::Scalar h) {
   using T = typename S::Scalar;
   // Round-off of floats leaves errors that are to be corrected, or a slack bridge sags: larger ones are misfits. Where
@@ -162,7 +167,8 @@ template <class S>
 bool may_contradict(const Island<S>& island, typename S::Scalar at_start) {
   const auto prescribes = [](const Segment<S>& segment) {
     const Batch<S>& batch = *segment.batch;
-    return (batch.law && !batch.law->force) || batch.explicit_time() ||
+    if (batch.law) return !batch.law->force;
+    return batch.explicit_time() ||
            std::find(batch.kinds.begin(), batch.kinds.end(), RowKind::velocity) != batch.kinds.end();
   };
   return !(at_start <= foreign<typename S::Scalar> * island.scale) ||
@@ -278,6 +284,7 @@ void project_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
 #define CDOT_INSTANTIATE(S)                                                                \
   template bool stays_misfit(const WorldData<S>&, const Island<S>&, S::Scalar, S::Scalar); \
   template S::Scalar round_off_of(const WorldData<S>&, const Island<S>&);                  \
+  template bool is_round_off(const WorldData<S>&, const Island<S>&, S::Scalar);            \
   template void clear_correction(WorldData<S>&, Island<S>&);                               \
   template S::Scalar find_errors(WorldData<S>&, Island<S>&, S::Scalar);                    \
   template void fill_lambda(const Island<S>&, S::Scalar);                                  \

@@ -19,6 +19,10 @@ inline constexpr T foreign = T(by_precision<T>(1e-4, 1e-8));
 template <class S>
 typename S::Scalar round_off_of(const WorldData<S>& world, const Island<S>& island);
 
+// True if the joints fit: `error` is round-off, or small enough to need no correction.
+template <class S>
+bool is_round_off(const WorldData<S>& world, const Island<S>& island, typename S::Scalar error);
+
 // Sets displacements and their impulses to 0.
 template <class S>
 void clear_correction(WorldData<S>& world, Island<S>& island);

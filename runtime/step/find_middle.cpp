@@ -257,7 +257,7 @@ bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   const T goal = std::max(closed<T> * island.scale, T(0.01) * round_off_of(world, island));
   const T at_start = island.residual, still_small = nearly<T>(island.bodies.size());
   T before = std::numeric_limits<T>::infinity();
-  bool renew = true, fitted = at_start <= converged<T> * island.scale;
+  bool renew = true, fitted = is_round_off(world, island, at_start);
   for (int round = 0; round < most_newton_rounds; ++round) {
     look_at_middle(world, island, h, round);
     if (renew) stiffen_masses(world, island, h / 4);

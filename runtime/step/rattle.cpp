@@ -149,13 +149,22 @@ bool closed_to_round_off(WorldData<S>& world, Island<S>& island) {
   return way <= double(round_off_of(world, island));
 }
 
+// Near a loss of rank, round-off in C asks for a motion that leaves a larger C: the last round ends before it.
+template <class S>
+void take_back_last_round(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  System<S>& system = island.at_work();
+  for (auto& lambda : system.lambda) lambda = -lambda;
+  exert_correction(world, island, system, world.bodies.velocity.data());
+  drift(world, island, h);
+  island.residual = find_errors(world, island, typename S::Scalar(world.time) + h);
+}
+
 // Repeats K lambda = -C / h with the factor of the start and Broyden's updates, velocity += M^-1 J^T lambda, and the
 // drift. False if the error does not shrink because the step is too long. False also if the solution reverses the
 // bodies' velocities. That happens where a joint's direction reverses, as that of a rope whose length passes through 0.
 template <class S>
 bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
-  const T time = T(world.time) + h;
   System<S>& system = island.at_work();
   const T near = std::max(converged<T> * island.scale, of_long_arms<T> * T(island.size));
   const auto begin_search = [&] {
@@ -163,19 +172,20 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
   };
   begin_search();
   T least = std::numeric_limits<T>::infinity(), at_first = 0;
-  bool astray = false, first = true;
-  for (int vain = 0;;) {
+  bool astray = false;
+  for (int round = 0, vain = 0;; ++round) {
     drift(world, island, h);
-    T error = find_errors(world, island, time);
-    if (first && stays_misfit(world, island, error, h)) return true;
+    T error = find_errors(world, island, T(world.time) + h);
+    if (round == 0 && stays_misfit(world, island, error, h)) return true;
     const bool at_ends = system.lawful() && hold_ends(system, error);
-    if (first) at_first = error;
-    first = false;
+    if (round == 0) at_first = error;
     island.residual = error;
-    if (!(island.residual > round_off<T> * island.scale)) return !astray || !turned_round(world, island);
-    if (island.residual < T(0.7) * least) least = island.residual, vain = 0;
-    else if (island.residual <= near || closed_to_round_off(world, island))  // round-off may end them early
+    const bool smaller = error < T(0.7) * least, rounded = std::min(least, error) <= near;
+    if (!smaller && rounded && error > least) take_back_last_round(world, island, h);
+    if (!(island.residual > round_off<T> * island.scale) ||
+        (!smaller && (rounded || closed_to_round_off(world, island))))  // round-off may end them early
       return !astray || !turned_round(world, island);
+    if (smaller) least = error, vain = 0;
     else if (++vain > most_in_vain)
       return island.residual <= std::max({T(10) * converged<T> * island.scale, near,
                                           std::min(slight<T> * at_first, foreign<T> * island.scale)});

@@ -282,6 +282,15 @@ double operations_of(const Scene& scene) {
   return *std::max_element(rows.begin(), rows.end()) * stages * sweeps * s.substeps;
 }
 
+Scene without_forces(const Scene& scene) {
+  Scene rows = scene;
+  std::erase_if(rows.joints, [&](const SceneJoint& joint) {
+    const JointType& type = type_of(scene, joint);
+    return type.is_effect && !bounded(type);
+  });
+  return rows;
+}
+
 double heaviest_over_lightest(const Scene& scene) {
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (const SceneBody& body : scene.bodies) {

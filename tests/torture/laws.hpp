@@ -29,6 +29,9 @@ bool stiff(const Scene& scene, double step, double length);
 // An estimate of the rounded operations on a body's velocity in a step: each row of each of its joints, once per solve.
 double operations_of(const Scene& scene);
 
+// The scene without the effects that only push bodies: their rows hold nothing, but they add to the rank of all rows.
+Scene without_forces(const Scene& scene);
+
 // The ratio of masses of movable bodies.
 double heaviest_over_lightest(const Scene& scene);
 
