@@ -8,6 +8,7 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/balance/balance.hpp"
+#include "runtime/balance/parted.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/direct.hpp"
 #include "runtime/solve/longest_move.hpp"
@@ -252,6 +253,23 @@ void expect_end_velocities(WorldData<S>& world, Island<S>& island) {
   }
 }
 
+// Loads and reactions count the impulses of springs and constant forces, which act as forces: those of a kick of h
+// (note_at_rest()), and at the start those of dampers in `lambda`.
+template <class S>
+void note_impulses_of_forces(Island<S>& island, typename S::Scalar h, bool at_start) {
+  using T = typename S::Scalar;
+  const double* force = island.flow.first_kick.data();
+  for (const auto& [batch, begin, end, whole] : island.segments) {
+    if (!is_force(*batch)) continue;
+    const int rows = batch->ops->rows, further = stores_some(*batch) ? rows : 0;
+    for (int i = begin * rows; i < end * rows; ++i) {
+      batch->correction[i] += h * T(*force++);
+      if (at_start && batch->law->spring) batch->correction[i] += batch->lambda[i];
+      if ((i + 1) % rows == 0) force += further;
+    }
+  }
+}
+
 // Books the first half: at the poses of its start, to which J belongs. Dampers act before the other impulses, but
 // joints work against them: only along the mean of the whole half kick do joints do no work.
 template <class S>
@@ -290,6 +308,7 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     drift_with_renewed_directions(world, island, h, at_start, share);
   }
   book_start(world, island, h / 2);
+  note_impulses_of_forces(island, h / 2, true);
   restore_turns(island);
   evaluate_anew(world, island, T(world.time) + h);
   expect_end_velocities(world, island);
@@ -297,6 +316,7 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   weigh_springs(world, island);
   begin_kick(world, island);
   kick(world, island, h / 2);
+  note_impulses_of_forces(island, h / 2, false);
   solve_end(world, island, h);
   book_kick(world, island, Impulses::rattle_end, h / 2);  // the mirror image of the start
   island.evaluated = true;

@@ -60,6 +60,46 @@ TEST(BreakingLoad, WrongUsesAreRefused) {
   EXPECT_THROW(add_effect(world, 0, SpecEffect{"breaking", {in_time("strength", {falls})}}), Error);
 }
 
+// A mass of 2 kg falls into a spring of 100 N/m, as a soft joint or as an effect: at most 2 m g pull.
+World<double> hanging(bool soft, Integrator integrator, double strength) {
+  Settings s = settings(Solver::direct, Drift::projection, -9.81);
+  s.integrator = integrator;
+  World<double> world(s);
+  const int body = world.add_body({.y = -1, .mass = 2, .inertia = 0.1});
+  JointDefinition line{"distance", {world.ground(), body}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {1}}}, {}};
+  if (soft) line.soft = Softness{.by_frequency = false, .stiffness = 100, .damping = 1};
+  else
+    line.type = "spring", line.parameters[2].name = "rest",
+    line.parameters.insert(line.parameters.end(), {{"k", {100}}, {"d", {1}}});
+  set_breaking_load(world, world.add_joint(line), strength);
+  return world;
+}
+
+TEST(BreakingLoad, BreaksSpringsByEveryMethod) {
+  for (const bool soft : {true, false})
+    for (const IntegratorRow& row : integrator_rows)
+      for (const double strength : {30, 40}) {
+        World<double> world = hanging(soft, row.integrator, strength);
+        run(world, 0.5, 0.001);
+        EXPECT_EQ(world.broken(0), strength < 2 * 2 * 9.81) << row.name << (soft ? ", soft" : ", effect");
+      }
+}
+
+// Of these methods it is a mean over the step: m (v' - v) = (F - m g) h.
+TEST(BreakingLoad, OfASpringIsItsWholeImpulse) {
+  constexpr double h = 0.005;
+  for (const bool soft : {true, false})
+    for (const Integrator integrator : {Integrator::euler, Integrator::implicit, Integrator::rattle}) {
+      World<double> world = hanging(soft, integrator, 100);
+      for (int k = 0; k < 200; ++k) {
+        const double v = world.velocity(0).y;
+        ASSERT_TRUE(world.step(h));
+        ASSERT_NEAR(world.reaction(0, 0).force_y, 2 * ((world.velocity(0).y - v) / h + 9.81), 1e-10)
+            << row_of(integrator).name << (soft ? ", soft" : ", effect") << ", step " << k;
+      }
+    }
+}
+
 TEST(BreakingLoad, OfOneJointAmongMany) {
   for (Solver solver : both) {
     Settings s = settings(solver, Drift::projection, -10);
