@@ -9,19 +9,48 @@ namespace {
 
 __extension__ using Wide = __int128;
 
+constexpr Wide limit = std::numeric_limits<std::int64_t>::max();
+thread_local bool rounds = false;
+
+struct Fraction {
+  Wide num, den;
+  bool fits() const { return -limit <= num && num <= limit && den <= limit; }
+};
+
+// The last convergent p/q of the continued fraction that fits. With the next one P/Q it is off by less than 1/(q Q), a
+// share of 1/(p Q) = 1/(P q), and P or Q is above `limit`.
+Fraction rounded(Fraction of) {
+  const bool negative = of.num < 0;
+  if (negative) of.num = -of.num;
+  Fraction before{0, 1}, now{1, 0};
+  while (of.den != 0) {
+    const Wide whole = of.num / of.den;
+    if (whole > limit) break;
+    const Fraction next{whole * now.num + before.num, whole * now.den + before.den};
+    if (!next.fits()) break;
+    before = std::exchange(now, next);
+    of = {of.den, of.num % of.den};
+  }
+  if (now.den == 0 || now.num == 0) throw NumberTooLarge();
+  return {negative ? -now.num : now.num, now.den};
+}
+
 Rational reduced(Wide num, Wide den) {
-  constexpr Wide limit = std::numeric_limits<std::int64_t>::max();
-  const auto fit = [&] { return -limit <= num && num <= limit && den <= limit; };
-  if (!fit()) {
+  Fraction exact{num, den};
+  if (!exact.fits()) {
     Wide a = num < 0 ? -num : num, b = den;
     while (b != 0) a = std::exchange(b, a % b);
-    num /= a, den /= a;
+    exact = {num / a, den / a};
   }
-  if (!fit()) throw NumberTooLarge();
-  return {static_cast<std::int64_t>(num), static_cast<std::int64_t>(den)};
+  if (!exact.fits() && rounds) exact = rounded(exact);
+  if (!exact.fits()) throw NumberTooLarge();
+  return {static_cast<std::int64_t>(exact.num), static_cast<std::int64_t>(exact.den)};
 }
 
 }  // namespace
+
+RoundedNumbers::RoundedNumbers() : before_(std::exchange(rounds, true)) {}
+RoundedNumbers::~RoundedNumbers() { rounds = before_; }
 
 Rational::Rational(std::int64_t num, std::int64_t den) {
   if (den == 0) throw NumberTooLarge();

@@ -1,4 +1,4 @@
-// Exact numbers of the generator: fractions of 64-bit integers that refuse to overflow.
+// Exact numbers of the generator: fractions of 64-bit integers that refuse to overflow, unless they may be rounded.
 #pragma once
 
 #include <compare>
@@ -11,6 +11,19 @@ namespace cdot::derive {
 // Thrown on overflow. The caller that knows the source position reports it.
 struct NumberTooLarge : std::runtime_error {
   NumberTooLarge() : std::runtime_error("the number does not fit a fraction of 64-bit integers") {}
+};
+
+// While one lives, its thread rounds results that do not fit to a fraction that does, nearer than doubles are to each
+// other. A program that computes in doubles needs no more; a proof does.
+class RoundedNumbers {
+ public:
+  RoundedNumbers();
+  ~RoundedNumbers();
+  RoundedNumbers(const RoundedNumbers&) = delete;
+  RoundedNumbers& operator=(const RoundedNumbers&) = delete;
+
+ private:
+  bool before_;
 };
 
 class Rational {

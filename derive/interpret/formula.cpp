@@ -196,6 +196,12 @@ Value read_value(std::string_view text, Names& names, Pool& pool, std::string_vi
 
 constexpr int most_registers = 512;  // of a formula of the time, on the stack
 
+FormulaMistake too_far_from_one(std::string_view text) {
+  return {0, static_cast<int>(text.size()),
+          "a product of its numbers, in its value or a derivative, is above 1e18 or below 1e-18",
+          "numbers nearer to 1, by another unit of length or of time"};
+}
+
 }  // namespace
 
 struct Formula::Program {
@@ -204,17 +210,22 @@ struct Formula::Program {
 };
 
 Formula::Reading Formula::read(std::string_view text, const Vocabulary& vocabulary, std::string_view unit) {
+  const RoundedNumbers in_doubles;
   Pool pool(vocabulary.dimension);
   Names names(pool, vocabulary);
   Reading reading;
   const Value value = read_value(text, names, pool, unit, reading.mistakes);
   if (!reading.mistakes.empty()) return reading;
-  Components components;
-  const Expr e = components.of(value.e);
   Formula formula;
   formula.unit_ = derive::text(value.unit.value_or(unit_of(unit).value_or(Unit{})));
   formula.program_ = std::make_shared<Program>();
-  formula.program_->tape = NamedTape(assemble({{"value", e}}));
+  try {
+    Components components;
+    formula.program_->tape = NamedTape(assemble({{"value", components.of(value.e)}}));
+  } catch (const NumberTooLarge&) {
+    reading.mistakes.push_back(too_far_from_one(text));
+    return reading;
+  }
   formula.program_->registers = formula.program_->tape.registers();
   for (const std::string& name : formula.program_->tape.inputs())
     formula.inputs_.push_back(input_of(pool.find(name), names));
@@ -233,6 +244,7 @@ struct FormulaInTime::Program {
 };
 
 ProgramInTime program_in_time(std::string_view text, std::string_view unit) {
+  const RoundedNumbers in_doubles;
   const auto pool = std::make_shared<Pool>(2);
   const Vocabulary no_words;
   Names names(*pool, no_words);
@@ -241,11 +253,15 @@ ProgramInTime program_in_time(std::string_view text, std::string_view unit) {
   if (!read.mistakes.empty()) return read;
   Joint nothing;
   nothing.pool = pool;
-  const Expr rate = time_derivative(value.e, nothing), acceleration = time_derivative(rate, nothing);
-  Components components;
-  read.program = assemble({{"value", components.of(value.e)},
-                           {"rate", components.of(rate)},
-                           {"acceleration", components.of(acceleration)}});
+  try {
+    const Expr rate = time_derivative(value.e, nothing), acceleration = time_derivative(rate, nothing);
+    Components components;
+    read.program = assemble({{"value", components.of(value.e)},
+                             {"rate", components.of(rate)},
+                             {"acceleration", components.of(acceleration)}});
+  } catch (const NumberTooLarge&) {
+    read.mistakes.push_back(too_far_from_one(text));
+  }
   return read;
 }
 

@@ -24,6 +24,14 @@ std::string named(const JointType& type, const std::string& parameter) {
   return fmt::format("`{}` of {} `{}`", parameter, type.is_effect ? "effect" : "joint", type.name);
 }
 
+// The runtime writes it: `<coordinate>_turns` in radians (cdot/detail/turns.hpp).
+bool counts_turns(const JointType& type, const ParameterInfo& info) {
+  constexpr std::string_view ending = "_turns";
+  if (info.unit != "rad" || !info.name.ends_with(ending)) return false;
+  const std::string_view coordinate = info.name.substr(0, info.name.size() - ending.size());
+  return std::ranges::count(type.coordinates, coordinate, &CoordinateInfo::name) > 0;
+}
+
 }  // namespace
 
 std::vector<NamedValue> at_time(std::vector<NamedValue> given, double time) {
@@ -64,6 +72,10 @@ void check_functions(const JointType& type, const std::vector<NamedValue>& given
           fmt::format("{} is a direction of length 1 and cannot follow a function of time. Likely fix: fix it "
                       "on a body that turns",
                       named(type, value.name)));
+    if (counts_turns(type, info))
+      throw Error(fmt::format(
+          "{} counts whole turns and cannot follow a function of time. Likely fix: another number of the joint does",
+          named(type, value.name)));
     if (!type.is_effect && std::ranges::count(type.row_kinds, RowKind::velocity) > 0)
       throw Error(fmt::format("{} cannot follow a function of time: the joint has rows without a position",
                               named(type, value.name)));

@@ -193,6 +193,7 @@ typename S::Scalar improve(WorldData<S>& world, Island<S>& island, typename S::S
   if (renew) system.assemble(world.bodies);
   if (!island.loads.empty()) {
     begin_loads(world, island);
+    std::ranges::fill(system.lambda, typename System<S>::Real(0));  // loads start from the present impulses
     const auto solve = [&] {
       bound_changes(island);
       island.redundant_rows = system.solve_bounded();

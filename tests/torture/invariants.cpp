@@ -291,7 +291,7 @@ Verdict Trial<S>::bits() const {
     if (!(state == end_))
       return verdict(Outcome::broken, "bits of a repetition",
                      fmt::format("{}", fmt::join(end_.differences(state), ", ")));
-  const Scene copy = read_scene(text_of(*scene_), "copy");
+  const Scene copy = copy_of(*scene_);
   BasicWorld<S> world = build_world_in<S>(copy);
   try {
     world.restore(Snapshot::read(middle_.text()));

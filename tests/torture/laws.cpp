@@ -6,6 +6,7 @@
 
 #include <cdot/jacobian.hpp>
 
+#include "tests/torture/draw/in_time.hpp"
 #include "tests/torture/pushes.hpp"
 
 namespace cdot::torture {
@@ -135,6 +136,7 @@ Exchange exchange_of(const Scene& scene) {
   }
   for (const SpringDefinition& spring : scene.springs) exchange.takes |= spring.damping != 0;
   exchange.takes |= scene.settings.sleep_after > 0;
+  exchange.gives |= has_numbers_in_time(scene);
   return exchange;
 }
 
@@ -164,7 +166,7 @@ bool is_smooth(const Scene& scene) {
 bool prescribes_motion(const Scene& scene) {
   return std::any_of(scene.joints.begin(), scene.joints.end(), [&](const SceneJoint& joint) {
     const JointType& type = type_of(scene, joint);
-    if (type.explicit_time && !type.is_effect) return true;
+    if ((type.explicit_time || moves_in_time(joint)) && !type.is_effect) return true;
     if (std::count(type.row_kinds.begin(), type.row_kinds.end(), RowKind::velocity) > 0) return true;
     return std::any_of(joint.effects.begin(), joint.effects.end(), [](const CoordinateEffects& effects) {
       return effects.motor && effects.motor->max_force == unlimited;

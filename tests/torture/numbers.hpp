@@ -50,6 +50,15 @@ void each_number(Softness& s, F f) {
   for (double* x : {&s.frequency, &s.damping_ratio, &s.stiffness, &s.damping}) f(*x);
 }
 
+// f(NamedValue&) for those of the joint and of effects of specs on its coordinates.
+template <class F>
+void each_value(SceneJoint& joint, F f) {
+  for (NamedValue& value : joint.definition.parameters) f(value);
+  for (CoordinateEffects& effects : joint.effects)
+    for (SpecEffect& spec : effects.specs)
+      for (NamedValue& value : spec.parameters) f(value);
+}
+
 template <class F>
 void each_number(CoordinateEffects& effects, F f) {
   if (effects.limit)
@@ -59,9 +68,6 @@ void each_number(CoordinateEffects& effects, F f) {
     f(effects.motor->speed);
     if (effects.motor->max_force != unlimited) f(effects.motor->max_force);
   }
-  for (SpecEffect& spec : effects.specs)
-    for (NamedValue& value : spec.parameters)
-      for (double& x : value.numbers) f(x);
   for (CoordinateSpring& spring : effects.springs) {
     each_number(spring.softness, f);
     if (spring.rest) f(*spring.rest);
@@ -72,8 +78,9 @@ void each_number(CoordinateEffects& effects, F f) {
 
 template <class F>
 void each_number(SceneJoint& joint, F f) {
-  for (NamedValue& value : joint.definition.parameters)
+  each_value(joint, [&](NamedValue& value) {
     for (double& x : value.numbers) f(x);
+  });
   for (CoordinateEffects& effects : joint.effects) each_number(effects, f);
   if (joint.definition.soft) each_number(*joint.definition.soft, f);
 }

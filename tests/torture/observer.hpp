@@ -11,6 +11,7 @@
 #include <cdot/jacobian.hpp>
 
 #include "tests/methods.hpp"
+#include "tests/torture/draw/in_time.hpp"
 #include "tests/torture/invariants.hpp"
 #include "tests/torture/laws.hpp"
 #include "tests/torture/motion.hpp"
@@ -153,7 +154,8 @@ double kicks_of_joints(BasicWorld<S>& world, const Scene& scene) {
   double sum = 0;
   bool driven = false;
   for (int joint = 0; joint < world.joint_count(); ++joint)
-    driven |= exact(joint) && world.joint_type(joint).explicit_time;
+    driven |= exact(joint) &&
+              (world.joint_type(joint).explicit_time || moves_in_time(scene.joints[static_cast<std::size_t>(joint)]));
   if (!driven) return 0;
   const SystemMatrix system = system_matrix(world);
   for (const SystemMatrix::Joint& joint : system.joints) {

@@ -43,8 +43,9 @@ class Shrinker {
   Shrunk run() {
     for (bool smaller = true; smaller && best_.tries < most_tries_;) {
       smaller = false;
-      for (const auto pass : {&Shrinker::fewer_steps, &Shrinker::fewer_bodies, &Shrinker::fewer_joints,
-                              &Shrinker::fewer_effects, &Shrinker::plainer_settings, &Shrinker::plainer_bodies})
+      for (const auto pass :
+           {&Shrinker::fewer_steps, &Shrinker::fewer_bodies, &Shrinker::fewer_joints, &Shrinker::fewer_effects,
+            &Shrinker::fewer_functions, &Shrinker::plainer_settings, &Shrinker::plainer_bodies})
         smaller |= (this->*pass)();
     }
     rounder_numbers();
@@ -103,6 +104,25 @@ class Shrinker {
           auto& specs = s.joints[j].effects[e].specs;
           specs.erase(specs.begin() + long(k));
         });
+    }
+    return smaller;
+  }
+  // Of time.
+  bool fewer_functions() {
+    bool smaller = false;
+    for (std::size_t j = 0; j < best_.scene.joints.size(); ++j) {
+      std::size_t count = 0, kept = 0;
+      each_value(best_.scene.joints[j], [&](const NamedValue& value) { count += !value.in_time.empty(); });
+      while (kept < count) {
+        const bool gone = attempt([&](Scene& s) {
+          std::size_t seen = 0;
+          each_value(s.joints[j], [&](NamedValue& value) {
+            if (!value.in_time.empty() && seen++ == kept) value.in_time.clear();
+          });
+        });
+        smaller |= gone;
+        gone ? --count : ++kept;
+      }
     }
     return smaller;
   }

@@ -91,7 +91,10 @@ void report(const Options& options, std::uint64_t seed, const Scene& scene, cons
       "  again: torture --seed {:#x} --count 1 --steps {}; the small one: torture --scene {}{}; cdot-run simulate "
       "{}\n\n{}\n",
       seed, options.wish.steps, name, how, name, text);
-  if (!options.keep.empty()) keep(options, name, text);
+  for (const auto& [table, rows] : tables_of(small.scene)) fmt::print("{}\n{}\n", table, rows);
+  if (options.keep.empty()) return;
+  keep(options, name, text);
+  for (const auto& [table, rows] : tables_of(small.scene)) keep(options, table, rows);
 }
 
 void say(const Verdict& verdict) {
@@ -165,6 +168,7 @@ int main(int count, char** arguments) {
   app.add_flag("--changes", options.changes, "impulses, forces and the loss of a joint, while running");
   app.add_flag("--forces", options.forces, "a force on each body that is a function of time");
   app.add_flag("--effects", options.wish.effects, "effects of specs, on bodies and on coordinates");
+  app.add_flag("--in-time", options.wish.in_time, "numbers of joints and effects follow functions of time");
   app.add_flag("--advice", options.advice, "runs each by cdot-run, and follows its advice; judges nothing else");
   app.add_flag("--misfit", options.misfit, "mechanisms at rest with a joint that is a little off; judges nothing else");
   app.add_flag("--no-bits", options.no_bits, "without repetitions: three times as fast");

@@ -156,6 +156,26 @@ TEST(Rationals, are_exact) {
   EXPECT_EQ(Rational(-1, 2).text(), "-1/2");
 }
 
+TEST(Rationals, are_rounded_where_they_may_be) {
+  const auto off = [](Rational a, long double value) {
+    return std::abs((static_cast<long double>(a.num()) / static_cast<long double>(a.den())) / value - 1);
+  };
+  const Rational pi(3141592653589793238, 1000000000000000000), small(123456789012345678, 1000000000000000000);
+  EXPECT_THROW(pi * pi, NumberTooLarge);
+  {
+    const RoundedNumbers rounded;
+    constexpr long double exact_pi = 3.141592653589793238L, exact_small = 0.123456789012345678L;
+    EXPECT_LT(off(pi * pi, exact_pi * exact_pi), 1e-18L);
+    EXPECT_LT(off(-pi * pi * pi, -exact_pi * exact_pi * exact_pi), 1e-18L);
+    EXPECT_LT(off(pow(small, 15), std::pow(exact_small, 15)), 1e-16L);
+    EXPECT_LT(off(pow(pi, 30), std::pow(exact_pi, 30)), 1e-16L);
+    EXPECT_EQ(Rational(1, 3) + Rational(1, 6), Rational(1, 2));
+    EXPECT_THROW(pow(Rational(10), 19), NumberTooLarge);
+    EXPECT_THROW(pow(small, 30), NumberTooLarge);
+  }
+  EXPECT_THROW(pi * pi, NumberTooLarge);
+}
+
 TEST(Rationals, refuse_to_overflow) {
   constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
   EXPECT_THROW(Rational(most) + Rational(1), NumberTooLarge);

@@ -82,5 +82,20 @@ TEST(Formula, MistakesHaveTheirPlaces) {
   EXPECT_NE(mistake("2 [N] )").cause.find("closes nothing"), std::string::npos);
 }
 
+// Products of their digits fit no fraction: they are rounded as doubles are.
+TEST(Formula, OfTheTimeWithLongNumbers) {
+  const auto read = FormulaInTime::read("0.123456789012345 [m] * sin(3.14159265358979 [rad/s] * time)", "m");
+  ASSERT_TRUE(read.formula) << read.mistakes[0].cause;
+  constexpr double A = 0.123456789012345, w = 3.14159265358979, t = 0.3;
+  const auto [x, v, a] = read.formula->at(t);
+  EXPECT_NEAR(x, A * std::sin(w * t), 1e-16);
+  EXPECT_NEAR(v, A * w * std::cos(w * t), 1e-15);
+  EXPECT_NEAR(a, -A * w * w * std::sin(w * t), 1e-15);
+  EXPECT_NEAR(value("1.2345678901234 * 1.2345678901234", {}), 1.2345678901234 * 1.2345678901234, 1e-15);
+  const auto far = FormulaInTime::read("1e-9 [m] * sin(1e-8 [rad/s] * time)", "m");
+  ASSERT_EQ(far.mistakes.size(), 1u);
+  EXPECT_NE(far.mistakes[0].cause.find("below 1e-18"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace cdot

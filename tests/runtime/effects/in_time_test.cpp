@@ -381,6 +381,10 @@ TEST(InTime, NumbersThatCannotFollowAreRefused) {
   const int sphere = space.add_body(brick(0, 0, 1));
   expect_refused(space, {"rolling_sphere", {sphere, space.ground()}, {{"fa", {0, 0, 1}}, in_time("radius", {f})}, {}},
                  "the joint has rows without a position");
+  const std::vector<double> axis = {0, 0, 1};
+  JointDefinition gear{"gear", {sphere, space.ground()}, {{"fa", axis}, {"fb", axis}, {"ratio", {1}}}, {}};
+  gear.parameters.push_back(in_time("angle_b_turns", {f}));
+  expect_refused(space, gear, "counts whole turns");
   const int push = world.add_joint({"push", {body}, {{"pa", {0, 0}}, in_time("F", {f, 0.0})}, {}});
   EXPECT_THROW(world.set_parameters(push, {{"F", {1, 0}}}), Error);
   EXPECT_THROW(world.set_parameters(push, {in_time("pa", {f, 0.0})}), Error);

@@ -6,6 +6,7 @@
 #include <cdot/methods.hpp>
 
 #include "tests/torture/draw/draw.hpp"
+#include "tests/torture/draw/in_time.hpp"
 #include "tests/torture/draw/scene_text.hpp"
 #include "tests/torture/draw/spec_effects.hpp"
 
@@ -219,6 +220,7 @@ void Growth::grow() {
   try {
     if (random_.chance(0.4)) add_effects<S>(random_, scales_, made_.scene);
     if (wish_.effects) add_spec_effects<S>(random_, scales_, made_.scene, made_.refused);
+    if (wish_.in_time) add_numbers_in_time<S>(random_, scales_, made_.scene, made_.refused);
   } catch (const SceneError& error) {  // the World refuses the projected poses, as gears that have turned too far
     made_.refused.push_back(error.what());
   }

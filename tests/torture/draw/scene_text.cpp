@@ -1,6 +1,10 @@
 #include "tests/torture/draw/scene_text.hpp"
 
+#include <array>
+#include <filesystem>
 #include <fmt/format.h>
+#include <fstream>
+#include <unistd.h>
 
 #include <cdot/methods.hpp>
 
@@ -114,14 +118,37 @@ bool is_damper(const CoordinateSpring& spring) {
   return !spring.softness.by_frequency && spring.softness.stiffness == 0 && spring.rest == 0.0;
 }
 
-std::string table_of_numbers(const SpecEffect& spec) {
+std::string file_of(const WrittenProfile& table) { return fmt::format("{:016x}.csv", table.profile.hash()); }
+
+std::string function_of(const WrittenProfile& written) {
+  if (written.table.times.empty()) return fmt::format("\"{}\"", written.text);
+  const std::array names{"step", "linear", "cubic"};
+  return fmt::format("{{ table = \"{}\", column = \"x\", interpolate = \"{}\" }}", file_of(written),
+                     names[static_cast<std::size_t>(written.table.interpolation)]);
+}
+
+// Number k of a value, or the function of time that it follows.
+std::string number_of(const Scene& scene, const NamedValue& value, std::size_t k) {
+  for (const NumberInTime& one : value.in_time)
+    if (one.number == static_cast<int>(k)) return function_of(*written_profile(scene, one.profile));
+  return fmt::format("{}", value.numbers[k]);
+}
+
+// The numbers [begin, end) of a value.
+std::string list_of(const Scene& scene, const NamedValue& value, std::size_t begin, std::size_t end) {
+  std::vector<std::string> numbers;
+  for (std::size_t k = begin; k < end; ++k) numbers.push_back(number_of(scene, value, k));
+  return fmt::format("[{}]", fmt::join(numbers, ", "));
+}
+
+std::string table_of_numbers(const Scene& scene, const SpecEffect& spec) {
   std::string numbers;
   for (const NamedValue& value : spec.parameters)
-    numbers += fmt::format("{}{} = {}", numbers.empty() ? "" : ", ", value.name, value.numbers[0]);
+    numbers += fmt::format("{}{} = {}", numbers.empty() ? "" : ", ", value.name, number_of(scene, value, 0));
   return fmt::format("{{ {} }}", numbers);
 }
 
-void write_effects(const CoordinateEffects& effects, Lines lines) {
+void write_effects(const Scene& scene, const CoordinateEffects& effects, Lines lines) {
   const auto key = [&](std::string_view effect) { return fmt::format("{}.{}", effects.coordinate, effect); };
   if (const auto& limit = effects.limit) {
     std::string ends;
@@ -133,7 +160,7 @@ void write_effects(const CoordinateEffects& effects, Lines lines) {
     lines.raw(key("motor"), motor->max_force == unlimited
                                 ? fmt::format("{{ speed = {} }}", motor->speed)
                                 : fmt::format("{{ speed = {}, max = {} }}", motor->speed, motor->max_force));
-  for (const SpecEffect& spec : effects.specs) lines.raw(key(spec.type), table_of_numbers(spec));
+  for (const SpecEffect& spec : effects.specs) lines.raw(key(spec.type), table_of_numbers(scene, spec));
   for (const CoordinateSpring& spring : effects.springs) {
     if (is_damper(spring)) lines.number(key("damper"), spring.softness.damping);
     else
@@ -149,14 +176,14 @@ void write_joint(const Scene& scene, const SceneJoint& joint, Lines lines) {
   lines.text("type", joint.definition.type);
   lines.raw("bodies", names(scene, joint.definition.bodies));
   for (const NamedValue& value : joint.definition.parameters) {
-    const std::vector<double>& n = value.numbers;
-    lines.raw(value.name, n.size() == 1   ? fmt::format("{}", n[0])
-                          : n.size() == 6 ? fmt::format("[{}, {}]", list({n[0], n[1], n[2]}), list({n[3], n[4], n[5]}))
-                                          : list(n));
+    const std::size_t n = value.numbers.size();
+    lines.raw(value.name, n == 1   ? number_of(scene, value, 0)
+                          : n == 6 ? fmt::format("[{}, {}]", list_of(scene, value, 0, 3), list_of(scene, value, 3, 6))
+                                   : list_of(scene, value, 0, n));
   }
-  for (const CoordinateEffects& effects : joint.effects) write_effects(effects, lines);
+  for (const CoordinateEffects& effects : joint.effects) write_effects(scene, effects, lines);
   if (joint.definition.soft) lines.raw("soft", fmt::format("{{ {} }}", softness(*joint.definition.soft)));
-  for (const SpecEffect& bond : joint.bonds) lines.raw(bond.type, table_of_numbers(bond));
+  for (const SpecEffect& bond : joint.bonds) lines.raw(bond.type, table_of_numbers(scene, bond));
 }
 
 void write_spring(const Scene& scene, const SpringDefinition& spring, Lines lines) {
@@ -189,6 +216,28 @@ std::string text_of(const Scene& scene) {
     write_spring(scene, spring, lines);
   }
   return text;
+}
+
+std::vector<std::pair<std::string, std::string>> tables_of(const Scene& scene) {
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const WrittenProfile& one : scene.profiles) {
+    std::string text = "time,x\n";
+    for (std::size_t k = 0; k < one.table.times.size(); ++k)
+      text += fmt::format("{},{}\n", one.table.times[k], one.table.values[k]);
+    if (!one.table.times.empty()) files.emplace_back(file_of(one), text);
+  }
+  return files;
+}
+
+Scene copy_of(const Scene& scene) {
+  const auto tables = tables_of(scene);
+  if (tables.empty()) return read_scene(text_of(scene), "copy");
+  const auto folder = std::filesystem::temp_directory_path() / fmt::format("cdot_torture_{}", getpid());
+  std::filesystem::create_directories(folder);
+  for (const auto& [name, text] : tables) std::ofstream(folder / name) << text;
+  Scene copy = read_scene(text_of(scene), (folder / "copy").string());
+  std::filesystem::remove_all(folder);
+  return copy;
 }
 
 void plain_zeros(Scene& scene) {

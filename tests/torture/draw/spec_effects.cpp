@@ -5,9 +5,7 @@
 #include <fmt/format.h>
 
 namespace cdot::torture {
-namespace {
 
-// The value of a unit in the mechanism's own: "m^3*kg/s^2".
 double scale_of(std::string_view unit, const Scales& scales) {
   const double newton = scales.mass * scales.length * scales.rate * scales.rate;
   double scale = 1;
@@ -29,6 +27,8 @@ double scale_of(std::string_view unit, const Scales& scales) {
   }
   return scale;
 }
+
+namespace {
 
 // Within the range of the parameter. `end`: the sign of the lower or upper end of a range; 0: it is none.
 double random_number(Random& random, const Scales& scales, const ParameterInfo& info, double sign) {
@@ -86,24 +86,6 @@ SpecEffect random_law(Random& random, const Scales& scales, const JointType& typ
           {std::string(type.parameters[k].name), random_value(random, scales, type.parameters[k], false)});
   }
   return effect;
-}
-
-// The scene with the change, if a World takes it.
-template <class S, class Change>
-bool taken(Scene& scene, std::vector<std::string>& refused, Change change) {
-  Scene trial = scene;
-  change(trial);
-  try {
-    build_world_in<S>(trial).prepare();
-  } catch (const Error& error) {
-    refused.push_back(error.what());
-    return false;
-  } catch (const SceneError& error) {
-    refused.push_back(error.what());
-    return false;
-  }
-  scene = std::move(trial);
-  return true;
 }
 
 // The effects on coordinate k of the type. They stand in the order of its coordinates, as a reader of the scene adds

@@ -6,6 +6,27 @@
 
 namespace cdot::torture {
 
+// The value of a unit in the mechanism's own: "m^3*kg/s^2".
+double scale_of(std::string_view unit, const Scales& scales);
+
+// The scene with the change, if a World takes it; else the reason into `refused`.
+template <class S, class Change>
+bool taken(Scene& scene, std::vector<std::string>& refused, Change change) {
+  Scene trial = scene;
+  change(trial);
+  try {
+    build_world_in<S>(trial).prepare();
+  } catch (const Error& error) {
+    refused.push_back(error.what());
+    return false;
+  } catch (const SceneError& error) {
+    refused.push_back(error.what());
+    return false;
+  }
+  scene = std::move(trial);
+  return true;
+}
+
 // `refused` receives the reasons why the World took one not.
 template <class S>
 void add_spec_effects(Random& random, const Scales& scales, Scene& scene, std::vector<std::string>& refused);

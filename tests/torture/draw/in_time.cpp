@@ -1,0 +1,151 @@
+#include "tests/torture/draw/in_time.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "derive/interpret/formula.hpp"
+#include "tests/torture/draw/spec_effects.hpp"
+
+namespace cdot::torture {
+namespace {
+
+// A value of a joint, of an effect on bodies or of one on a coordinate.
+struct Place {
+  std::size_t joint, effects, spec;  // effects: none beyond their number
+  std::size_t value;
+  const ParameterInfo* info;
+};
+
+NamedValue& value_at(Scene& scene, const Place& place) {
+  SceneJoint& joint = scene.joints[place.joint];
+  if (place.effects >= joint.effects.size()) return joint.definition.parameters[place.value];
+  return joint.effects[place.effects].specs[place.spec].parameters[place.value];
+}
+
+// Directions of length 1 take constants only.
+bool may_move(const ParameterInfo& info) {
+  return info.kind == ParameterKind::scalar || info.kind == ParameterKind::point || info.kind == ParameterKind::vector;
+}
+
+void add_places(const JointType& type, const std::vector<NamedValue>& values, Place place, std::vector<Place>& places) {
+  for (place.value = 0; place.value < values.size(); ++place.value) {
+    const auto info = std::ranges::find(type.parameters, values[place.value].name, &ParameterInfo::name);
+    if (info == type.parameters.end() || !may_move(*info)) continue;
+    place.info = &*info;
+    places.push_back(place);
+  }
+}
+
+// Joints with velocity rows take constants only.
+std::vector<Place> places_in(const Scene& scene) {
+  std::vector<Place> places;
+  for (std::size_t j = 0; j < scene.joints.size(); ++j) {
+    const SceneJoint& joint = scene.joints[j];
+    const JointType& type = *find_joint_type(scene.dimension, joint.definition.type);
+    if (std::ranges::count(type.row_kinds, RowKind::velocity) == 0)
+      add_places(type, joint.definition.parameters, {j, joint.effects.size(), 0, 0, nullptr}, places);
+    for (std::size_t e = 0; e < joint.effects.size(); ++e)
+      for (std::size_t s = 0; s < joint.effects[e].specs.size(); ++s) {
+        const SpecEffect& spec = joint.effects[e].specs[s];
+        add_places(*find_coordinate_effect(spec.type), spec.parameters, {j, e, s, 0, nullptr}, places);
+      }
+  }
+  return places;
+}
+
+// The language reads numbers as fractions of 64-bit integers.
+std::string number_in_text(double x) { return fmt::format("{:.6g}", x); }
+
+// A share of the number, or of the mechanism's own unit, that keeps it in its range.
+double random_way(Random& random, const Scales& scales, const ParameterInfo& info, double number) {
+  const double share = random.log_between(0.02, 0.5);
+  double size = info.kind == ParameterKind::scalar ? std::abs(number) : scales.length;
+  if (size == 0 || info.unit == "rad") size = scale_of(info.unit, scales);
+  size = std::min({size, number - info.above, info.below - number});
+  return random.either_sign(share * size);
+}
+
+// 0 at the time 0, about 1 at most; w turns 0.3 to 3 times in the run.
+std::string random_course(Random& random, double duration) {
+  constexpr double pi = 3.14159265358979323846;
+  const double w = 2 * pi * random.log_between(0.3, 3) / duration;
+  switch (random.below(3)) {
+    case 0: return fmt::format("sin({} [rad/s] * time)", number_in_text(w));
+    case 1: return fmt::format("(1 - cos({} [rad/s] * time)) / 2", number_in_text(w));
+    default: return fmt::format("{} [1/s] * time", number_in_text(1 / duration));
+  }
+}
+
+// start + way * course, as a scene writes it.
+std::optional<WrittenProfile> random_expression(Random& random, double start, double way, std::string_view unit,
+                                                double duration, std::vector<std::string>& refused) {
+  const std::string in_unit = unit == "1" ? "" : fmt::format(" [{}]", unit);
+  const std::string text = fmt::format("{}{} + {}{} * {}", number_in_text(start), in_unit, number_in_text(way), in_unit,
+                                       random_course(random, duration));
+  const FormulaInTime::Reading read = FormulaInTime::read(text, unit);
+  for (const FormulaMistake& mistake : read.mistakes) refused.push_back(mistake.cause);
+  if (!read.formula) return {};
+  const auto at = [formula = *read.formula](double time) {
+    const auto [value, rate, acceleration] = formula.at(time);
+    return ProfileValue{value, rate, acceleration};
+  };
+  return WrittenProfile{Profile::function(at), text, std::string(unit), {}};
+}
+
+// Rows from `start` on, within `way` of it. Joints take no jump.
+WrittenProfile random_table(Random& random, double start, double way, double duration, bool of_joint) {
+  ProfileTable table{.times = {0}, .values = {start}};
+  const int rows = 3 + random.below(6);
+  for (int k = 1; k < rows; ++k) {
+    table.times.push_back(duration * (k + random.between(-0.3, 0.3)) / (rows - 1));
+    table.values.push_back(start + way * random.between(-1, 1));
+  }
+  table.interpolation = random.of<Interpolation>({Interpolation::linear, Interpolation::cubic});
+  if (!of_joint && random.chance(0.3)) table.interpolation = Interpolation::step;
+  if (!of_joint && table.interpolation == Interpolation::linear && random.chance(0.5)) table.times[2] = table.times[1];
+  return {Profile::table(table), {}, {}, table};
+}
+
+}  // namespace
+
+template <class S>
+void add_numbers_in_time(Random& random, const Scales& scales, Scene& scene, std::vector<std::string>& refused) {
+  const std::vector<Place> places = places_in(scene);
+  for (int k = places.empty() ? 0 : 1 + random.below(3); k > 0; --k) {
+    const Place place = random.of(places);
+    const NamedValue& value = value_at(scene, place);
+    const int number = random.below(static_cast<int>(value.numbers.size()));
+    const double start = value.numbers[static_cast<std::size_t>(number)];
+    if (!value.in_time.empty()) continue;
+    const double way = random_way(random, scales, *place.info, start);
+    const bool of_joint = place.effects == scene.joints[place.joint].effects.size() &&
+                          !find_joint_type(scene.dimension, scene.joints[place.joint].definition.type)->is_effect;
+    const auto function = random.chance(0.4)
+                              ? random_table(random, start, way, scene.duration, of_joint)
+                              : random_expression(random, start, way, place.info->unit, scene.duration, refused);
+    if (!function) continue;
+    taken<S>(scene, refused, [&](Scene& trial) {
+      value_at(trial, place).in_time.push_back({number, function->profile});
+      trial.profiles.push_back(*function);
+    });
+  }
+}
+
+bool moves_in_time(const SceneJoint& joint) { return in_time(joint.definition.parameters); }
+
+bool has_numbers_in_time(const Scene& scene) {
+  return std::ranges::any_of(scene.joints, [](const SceneJoint& joint) {
+    return moves_in_time(joint) || std::ranges::any_of(joint.effects, [](const CoordinateEffects& effects) {
+             return std::ranges::any_of(effects.specs, [](const SpecEffect& spec) { return in_time(spec.parameters); });
+           });
+  });
+}
+
+#define CDOT_INSTANTIATE(S) \
+  template void add_numbers_in_time<S>(Random&, const Scales&, Scene&, std::vector<std::string>&);
+CDOT_INSTANTIATE(Planar<double>)
+CDOT_INSTANTIATE(Spatial<double>)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot::torture
