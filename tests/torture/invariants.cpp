@@ -70,6 +70,7 @@ class Trial {
   RowSizes sizes_;
   Motion start_;
   double independence_ = 1;                // at the start
+  bool in_time_ = false;                   // numbers follow functions of time
   bool starts_beyond_ = false;             // an end of a limit, or of another effect
   std::vector<typename S::Place> places_;  // of the scene's bodies, before the step
   double start_energy_ = 0, pushes_ = 0, torques_ = 0;
@@ -225,8 +226,9 @@ std::optional<Verdict> Trial<S>::look(BasicWorld<S>& world, int k) {
     return verdict(Outcome::limited, "an effect has no energy at a pose, which cdot-run tells", "", 0, 0, k);
   const Gap gap = gap_now(world);
   const Motion now = motion_of(world);
-  accounts_->step(now, spring_rows(world), frame.energy, operations_, world.step_counts().taken, length_of_step(k),
-                  {speed_left_across(world, *scene_), kicks_of_joints(world, *scene_)});
+  accounts_->step(
+      now, spring_rows(world), frame.energy, operations_, world.step_counts().taken, length_of_step(k),
+      {speed_left_across(world, *scene_), kicks_of_joints(world, *scene_), in_time_ ? world.balance().put_in : 0});
   if (auto broken = look_at_joints(world, gap, k)) return broken;
   if (auto broken = look_at_momentum(now, world, gap.share, k)) {
     // Impulses of rows that contradict each other, or nearly, cancel to round-off of their size before they are summed.
@@ -333,6 +335,7 @@ Verdict Trial<S>::run() {
   const bool may_be_off = scene_->settings.drift != Drift::projection || laws_.may_contradict;
   if (may_be_off && !(velocity_off(world) <= velocity_tolerance<T>))
     laws_.energy_kept = laws_.energy_falls = laws_.smooth = false;
+  in_time_ = has_numbers_in_time(*scene_);
   starts_beyond_ = passed_share(world) > held_tolerance<T>;
   independence_ = independence(system_matrix(world), 8 * std::numeric_limits<T>::epsilon());
   middle_ = end_ = world.snapshot();

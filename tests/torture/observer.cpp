@@ -180,6 +180,15 @@ double Accounts::by_order(const std::vector<Missed>& all, double rough) const {
   return sum;
 }
 
+// Of the power P that numbers in time put in, h |change of P|, and for each further order a factor `rough`, or that of
+// P. The first step counts as the second.
+double Accounts::missed_by_numbers_in_time(double put_in, double h, double rough) {
+  const double power = (put_in - put_in_) / h, change = std::abs(power - power_);
+  put_in_ = put_in, power_ = power, most_power_ = std::max(most_power_, std::abs(power));
+  if (!change_ || most_power_ == 0) return 0;
+  return (pending_ > 0 ? 2 : 1) * h * change * std::pow(std::max(rough, change / most_power_), order_ - 1);
+}
+
 // Per step: (|dv| (|dv| + |h F|) + missed_work) rho^(p-1), where rho is the change of acceleration in a step relative
 // to the largest so far. dv does not show joint forces against the turning of a tensor, so the larger dv, with or
 // without that turning, counts.
@@ -207,11 +216,13 @@ void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double en
     add_error(now, (first_order + pending_) * rho + by_order(pending_springs_, most) +
                        by_order(work_missed(springs, size), most));
     driven_error_ += (joints.kicks * done + pending_drives_) * rho;
+    driven_error_ += missed_by_numbers_in_time(joints.put_in, h, most);
     roughest_ = std::max(roughest_, rough);
     rough_before_ = rough;
     pending_ = pending_drives_ = 0, pending_springs_.clear();
   } else {
     pending_ = first_order, pending_drives_ = joints.kicks * done, pending_springs_ = work_missed(springs, size);
+    missed_by_numbers_in_time(joints.put_in, h, 0);
   }
   // An error of local_error in every pose and velocity, at the end of each step taken.
   add_error(now, double(taken - taken_) * local_error_ *

@@ -170,6 +170,7 @@ double kicks_of_joints(BasicWorld<S>& world, const Scene& scene) {
 
 struct AtJoints {
   double left_across, kicks;  // speed_left_across(), kicks_of_joints()
+  double put_in;              // Balance::put_in, where numbers follow functions of time
 };
 
 // The bounds of energy and angular momentum after the steps so far; see README.md.
@@ -203,6 +204,7 @@ class Accounts {
 
  private:
   void add_error(const Motion& now, double energy);
+  double missed_by_numbers_in_time(double put_in, double h, double rough);
   // The work of a spring that a first-order step may miss, and the relative change of its rate or its stiffness.
   struct Missed {
     double work, rough;
@@ -224,8 +226,8 @@ class Accounts {
   double across_;
   std::optional<VelocityChange> change_;
   std::vector<Missed> pending_springs_;  // of the first step, as pending_
-  double rough_before_ = 0, pending_ = 0, pending_drives_ = 0, driven_error_ = 0, largest_change_ = 0,
-         largest_speed_ = 0, largest_energy_ = 0;
+  double rough_before_ = 0, pending_ = 0, pending_drives_ = 0, driven_error_ = 0, put_in_ = 0, power_ = 0,
+         most_power_ = 0, largest_change_ = 0, largest_speed_ = 0, largest_energy_ = 0;
   double fastest_ = 0, order_error_ = 0, round_off_ = 0, roughest_ = 0, momentum_ = 0, angular_ = 0, angular_order_ = 0;
 };
 

@@ -48,6 +48,7 @@ std::vector<Place> places_in(const Scene& scene) {
     for (std::size_t e = 0; e < joint.effects.size(); ++e)
       for (std::size_t s = 0; s < joint.effects[e].specs.size(); ++s) {
         const SpecEffect& spec = joint.effects[e].specs[s];
+        if (in_time(spec.parameters)) continue;
         add_places(*find_coordinate_effect(spec.type), spec.parameters, {j, e, s, 0, nullptr}, places);
       }
   }
@@ -107,10 +108,77 @@ WrittenProfile random_table(Random& random, double start, double way, double dur
   return {Profile::table(table), {}, {}, table};
 }
 
+using Drawn = std::optional<WrittenProfile>;
+Drawn random_function(Random& random, double start, double way, std::string_view unit, const Scene& scene,
+                      bool of_joint, std::vector<std::string>& refused) {
+  if (random.chance(0.4)) return random_table(random, start, way, scene.duration, of_joint);
+  return random_expression(random, start, way, unit, scene.duration, refused);
+}
+
+// Ends and speeds in a form of their own become effects of specs, as a reader makes of them: before all others, the
+// limit first.
+SpecEffect as_spec(CoordinateEffects& effects, bool motor) {
+  SpecEffect spec{motor ? "motor" : "limit"};
+  if (motor) {
+    spec.parameters.push_back({"speed", {effects.motor->speed}});
+    if (effects.motor->max_force != unlimited) spec.parameters.push_back({"max", {effects.motor->max_force}});
+    effects.motor.reset();
+  } else {
+    if (effects.limit->lower) spec.parameters.push_back({"lower", {*effects.limit->lower}});
+    if (effects.limit->upper) spec.parameters.push_back({"upper", {*effects.limit->upper}});
+    effects.limit.reset();
+  }
+  return spec;
+}
+
+struct Shorthand {
+  std::size_t joint, effects;
+  bool motor;
+  std::string unit;
+};
+
+std::vector<Shorthand> shorthands_in(const Scene& scene) {
+  std::vector<Shorthand> all;
+  for (std::size_t j = 0; j < scene.joints.size(); ++j) {
+    const JointType& type = *find_joint_type(scene.dimension, scene.joints[j].definition.type);
+    for (std::size_t e = 0; e < scene.joints[j].effects.size(); ++e) {
+      const CoordinateEffects& effects = scene.joints[j].effects[e];
+      const std::string unit(std::ranges::find(type.coordinates, effects.coordinate, &CoordinateInfo::name)->unit);
+      if (effects.limit) all.push_back({j, e, false, unit});
+      if (effects.motor) all.push_back({j, e, true, unit + "/s"});
+    }
+  }
+  return all;
+}
+
+// An end of a limit, or the speed of a motor.
+template <class S>
+void move_shorthand(Random& random, const Scales& scales, Scene& scene, std::vector<std::string>& refused) {
+  const std::vector<Shorthand> all = shorthands_in(scene);
+  if (all.empty()) return;
+  const Shorthand place = random.of(all);
+  CoordinateEffects effects = scene.joints[place.joint].effects[place.effects];
+  SpecEffect spec = as_spec(effects, place.motor);
+  NamedValue& value =
+      spec.parameters[place.motor ? 0 : static_cast<std::size_t>(random.below(int(spec.parameters.size())))];
+  const double start = value.numbers[0], size = start != 0 ? std::abs(start) : scale_of(place.unit, scales);
+  const double way = random.either_sign(size * random.log_between(0.02, 0.5));
+  const Drawn function = random_function(random, start, way, place.unit, scene, false, refused);
+  if (!function) return;
+  value.in_time.push_back({0, function->profile});
+  const bool after_limit = place.motor && !effects.specs.empty() && effects.specs[0].type == "limit";
+  effects.specs.insert(effects.specs.begin() + after_limit, spec);
+  taken<S>(scene, refused, [&](Scene& trial) {
+    trial.joints[place.joint].effects[place.effects] = effects;
+    trial.profiles.push_back(*function);
+  });
+}
+
 }  // namespace
 
 template <class S>
 void add_numbers_in_time(Random& random, const Scales& scales, Scene& scene, std::vector<std::string>& refused) {
+  if (random.chance(0.4)) move_shorthand<S>(random, scales, scene, refused);
   const std::vector<Place> places = places_in(scene);
   for (int k = places.empty() ? 0 : 1 + random.below(3); k > 0; --k) {
     const Place place = random.of(places);
@@ -121,9 +189,7 @@ void add_numbers_in_time(Random& random, const Scales& scales, Scene& scene, std
     const double way = random_way(random, scales, *place.info, start);
     const bool of_joint = place.effects == scene.joints[place.joint].effects.size() &&
                           !find_joint_type(scene.dimension, scene.joints[place.joint].definition.type)->is_effect;
-    const auto function = random.chance(0.4)
-                              ? random_table(random, start, way, scene.duration, of_joint)
-                              : random_expression(random, start, way, place.info->unit, scene.duration, refused);
+    const Drawn function = random_function(random, start, way, place.info->unit, scene, of_joint, refused);
     if (!function) continue;
     taken<S>(scene, refused, [&](Scene& trial) {
       value_at(trial, place).in_time.push_back({number, function->profile});
