@@ -4,6 +4,7 @@ At random poses J and dC/dt are the finite differences of C, Cdot is J v + dC/dt
 gamma is minus the rate of Cdot at constant velocities. Exit status 0 if all of it holds for all
 files of a folder.
 """
+import functools
 import glob
 import json
 import os
@@ -19,6 +20,15 @@ STEP = mpf(10) ** -12
 TOLERANCE = mpf(10) ** -18
 NAME = re.compile(r"[A-Za-z_]\w*")
 FUNCTIONS = {"sqrt", "sin", "cos", "tan", "atan2", "exp", "log", "abs", "sign"}
+
+
+@functools.cache  # entries repeat, within a file and between joints
+def function_of(text):
+    names = sorted(set(NAME.findall(text)) - FUNCTIONS)
+    symbols = {name: sympy.Symbol(name, real=True) for name in names}
+    expression = sympy.sympify(text, locals={**symbols, "abs": sympy.Abs})
+    function = sympy.lambdify([symbols[n] for n in names], expression, modules="mpmath")
+    return lambda values: mpf(function(*(values[n] for n in names)))
 
 
 class Program:
@@ -39,11 +49,7 @@ class Program:
     def compiled(self, text):
         unknown = set(NAME.findall(text)) - set(self.known) - FUNCTIONS
         assert not unknown, f"{text}: undocumented or not yet defined: {unknown}"
-        names = sorted(set(NAME.findall(text)) - FUNCTIONS)
-        symbols = {name: sympy.Symbol(name, real=True) for name in names}
-        expression = sympy.sympify(text, locals={**symbols, "abs": sympy.Abs})
-        function = sympy.lambdify([symbols[n] for n in names], expression, modules="mpmath")
-        return lambda values: mpf(function(*(values[n] for n in names)))
+        return function_of(text)
 
     def values(self, state):
         values = dict(state)
