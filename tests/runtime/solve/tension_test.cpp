@@ -170,6 +170,32 @@ TEST(Tension, LeavesAHangingChainWhereItIs) {
   EXPECT_NEAR(world.reaction(0, world.ground()).force_x / low, 1, 1e-6);
 }
 
+// A point of b on a surface of a that hardly bends, both free: b turns, and pulls a by round-off alone.
+TEST(Tension, OfAHardlyBentSurfaceHoldsNoRotation) {
+  Settings s = implicit(Drift::baumgarte);
+  s.gravity_y = 0;
+  SpatialWorld<float> world(s);
+  SpatialBodyDefinition a, b;
+  a.mass = b.mass = 1;
+  a.x = -0.001, a.y = 0.0004, a.z = -0.0002;
+  a.inertia = {9e-8, 7e-8, 7e-8, 2e-8, 1e-8, -3e-8};
+  b.x = -0.0009, b.y = -0.002, b.z = -0.0006, b.wx = 0.5, b.wy = 0.06, b.wz = 0.1;
+  b.inertia = {2e-7, 3e-7, 3e-7, -3e-8, 4e-8, 5e-8};
+  const std::vector<int> bodies = {world.add_body(a), world.add_body(b)};
+  world.add_joint({"surface",
+                   bodies,
+                   {{"pa", {-8e-5, -0.0004, -4e-6}},
+                    {"pb", {0.0003, -0.0004, -0.0003}},
+                    {"fa", {-0.8, -0.3, -0.6, -0.2, 1, -0.2}},
+                    {"height", {0.0008}},
+                    {"k", {0.5}}},
+                   {}});
+  world.project(1e-5);
+  const double start = world.energy();
+  run(world, 4 * 0.03, 0.03);
+  EXPECT_NEAR(world.energy() / start, 1, 1e-3);
+}
+
 // A fixed angle holds a pendulum against a constant torque. The joint exerts that torque, although tension adds 5.4
 // times the body's inertia.
 TEST(Tension, KeepsATorqueAtRest) {
