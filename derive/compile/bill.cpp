@@ -27,9 +27,11 @@ Mechanism bare(Mechanism mechanism) {
   return mechanism;
 }
 
-// Numbers the angles of the effects that are left.
+// Numbers the angles of the joints and effects that are left.
 void count_angles(Mechanism& mechanism) {
   mechanism.angles = 0;
+  for (Joint& joint : mechanism.joints)
+    for (CountedTurns& turns : joint.turns) turns.angle = mechanism.angles++;
   for (auto* list : {&mechanism.effects, &mechanism.bounded})
     for (Effect& effect : *list)
       if (effect.angle >= 0) effect.angle = mechanism.angles++;

@@ -7,10 +7,7 @@
 
 namespace cdot::compile {
 
-// An angle in space with its whole turns, from the kernel's within half a turn; `number`: of the angle.
-struct Unwound {
-  int angle, turns;
-};
+// From the kernel's angle within half a turn; `number`: of the angle.
 Unwound unwound(Algebra& algebra, int number, int C);
 
 // Of one effect, by row; `in` are the inputs of its rows with their J.

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "derive/compile/rows/laws.hpp"
 #include "derive/interpret/program_in_time.hpp"
 #include "derive/kernel/factor.hpp"
 #include "derive/program/print.hpp"
@@ -31,6 +32,7 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
   for (const Joint& joint : mechanism.joints) {
     std::set<std::string>& of_type = coordinates[joint.type];
     if (!joint.coordinate.empty()) of_type.insert(joint.coordinate);
+    for (const CountedTurns& turns : joint.turns) of_type.insert(turns.coordinate);
   }
   for (const std::vector<Effect>* list : {&mechanism.effects, &mechanism.bounded})
     for (const Effect& effect : *list) {
@@ -187,8 +189,18 @@ Values RowBlocks::inputs(Algebra& algebra, const RowBlock& block) const {
   }
   in["pi"] = algebra.value(3.14159265358979323846);
   in["time"] = algebra.input("time");
+  if (block.joint)
+    for (const CountedTurns& turns : block.joint->turns)
+      in[spec.parameters[turns.parameter]] = counted(algebra, block, turns, in).turns;
   if (block.holds >= 0) in["holds"] = algebra.input(element("bonds.holds", static_cast<std::size_t>(block.holds)));
   return in;
+}
+
+Unwound RowBlocks::counted(Algebra& algebra, const RowBlock& block, const CountedTurns& turns, const Values& in) const {
+  const RowPrograms& rows = block.spec->coordinates.at(turns.coordinate);
+  const Values C = algebra.inlined(
+      rows.function("position"), [&](const std::string& text) { return in.at(text); }, block.name);
+  return unwound(algebra, turns.angle, C.at("C[0]"));
 }
 
 Values RowBlocks::inputs_with_jacobian(Algebra& algebra, const RowBlock& block) const {

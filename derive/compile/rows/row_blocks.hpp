@@ -34,6 +34,11 @@ struct RowBlock {
   int holds = -1;                                          // of a joint that may break, or on one: as Joint::holds
 };
 
+// An angle in space with its whole turns.
+struct Unwound {
+  int angle, turns;
+};
+
 // Forces by body and column.
 using Forces = std::map<std::pair<int, std::size_t>, Summands>;
 
@@ -66,6 +71,8 @@ class RowBlocks {
 
   // Inputs of the kernel, in this scene: places and velocities of its bodies, masses, parameters.
   Values inputs(Algebra& algebra, const RowBlock& block) const;
+  // A coordinate of a joint, whose whole turns one of its parameters counts.
+  Unwound counted(Algebra& algebra, const RowBlock& block, const CountedTurns& turns, const Values& in) const;
   // The same with its J.
   Values inputs_with_jacobian(Algebra& algebra, const RowBlock& block) const;
   // Puts these in place of v in the inputs; by the names of components, "rod.x"; empty: leaves v.

@@ -142,11 +142,28 @@ Joint joint_of(const Scene& scene, const BasicWorld<S>& world, int index) {
 }
 
 template <class S>
+bool counts_turns(BasicWorld<S>& world, int joint) {
+  const std::vector<Place>& places = world.data().joints[static_cast<std::size_t>(joint)].places;
+  return !places.empty() && world.data().batches[static_cast<std::size_t>(places[0].batch)]->ops->counters > 0;
+}
+
+// Those that the World counts in a joint: runtime/include/cdot/detail/turns.hpp.
+std::vector<CountedTurns> turns_of(const JointType& type, Mechanism& mechanism) {
+  std::vector<CountedTurns> turns;
+  for (const CoordinateInfo& coordinate : type.coordinates)
+    for (const ParameterInfo& info : type.parameters)
+      if (info.unit == "rad" && info.name == std::string(coordinate.name) + "_turns")
+        turns.push_back({static_cast<std::size_t>(info.offset), std::string(coordinate.name), mechanism.angles++});
+  return turns;
+}
+
+template <class S>
 void add_joint(const Scene& scene, BasicWorld<S>& world, int index, Mechanism& mechanism) {
   Joint joint = joint_of(scene, world, index);
   joint.holds = number_among_breakable(world, index);
   const JointRecord& record = world.data().joints[static_cast<std::size_t>(index)];
   if (!record.places.empty()) joint.tensions = tensions_of(world, record.places[0]);
+  if (counts_turns(world, index)) joint.turns = turns_of(world.joint_type(index), mechanism);
   if (!find_functions(scene, record, -1, mechanism, joint.in_time)) {
     Refusals refusals(scene);
     refusals.add(scene.joints[static_cast<std::size_t>(index)].where,
@@ -182,11 +199,11 @@ template <class S>
 void refuse_counters(const Scene& scene, BasicWorld<S>& world) {
   Refusals refusals(scene);
   for (int i = 0; i < static_cast<int>(scene.joints.size()); ++i) {
-    const std::vector<Place>& places = world.data().joints[static_cast<std::size_t>(i)].places;
     const SceneJoint& joint = scene.joints[static_cast<std::size_t>(i)];
-    if (!places.empty() && world.data().batches[static_cast<std::size_t>(places[0].batch)]->ops->counters > 0)
+    const bool knows = !world.joint_type(i).is_effect && !is_rope(world.joint_type(i)) && !joint.definition.soft;
+    if (!knows && counts_turns(world, i))
       refusals.add(joint.where,
-                   fmt::format("{}: cdot compile knows no rows that count whole turns, as {} has", joint.name,
+                   fmt::format("{}: cdot compile knows no soft rows that count whole turns, as {} has", joint.name,
                                joint.definition.type),
                    "leave it to cdot-run");
   }

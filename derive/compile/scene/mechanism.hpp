@@ -47,6 +47,13 @@ struct InTime {
   int table = -1;  // among those of the mechanism
 };
 
+// A parameter of a joint in space that counts the whole turns of one of its coordinates, as those of a gear.
+struct CountedTurns {
+  std::size_t parameter;   // among those of the joint
+  std::string coordinate;  // of its spec
+  int angle;               // its number among the mechanism's
+};
+
 struct Joint {
   std::string name, type;
   std::vector<int> bodies;         // indices into Mechanism::bodies
@@ -59,6 +66,7 @@ struct Joint {
   std::vector<bool> is_rate{};              // by row: of velocities, without C
   int holds = -1;                           // of a joint that may break: its number among these
   int tensions = 0;                         // rows of the stiffness of tension (midpoint/tensions.hpp)
+  std::vector<CountedTurns> turns{};
 };
 
 // A force along each row of a spec, or along one of its coordinates; a row with bounds on a coordinate.

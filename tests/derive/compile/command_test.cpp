@@ -36,12 +36,13 @@ TEST(CompileCommand, LeavesOutRoundOffOfPlaces) {
 }
 
 TEST(CompileCommand, RefusesPartsThatItDoesNotKnowWithTheirLines) {
-  const ShellResult gear = compile("tests/torture/found/motor_without_motion.toml --integrator euler");
-  EXPECT_EQ(gear.status, 2);
-  EXPECT_NE(gear.text.find("motor_without_motion.toml:19:1: error: j6: cdot compile knows no rows that count whole "
-                           "turns, as gear has"),
-            std::string::npos)
-      << gear.text;
+  const std::string scene = "tests/derive/compile/scenes/refused.toml";
+  const ShellResult refused = compile(scene + " --integrator euler");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(
+      refused.text.find("refused.toml:11:1: error: line: cdot compile knows no effects and soft joints that break"),
+      std::string::npos)
+      << refused.text;
   const ShellResult misfit = compile("tests/hard_cases/incompatible_triangle/planar.toml --integrator euler");
   EXPECT_EQ(misfit.status, 2);
   EXPECT_NE(misfit.text.find("ab: cdot compile knows no joints that contradict each other at the start"),

@@ -8,6 +8,7 @@
 #include "double_pendulum_radau5.hpp"
 #include "dry_arm_radau5.hpp"
 #include "events_radau5.hpp"
+#include "geared_radau5.hpp"
 #include "gyroscope_radau5.hpp"
 #include "machine_radau5.hpp"
 #include "overdamped_radau5.hpp"
@@ -44,6 +45,7 @@ TEST(CompiledRadau, MovesInSpaceAsTheWorld) {
   runs<three_bodies_radau5<double>>(catalogue + "spatial/three_bodies.toml");
   runs<rolling_radau5<double>>(scenes + "rolling.toml");
   runs<torsion_radau5<double>>(scenes + "torsion.toml");
+  runs<geared_radau5<double>>(scenes + "geared.toml");
 }
 
 TEST(CompiledRadau, MovesWithEffectsAndBoundsAsTheWorld) {

@@ -21,6 +21,10 @@
 #include "four_bar_space_dop853.hpp"
 #include "four_bar_space_euler.hpp"
 #include "four_bar_space_rk4.hpp"
+#include "geared_dop853.hpp"
+#include "geared_euler.hpp"
+#include "geared_rattle.hpp"
+#include "geared_rk4.hpp"
 #include "gyroscope_space_dop853.hpp"
 #include "gyroscope_space_euler.hpp"
 #include "gyroscope_space_rk4.hpp"
@@ -93,6 +97,18 @@ TEST(CompiledSpace, EffectsOnCoordinatesActAsInTheWorld) {
   EXPECT_GT(most, 3 * 6.2831853);
 }
 
+// Teeth count the whole turns of their wheels: some of the three have made 2 or 3 of these.
+TEST(CompiledSpace, GearsCountWholeTurns) {
+  using namespace cdot::scenes;
+  const std::string geared = "tests/derive/compile/scenes/geared.toml";
+  cdot::runs_as_the_world<geared_euler<double>>(geared, Integrator::euler, 1e-11);
+  cdot::runs_as_the_world<geared_rattle<double>>(geared, Integrator::rattle, 1e-11);
+  cdot::runs_as_the_world<geared_rk4<double>>(geared, Integrator::rk4, 1e-11);
+  cdot::runs_as_the_world<geared_dop853<double>>(geared, Integrator::dop853, 1e-11);
+  const auto state = cdot::state_after<geared_rk4<double>>(700);
+  EXPECT_GT(std::ranges::max(state.angles.turns), 12);  // [rad]
+}
+
 // Spins of a symmetric body, of one without symmetry, and of bodies with joints.
 TEST(CompiledSpace, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<cdot::scenes::gyroscope_space_euler>();
@@ -102,6 +118,7 @@ TEST(CompiledSpace, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<cdot::scenes::torque_free_body_space_euler, float>();
   cdot::lanes_are_as_alone<cdot::scenes::gyroscope_space_dop853, float>();
   cdot::lanes_are_as_alone<cdot::scenes::torsion_rk4>();
+  cdot::lanes_are_as_alone<cdot::scenes::geared_rattle>();
   cdot::lanes_are_as_alone<cdot::scenes::hinges_euler>();
 }
 
