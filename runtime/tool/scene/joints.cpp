@@ -105,11 +105,12 @@ std::optional<std::vector<double>> read_two_axes_in_world(Entry& joint, const st
 }
 
 // A type may have a number of its own that is called `start`, as rolling has: a table then gives the coordinates, a
-// number the parameter.
+// number or a function of time the parameter.
 bool means_coordinates(Entry& joint, const JointType& type, const std::string& key) {
   if (key != start_key && key != start_rate_key) return false;
   const auto own = std::ranges::find(type.parameters, key, &ParameterInfo::name);
-  return own == type.parameters.end() || (own->kind == ParameterKind::scalar && joint.is_table(key));
+  return own == type.parameters.end() ||
+         (own->kind == ParameterKind::scalar && joint.is_table(key) && !joint.is_function(key));
 }
 
 // The numbers of one parameter in the frame of its body. Nothing if it is wrong or takes its default.

@@ -55,8 +55,11 @@ std::vector<Place> places_in(const Scene& scene) {
   return places;
 }
 
-// The language reads numbers as fractions of 64-bit integers.
-std::string number_in_text(double x) { return fmt::format("{:.6g}", x); }
+// The language reads numbers as fractions of 64-bit integers: at most 17 decimals.
+std::string number_in_text(double x) {
+  const int digits = x == 0 ? 1 : std::clamp(static_cast<int>(18 + std::floor(std::log10(std::abs(x)))), 6, 16);
+  return fmt::format("{:.{}g}", x, digits);
+}
 
 // A share of the number, or of the mechanism's own unit, that keeps it in its range.
 double random_way(Random& random, const Scales& scales, const ParameterInfo& info, double number) {

@@ -150,6 +150,12 @@ TEST(Start, ANumberIsTheParameterOfThatName) {
   const BasicWorld<Planar<double>> moved = world_of<Planar<double>>(read("start = { slide = 1.2 }\n"));
   EXPECT_NEAR(moved.coordinate(0, "slide"), 1.2, 1e-13);
   EXPECT_NEAR(moved.place(0).angle, -2.4, 1e-13);
+  try {  // the parameter follows a table, which this scene lacks
+    read("start = { table = \"none.csv\", column = \"s\" }\n");
+    FAIL();
+  } catch (const SceneError& error) {
+    EXPECT_NE(std::string(error.what()).find("table \"none.csv\" of `start`"), std::string::npos) << error.what();
+  }
 }
 
 TEST(Start, AnUnknownCoordinateIsNamed) {
