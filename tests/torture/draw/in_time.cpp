@@ -14,6 +14,7 @@ namespace {
 struct Place {
   std::size_t joint, effects, spec;  // effects: none beyond their number
   std::size_t value;
+  const JointType* type;
   const ParameterInfo* info;
 };
 
@@ -32,7 +33,7 @@ void add_places(const JointType& type, const std::vector<NamedValue>& values, Pl
   for (place.value = 0; place.value < values.size(); ++place.value) {
     const auto info = std::ranges::find(type.parameters, values[place.value].name, &ParameterInfo::name);
     if (info == type.parameters.end() || !may_move(*info)) continue;
-    place.info = &*info;
+    place.type = &type, place.info = &*info;
     places.push_back(place);
   }
 }
@@ -44,12 +45,12 @@ std::vector<Place> places_in(const Scene& scene) {
     const SceneJoint& joint = scene.joints[j];
     const JointType& type = *find_joint_type(scene.dimension, joint.definition.type);
     if (std::ranges::count(type.row_kinds, RowKind::velocity) == 0)
-      add_places(type, joint.definition.parameters, {j, joint.effects.size(), 0, 0, nullptr}, places);
+      add_places(type, joint.definition.parameters, {j, joint.effects.size(), 0, 0, nullptr, nullptr}, places);
     for (std::size_t e = 0; e < joint.effects.size(); ++e)
       for (std::size_t s = 0; s < joint.effects[e].specs.size(); ++s) {
         const SpecEffect& spec = joint.effects[e].specs[s];
         if (in_time(spec.parameters)) continue;
-        add_places(*find_coordinate_effect(spec.type), spec.parameters, {j, e, s, 0, nullptr}, places);
+        add_places(*find_coordinate_effect(spec.type), spec.parameters, {j, e, s, 0, nullptr, nullptr}, places);
       }
   }
   return places;
@@ -97,8 +98,8 @@ std::optional<WrittenProfile> random_expression(Random& random, double start, do
   return WrittenProfile{Profile::function(at), text, std::string(unit), {}};
 }
 
-// Rows from `start` on, within `way` of it. Joints take no jump.
-WrittenProfile random_table(Random& random, double start, double way, double duration, bool of_joint) {
+// Rows from `start` on, within `way` of it. Joints take no jump, and no body can follow an end that jumps.
+WrittenProfile random_table(Random& random, double start, double way, double duration, bool smooth) {
   ProfileTable table{.times = {0}, .values = {start}};
   const int rows = 3 + random.below(6);
   for (int k = 1; k < rows; ++k) {
@@ -106,15 +107,15 @@ WrittenProfile random_table(Random& random, double start, double way, double dur
     table.values.push_back(start + way * random.between(-1, 1));
   }
   table.interpolation = random.of<Interpolation>({Interpolation::linear, Interpolation::cubic});
-  if (!of_joint && random.chance(0.3)) table.interpolation = Interpolation::step;
-  if (!of_joint && table.interpolation == Interpolation::linear && random.chance(0.5)) table.times[2] = table.times[1];
+  if (!smooth && random.chance(0.3)) table.interpolation = Interpolation::step;
+  if (!smooth && table.interpolation == Interpolation::linear && random.chance(0.5)) table.times[2] = table.times[1];
   return {Profile::table(table), {}, {}, table};
 }
 
 using Drawn = std::optional<WrittenProfile>;
-Drawn random_function(Random& random, double start, double way, std::string_view unit, const Scene& scene,
-                      bool of_joint, std::vector<std::string>& refused) {
-  if (random.chance(0.4)) return random_table(random, start, way, scene.duration, of_joint);
+Drawn random_function(Random& random, double start, double way, std::string_view unit, const Scene& scene, bool smooth,
+                      std::vector<std::string>& refused) {
+  if (random.chance(0.4)) return random_table(random, start, way, scene.duration, smooth);
   return random_expression(random, start, way, unit, scene.duration, refused);
 }
 
@@ -166,7 +167,7 @@ void move_shorthand(Random& random, const Scales& scales, Scene& scene, std::vec
       spec.parameters[place.motor ? 0 : static_cast<std::size_t>(random.below(int(spec.parameters.size())))];
   const double start = value.numbers[0], size = start != 0 ? std::abs(start) : scale_of(place.unit, scales);
   const double way = random.either_sign(size * random.log_between(0.02, 0.5));
-  const Drawn function = random_function(random, start, way, place.unit, scene, false, refused);
+  const Drawn function = random_function(random, start, way, place.unit, scene, !place.motor, refused);
   if (!function) return;
   value.in_time.push_back({0, function->profile});
   const bool after_limit = place.motor && !effects.specs.empty() && effects.specs[0].type == "limit";
@@ -190,9 +191,8 @@ void add_numbers_in_time(Random& random, const Scales& scales, Scene& scene, std
     const double start = value.numbers[static_cast<std::size_t>(number)];
     if (!value.in_time.empty()) continue;
     const double way = random_way(random, scales, *place.info, start);
-    const bool of_joint = place.effects == scene.joints[place.joint].effects.size() &&
-                          !find_joint_type(scene.dimension, scene.joints[place.joint].definition.type)->is_effect;
-    const Drawn function = random_function(random, start, way, place.info->unit, scene, of_joint, refused);
+    const bool smooth = !place.type->is_effect || place.type->row_kinds.empty();
+    const Drawn function = random_function(random, start, way, place.info->unit, scene, smooth, refused);
     if (!function) continue;
     taken<S>(scene, refused, [&](Scene& trial) {
       value_at(trial, place).in_time.push_back({number, function->profile});
