@@ -153,6 +153,24 @@ TEST(EventEffects, TheBlowOfALatchIsALoad) {
     }
 }
 
+// The reaction of the step in which it closes has that impulse, 1 N s in 0.01 s, and some newtons of the motion.
+TEST(EventEffects, TheBlowOfALatchIsAReaction) {
+  for (const IntegratorRow& row : integrator_rows) {
+    World<double> world(with(row.integrator));
+    const int body = world.add_body({.x = 0.5, .vy = 1, .w = 2, .mass = 1, .inertia = 0.5});
+    const int axle = revolute(world, world.ground(), body, 0, 0, -0.5, 0);
+    add_effect(world, axle, "angle", SpecEffect{"latch", {{"at", {0.3}}}});
+    double most = 0;
+    for (int k = 0; k < 30; ++k) {
+      ASSERT_TRUE(world.step(0.01));
+      const auto pull = world.reaction(axle, body);
+      most = std::max(most, std::hypot(pull.force_x, pull.force_y));
+    }
+    fmt::print("  {}: {:.6g} N\n", row.name, most);
+    EXPECT_NEAR(most, 100, 5) << row.name;
+  }
+}
+
 // Past events are part of the State.
 TEST(EventEffects, ASnapshotBeforeAnEventUndoesIt) {
   for (const IntegratorRow& row : integrator_rows) {
