@@ -253,6 +253,7 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
     const T worst = find_errors(world, island, time);
     if (round == 0 && stays_misfit(world, island, worst, time - T(world.time))) return;
     island.residual = worst;
+    note_errors(island);
     if (round == 0) island.misfit = 0;
     if (!(worst > tolerance * island.scale) || round == newton_rounds) return;
     // Adds rows that passed their bound since the selection. Selected rows stay.

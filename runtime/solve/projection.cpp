@@ -59,7 +59,46 @@ void add_wanted_rates(const Island<S>& island, typename S::Scalar share) {
   }
 }
 
+// f(first row of the segment in Batch, number of rows, first row in Island::left)
+template <class SomeIsland, class F>
+void each_run_of_errors(SomeIsland& island, F f) {
+  auto* left = island.left.data();
+  for (const auto& [batch, begin, end, whole] : island.segments) {
+    const int rows = batch->ops->rows;
+    f(batch->error.data() + begin * rows, (end - begin) * rows, left);
+    left += (whole - begin) * rows;
+  }
+}
+
+// The largest change of a row's error since the last projection, at present of at most `error`. A row without an error
+// asks for no correction, as that of an end that no longer holds.
+template <class S>
+typename S::Scalar change_of_errors(const Island<S>& island, typename S::Scalar error) {
+  using T = typename S::Scalar;
+  if (island.left.empty() || !std::isfinite(T(island.residual))) return std::abs(error - island.residual);
+  T most = 0;
+  each_run_of_errors(island, [&](const T* now, int count, const T* left) {
+    for (int i = 0; i < count; ++i)
+      if (now[i] != T(0)) most = std::max(most, std::abs(now[i] - left[i]));
+  });
+  return most;
+}
+
 }  // namespace
+
+template <class S>
+void reserve_errors(Island<S>& island) {
+  int rows = 0;
+  for (const Segment<S>& s : island.segments) rows += (s.whole_end - s.begin) * s.batch->ops->rows;
+  island.left.assign(static_cast<size_t>(rows), typename S::Scalar(0));
+}
+
+template <class S>
+void note_errors(Island<S>& island) {
+  using T = typename S::Scalar;
+  if (island.left.empty()) return;
+  each_run_of_errors(island, [](const T* now, int count, T* left) { std::copy_n(now, count, left); });
+}
 
 template <class S>
 typename S::Scalar round_off_of(const WorldData<S>& world, const Island<S>& island) {
@@ -84,7 +123,7 @@ bool stays_misfit(const WorldData<S>& world, const Island<S>& island, typename S
   // rows are redundant, so are those of its own size. Where no body moves, all are: near a loss of rank a correction of
   // round-off moves bodies by a thousand times as much, and they would wander for ever.
   constexpr T unchanged = T(1e-9), of_round_off = T(1) / 16, at_rest = T(1) / 4;
-  const T left = island.residual, round_off = round_off_of(world, island), change = std::abs(error - left);
+  const T left = island.residual, round_off = round_off_of(world, island), change = change_of_errors(island, error);
   if (std::is_same_v<T, float> && change <= at_rest * round_off && stands(world, island, h)) return true;
   const T above_round_off = T(island.redundant_rows > 0 ? by_precision<T>(0.25, 0) : by_precision<T>(4, 0));
   if (!(left > converged<T> * island.scale)) return false;
@@ -250,6 +289,7 @@ void project_start(WorldData<S>& world, Island<S>& island) {
     if constexpr (S::has_gyroscopes) set_inertias(world, island);
     clear_correction(world, island);
     island.residual = find_errors(world, island, T(world.time));
+    note_errors(island);
   }
   scale_corrections(island, T(0));  // the motion does not need them, so they are no load for its friction
   island.evaluated = island.factored = false;
@@ -285,6 +325,8 @@ void project_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
   template bool stays_misfit(const WorldData<S>&, const Island<S>&, S::Scalar, S::Scalar); \
   template S::Scalar round_off_of(const WorldData<S>&, const Island<S>&);                  \
   template bool is_round_off(const WorldData<S>&, const Island<S>&, S::Scalar);            \
+  template void note_errors(Island<S>&);                                                   \
+  template void reserve_errors(Island<S>&);                                                \
   template void clear_correction(WorldData<S>&, Island<S>&);                               \
   template S::Scalar find_errors(WorldData<S>&, Island<S>&, S::Scalar);                    \
   template void fill_lambda(const Island<S>&, S::Scalar);                                  \

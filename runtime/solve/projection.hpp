@@ -27,8 +27,14 @@ bool is_round_off(const WorldData<S>& world, const Island<S>& island, typename S
 template <class S>
 void clear_correction(WorldData<S>& world, Island<S>& island);
 
-// True if `error`, after a step of h, is what the last projection has left of joints that contradict each other, which
-// is Island::residual. They would creep, were they corrected again and again.
+// Notes Batch::error as that which a projection leaves: Island::left. reserve_errors() allocates for it.
+template <class S>
+void note_errors(Island<S>& island);
+template <class S>
+void reserve_errors(Island<S>& island);
+
+// True if Batch::error, at most `error`, is after a step of h in each row what the last projection has left of joints
+// that contradict each other. They would creep, were they corrected again and again.
 template <class S>
 bool stays_misfit(const WorldData<S>& world, const Island<S>& island, typename S::Scalar error, typename S::Scalar h);
 

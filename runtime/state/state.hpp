@@ -62,6 +62,7 @@ struct IslandState {
   // min(1, 10 size), times the least slope of a row if that is below 1: factor of the thresholds for C.
   StateNumber<T> scale = T(1);
   StateNumber<T> residual = std::numeric_limits<T>::infinity();  // largest C after the last projection
+  StateArray<T> left;                                            // by row: the error then; empty: nothing projects
   StateNumber<T> evaluated_at = T(0);                            // [s]
   StateNumber<bool> evaluated = false;                           // C and J belong to the present poses
   StateNumber<bool> factored = false;                            // the system's factor is that of this J, all rows free

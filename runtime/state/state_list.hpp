@@ -62,9 +62,10 @@ struct StateList {
   // The iterative solver needs no system, but the projection of the start builds one.
   template <class S, class Visitor>
   static void each_of_island(Island<S>& island, int index, bool has_system, Visitor& visit) {
-    auto& [size, scale, residual, evaluated_at, evaluated, factored, acceleration_level, asleep, rested, redundant_rows,
-           gained, level, levelled, slack, momentum] = static_cast<IslandState<S>&>(island);
+    auto& [size, scale, residual, left, evaluated_at, evaluated, factored, acceleration_level, asleep, rested,
+           redundant_rows, gained, level, levelled, slack, momentum] = static_cast<IslandState<S>&>(island);
     visit.item("island.numbers", index, true), visit(size), visit(scale), visit(residual), visit(evaluated_at);
+    visit.item("island.left", index, true), visit(left);
     visit.item("island.flags", index, true), visit(evaluated), visit(factored), visit(acceleration_level),
         visit(asleep), visit(levelled);
     visit.item("island.rested", index, true), visit(rested);

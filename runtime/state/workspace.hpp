@@ -61,6 +61,7 @@ struct FlowWorkspace {
   // (step/rank_loss.hpp).
   std::vector<double> pivots, diagonals, of_row;
   T start_residual = 0;        // largest C at the start of the step
+  std::vector<T> start_left;   // Island::left there
   std::vector<T> start_turns;  // counters of whole turns there
   CollocationWorkspace<T> collocation;
 };

@@ -278,6 +278,7 @@ bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     }
     if (miss <= T(1) || (stays && may_contradict(island, at_start)) ||
         (miss <= still_small && miss > T(0.5) * before)) {
+      if (misfit == T(0)) note_errors(island);
       drift_with_rates(world, island, h);
       return true;
     }

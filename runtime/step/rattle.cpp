@@ -158,6 +158,7 @@ void take_back_last_round(WorldData<S>& world, Island<S>& island, typename S::Sc
   exert_correction(world, island, system, world.bodies.velocity.data());
   drift(world, island, h);
   island.residual = find_errors(world, island, typename S::Scalar(world.time) + h);
+  note_errors(island);
 }
 
 // Repeats K lambda = -C / h with the factor of the start and Broyden's updates, velocity += M^-1 J^T lambda, and the
@@ -178,6 +179,7 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
     drift(world, island, h);
     T error = find_errors(world, island, T(world.time) + h);
     if (round == 0 && stays_misfit(world, island, error, h)) return true;
+    note_errors(island);
     const bool at_ends = system.lawful() && hold_ends(system, error);
     if (round == 0) at_first = error;
     island.residual = error;
@@ -297,13 +299,14 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   push_dampers(world, island, h);
   note_start(world, island);
   keep_turns(island);
+  island.flow.start_left.assign(island.left.begin(), island.left.end());
   start_half(world, island, h, share);
   const bool by_sweeps = !island.solver->exact;
   if (by_sweeps || !drift_onto_joints(world, island, h)) {
     if (!by_sweeps) {
       halt_immovable_bodies(world, island);
       start_half(world, island, h, share);
-      island.residual = at_start;
+      island.residual = at_start, island.left = island.flow.start_left;
     }
     drift_with_renewed_directions(world, island, h, at_start, share);
   }
@@ -327,6 +330,7 @@ void prepare_rattle(Island<S>& island) {
   island.flow.pose.resize(island.bodies.size());
   island.flow.velocity.resize(island.bodies.size());
   prepare_turns(island);
+  island.flow.start_left.assign(island.left.size(), 0);
   island.flow.search.reserve(static_cast<size_t>(std::max(island.system.rows(), island.rescue.rows())));
 }
 

@@ -231,6 +231,7 @@ void prepare_runge_kutta(Island<S>& island, const RungeKuttaOf<S>& method) {
   const size_t n = island.bodies.size() * numbers_per_body<S> + flow.work.size();
   flow.start.assign(n, 0);
   flow.now.assign(n, 0);
+  flow.start_left.assign(island.left.size(), 0);
   flow.rates.assign(n * static_cast<size_t>(method.stages + 1 + method.further_stages), 0);
   flow.end.assign(n, 0);
   flow.further_terms.assign(n * static_cast<size_t>(method.further_terms), 0);
@@ -258,6 +259,7 @@ void keep_start(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
   }
   if (method.implicit) begin_collocation(island, goes_on);
   flow.start_residual = island.residual;
+  flow.start_left.assign(island.left.begin(), island.left.end());
   keep_turns(island);
 }
 
@@ -265,6 +267,7 @@ template <class S>
 void go_back(WorldData<S>& world, Island<S>& island) {
   set_numbers(world, island, island.flow.start.data());
   island.residual = island.flow.start_residual;
+  island.left = island.flow.start_left;
   restore_turns(island);
   halt_immovable_bodies(world, island);
 }

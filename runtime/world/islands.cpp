@@ -12,6 +12,7 @@
 #include "runtime/balance/balance.hpp"
 #include "runtime/events/latch.hpp"
 #include "runtime/solve/loads.hpp"
+#include "runtime/solve/projection.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/solve/sweep_order.hpp"
 #include "runtime/solve/tension.hpp"
@@ -226,6 +227,7 @@ void prepare_topology(WorldData<S>& world) {
     if (world.needs_systems()) build_systems(world, island, at);
     if (!island.bonds.empty())  // among redundant joints
       for (System<S>* system : {&island.system, &island.rescue}) system->share_loads();
+    if (world.needs_systems() && world.settings.drift == Drift::projection) reserve_errors(island);
     list_loads(world, island);
     stepper_of<S>(world.settings.integrator).prepare(island);
     world.awake.push_back(i);
