@@ -93,7 +93,7 @@ char System<S>::bound_for(int r, Real excess, Real tolerance) const {
 }
 
 // Fixes rows outside their bounds at the bound, and frees rows whose bound has the wrong sign. True if nothing changed.
-// Two equal ropes would take turns by round-off: what they would pull, nearly redundant, cancels.
+// Impulses of nearly redundant rows cancel; by their round-off, two equal ropes would take turns.
 template <class S>
 bool System<S>::revise_active_set(bool one_by_one) {
   find_excess();

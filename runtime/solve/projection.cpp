@@ -84,6 +84,13 @@ typename S::Scalar change_of_errors(const Island<S>& island, typename S::Scalar 
   return most;
 }
 
+// Doubles correct all but misfits; floats leave round-off at rest as well.
+template <class S>
+bool never_stays(const Island<S>& island) {
+  using T = typename S::Scalar;
+  return !std::is_same_v<T, float> && !(island.residual > converged<T> * island.scale);
+}
+
 }  // namespace
 
 template <class S>
@@ -96,7 +103,7 @@ void reserve_errors(Island<S>& island) {
 template <class S>
 void note_errors(Island<S>& island) {
   using T = typename S::Scalar;
-  if (island.left.empty()) return;
+  if (island.left.empty() || never_stays(island)) return;
   each_run_of_errors(island, [](const T* now, int count, T* left) { std::copy_n(now, count, left); });
 }
 
@@ -113,7 +120,7 @@ typename S::Scalar round_off_of(const WorldData<S>& world, const Island<S>& isla
 
 template <class S>
 bool is_round_off(const WorldData<S>& world, const Island<S>& island, typename S::Scalar error) {
-  return error <= std::max(converged<typename S::Scalar> * island.scale, round_off_of(world, island));
+  return error <= converged<typename S::Scalar> * island.scale || error <= round_off_of(world, island);
 }
 
 template <class S>
@@ -123,6 +130,7 @@ bool stays_misfit(const WorldData<S>& world, const Island<S>& island, typename S
   // rows are redundant, so are those of its own size. Where no body moves, all are: near a loss of rank a correction of
   // round-off moves bodies by a thousand times as much, and they would wander for ever.
   constexpr T unchanged = T(1e-9), of_round_off = T(1) / 16, at_rest = T(1) / 4;
+  if (never_stays(island)) return false;
   const T left = island.residual, round_off = round_off_of(world, island), change = change_of_errors(island, error);
   if (std::is_same_v<T, float> && change <= at_rest * round_off && stands(world, island, h)) return true;
   const T above_round_off = T(island.redundant_rows > 0 ? by_precision<T>(0.25, 0) : by_precision<T>(4, 0));

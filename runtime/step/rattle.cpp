@@ -161,6 +161,11 @@ void take_back_last_round(WorldData<S>& world, Island<S>& island, typename S::Sc
   note_errors(island);
 }
 
+template <class S>
+void begin_search(Island<S>& island) {
+  island.flow.search.begin([&](size_t row) { return island.at_work().diagonal(static_cast<int>(row)); });
+}
+
 // Repeats K lambda = -C / h with the factor of the start and Broyden's updates, velocity += M^-1 J^T lambda, and the
 // drift. False if the error does not shrink because the step is too long. False also if the solution reverses the
 // bodies' velocities. That happens where a joint's direction reverses, as that of a rope whose length passes through 0.
@@ -169,17 +174,14 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
   using T = typename S::Scalar;
   System<S>& system = island.at_work();
   const T near = std::max(converged<T> * island.scale, of_long_arms<T> * T(island.size));
-  const auto begin_search = [&] {
-    island.flow.search.begin([&](size_t row) { return system.diagonal(static_cast<int>(row)); });
-  };
-  begin_search();
+  begin_search(island);
   T least = std::numeric_limits<T>::infinity(), at_first = 0;
   bool astray = false;
   for (int round = 0, vain = 0;; ++round) {
     drift(world, island, h);
     T error = find_errors(world, island, T(world.time) + h);
     if (round == 0 && stays_misfit(world, island, error, h)) return true;
-    note_errors(island);
+    island.residual = error, note_errors(island);
     const bool at_ends = system.lawful() && hold_ends(system, error);
     if (round == 0) at_first = error;
     island.residual = error;
@@ -198,7 +200,7 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
     system.solve();
     if (at_ends) {  // updates would not know which ends hold
       let_go_of_pulling_ends(system);
-      begin_search();
+      begin_search(island);
     } else if (!island.flow.search.next(system.lambda.data())) {
       return false;
     }
