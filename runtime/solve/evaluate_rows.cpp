@@ -24,7 +24,7 @@ template <class S>
 void prepare_turns(Island<S>& island) {
   size_t counters = 0;
   each_counters(island, [&](const auto*, int size) { counters += static_cast<size_t>(size); });
-  island.flow.start_turns.assign(counters, 0);
+  for (auto* turns : {&island.flow.start_turns, &island.flow.end_turns}) turns->assign(counters, 0);
 }
 
 template <class S>

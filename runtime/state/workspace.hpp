@@ -36,6 +36,7 @@ struct CollocationWorkspace {
 template <class T>
 struct StartOfWay {
   T C = T(0), rate = T(0);
+  bool near = false;  // the way comes near an event
 };
 
 template <class S>
@@ -60,9 +61,9 @@ struct FlowWorkspace {
   // Pivots of K at the stages of a step, as shares of their diagonals, and these, [stage][row]; of one row
   // (step/rank_loss.hpp).
   std::vector<double> pivots, diagonals, of_row;
-  T start_residual = 0;        // largest C at the start of the step
-  std::vector<T> start_left;   // Island::left there
-  std::vector<T> start_turns;  // counters of whole turns there
+  T start_residual = 0;                   // largest C at the start of the step
+  std::vector<T> start_left;              // Island::left there
+  std::vector<T> start_turns, end_turns;  // counters of whole turns there, and at its end
   CollocationWorkspace<T> collocation;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <cdot/spaces.hpp>
 
@@ -69,9 +70,8 @@ void interpolate(Flow<S>& flow, const RungeKuttaOf<S>& method) {
   }
 }
 
-// Thresholds for an event that was passed and just passed. In units of the resolution, relative to the margin at the
-// choice of the mode: a row that creeps may have chosen its mode many steps ago.
-constexpr double passed = -1, just_passed = -3;
+// In these units an event was just passed.
+constexpr double just_passed = -3;
 constexpr int most_searches = 60;  // for one event
 
 template <class T>
@@ -95,71 +95,6 @@ double first_event(const Flow<S>& flow) {
   return first;
 }
 
-// The way of a row's C within a step, as the cubic with its values and rates at both ends.
-template <class T>
-struct Way {
-  T from, to, rate_from, rate_to;  // rates times the length of the step
-  T at(T share) const {
-    const T rest = T(1) - share;
-    return rest * rest * (from + share * (T(2) * from + rate_from)) +
-           share * share * (to + rest * (T(2) * to - rate_to));
-  }
-  T bend() const { return rate_from + rate_to - T(2) * (to - from); }
-  T rate_at(T share) const { return rate_from + share * (rate_to - rate_from - T(3) * bend() * (T(1) - share)); }
-  // Where that rate turns back.
-  T turn() const { return T(0.5) + (rate_from - rate_to) / (T(6) * bend()); }
-};
-
-// A bound that rises and falls is seen at this many points of the way. More than `unseen` of its largest value, up and
-// down again, and the stages of the step may have missed it.
-constexpr int looks = 128;
-constexpr double unseen = 0.2;
-
-// f() with C at each point of the way.
-template <class S, class F>
-void look_along(Batch<S>& batch, int i, const Way<typename S::Scalar>& way, F f) {
-  using T = typename S::Scalar;
-  const T C = batch.C[i];
-  for (int look = 0; look <= looks; ++look) batch.C[i] = way.at(T(look) / T(looks)), f();
-  batch.C[i] = C;
-}
-
-template <class S>
-bool leaps_over_bound(Batch<S>& batch, int i, const Way<typename S::Scalar>& way) {
-  const bool up = batch.mode[i] == Mode::pushed;
-  if (!batch.law->moving || (!up && batch.mode[i] != Mode::pulled)) return false;
-  double first = 0, last = 0, changes = 0, most = 0;
-  bool any = false;
-  look_along(batch, i, way, [&] {
-    Guard<typename S::Scalar> guard;
-    batch.law->guard(batch, i, &guard);
-    const double bound = double(up ? guard.upper : guard.lower);
-    if (any) changes += std::abs(bound - last);
-    else first = bound;
-    any = true, last = bound, most = std::max(most, std::abs(bound));
-  });
-  return std::isfinite(most) && changes - std::abs(last - first) > unseen * most;
-}
-
-// Only a way that turns back comes back from an end, or from the place of another event.
-template <class S>
-bool leaps_over_end(Batch<S>& batch, int i, const Way<typename S::Scalar>& way,
-                    const Resolution<typename S::Scalar>& resolution, double least, typename S::Scalar rate) {
-  if ((batch.mode[i] != Mode::off && !batch.law->distance) || !(way.rate_from * way.rate_to < 0)) return false;
-  bool any = false;
-  look_along(batch, i, way, [&] { any |= double(margin_of_row(batch, i, resolution, rate)) < least; });
-  return any;
-}
-
-// A row that slips comes to rest within the step and slips on in its end. Between them it may have stuck.
-template <class S>
-bool leaps_over_rest(const Batch<S>& batch, int i, const Way<typename S::Scalar>& way,
-                     const Resolution<typename S::Scalar>& resolution, double least, typename S::Scalar h) {
-  if (batch.mode[i] != Mode::pushed && batch.mode[i] != Mode::pulled) return false;
-  const auto turn = way.turn();
-  return turn > 0 && turn < 1 && double(margin_of_row(batch, i, resolution, way.rate_at(turn) / h)) < least;
-}
-
 // Takes a step of h again and projects its end. If an implicit method finds none, stays at the start.
 template <class S>
 bool go_to(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
@@ -176,38 +111,6 @@ bool go_to(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
 template <class S>
 bool passed_event(const Flow<S>& flow) {
   return !flow.margins.empty() && furthest(flow.margins_chosen, flow.margins) < passed;
-}
-
-template <class S>
-void note_ways(const WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
-  using T = typename S::Scalar;
-  size_t k = 0;
-  each_guarded_slot(island, [&](Batch<S>& batch, int slot) {
-    const auto first = batch.C.begin() + slot * batch.ops->rows;
-    T C[most_rows];
-    std::copy_n(first, batch.ops->rows, C);
-    batch.ops->position(batch, slot, slot + 1, world.bodies, time);
-    for (int r = 0; r < batch.ops->rows; ++r, ++k) island.flow.ways[k] = {first[r], island.flow.row_rates[k]};
-    std::copy_n(C, batch.ops->rows, first);
-  });
-}
-
-template <class S>
-bool leaps(Island<S>& island, typename S::Scalar h) {
-  bool any = false;
-  size_t k = 0;
-  each_guarded_slot(island, [&](Batch<S>& batch, int slot) {
-    const size_t first = k;
-    k += static_cast<size_t>(batch.ops->rows);
-    if (any || batch.ops->rows > 1 || batch.law->cone_rows > 0) return;
-    const auto& [C, rate] = island.flow.ways[first];
-    const double least = std::min(double(island.flow.margins_chosen[first]), 0.0) + passed;
-    const Way<typename S::Scalar> way{C, batch.C[slot], h * rate, h * island.flow.row_rates[first]};
-    any = leaps_over_bound(batch, slot, way) ||
-          leaps_over_end(batch, slot, way, island.flow.resolution[first], least, island.flow.row_rates[first]) ||
-          leaps_over_rest(batch, slot, way, island.flow.resolution[first], least, h);
-  });
-  return any;
 }
 
 template <class S>
@@ -237,12 +140,20 @@ typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const Run
 }
 
 template <class S>
-void go_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
+void look_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+                  typename S::Scalar ahead) {
   Flow<S>& flow = island.flow;
   if (!flow.end_kept) keep_end(world, island, method, time);
+  const auto before = std::exchange(flow.ahead, ahead);
   interpolate(flow, method);
+  flow.ahead = before;
   set_numbers(world, island, flow.now.data());
-  project(world, island, time - flow.ahead, true);
+}
+
+template <class S>
+void go_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
+  look_between(world, island, method, time, island.flow.ahead);
+  project(world, island, time - island.flow.ahead, true);
 }
 
 template <class S>
@@ -261,9 +172,8 @@ void go_to_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& me
 
 #define CDOT_INSTANTIATE(S)                                                                                \
   template bool passed_event(const Flow<S>&);                                                              \
-  template void note_ways(const WorldData<S>&, Island<S>&, S::Scalar);                                     \
-  template bool leaps(Island<S>&, S::Scalar);                                                              \
   template S::Scalar go_to_event(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar); \
+  template void look_between(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);     \
   template void go_between(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                  \
   template void go_to_end(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)

@@ -7,18 +7,13 @@
 
 namespace cdot {
 
+// The threshold for an event that was passed. In units of the resolution, relative to the margin at the choice of the
+// mode: a row that creeps may have chosen its mode many steps ago.
+inline constexpr double passed = -1;
+
 // True if a guarded row passed an event in the last step.
 template <class S>
 bool passed_event(const Flow<S>& flow);
-
-// Call at the start of a step.
-template <class S>
-void note_ways(const WorldData<S>& world, Island<S>& island, typename S::Scalar time);
-
-// True if a step of h leapt over an event: a row met its end within the step and came back, or came to rest and slipped
-// on, or the bound of a force rose and fell, as over the tooth of a ratchet. No estimate of the error sees that.
-template <class S>
-bool leaps(Island<S>& island, typename S::Scalar h);
 
 // Goes to the first event of a step of h from `time` on that passed one. Returns the time from the step's start to the
 // event; 0 if an implicit method finds no shorter step.
@@ -26,7 +21,12 @@ template <class S>
 typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                typename S::Scalar time, typename S::Scalar h);
 
-// Moves the bodies to Flow::ahead before the end of the last step; `time` is that of the end.
+// Moves the bodies to `ahead` before the end of the last step, of Flow::length, which is at `time`. C stays open.
+template <class S>
+void look_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+                  typename S::Scalar ahead);
+
+// Moves the bodies to Flow::ahead before the end of the last step; `time` is that of the end. C is closed.
 template <class S>
 void go_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time);
 

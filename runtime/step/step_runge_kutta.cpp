@@ -16,6 +16,7 @@
 #include "runtime/step/between.hpp"
 #include "runtime/step/collocation.hpp"
 #include "runtime/step/integrators.hpp"
+#include "runtime/step/leaps.hpp"
 #include "runtime/step/rank_loss.hpp"
 #include "runtime/step/runge_kutta.hpp"
 
@@ -151,7 +152,8 @@ double try_adaptive_step(WorldData<S>& world, Island<S>& island, const RungeKutt
                          typename S::Scalar h, double allowed, double safety) {
   const double error =
       try_step(world, island, method, time, h, [&] { return error_of_step(island, method, h, allowed); });
-  return error <= 1 && leaps(island, h) ? std::max(2.0, std::pow(2 * safety, method.error_order)) : error;
+  return error <= 1 && leaps(world, island, method, time, h) ? std::max(2.0, std::pow(2 * safety, method.error_order))
+                                                             : error;
 }
 
 // True if the attempt with this error needs another one, of a length h and with this noise: near a loss of rank, or in

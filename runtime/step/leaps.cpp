@@ -1,0 +1,196 @@
+#include "runtime/step/leaps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/events/events.hpp"
+#include "runtime/events/guarded.hpp"
+#include "runtime/solve/solve.hpp"
+#include "runtime/step/between.hpp"
+
+namespace cdot {
+namespace {
+
+// The way of a row's C within a step, as the cubic with its values and rates at both ends.
+template <class T>
+struct Way {
+  T from, to, rate_from, rate_to;  // rates times the length of the step
+  T at(T share) const {
+    const T rest = T(1) - share;
+    return rest * rest * (from + share * (T(2) * from + rate_from)) +
+           share * share * (to + rest * (T(2) * to - rate_to));
+  }
+  T bend() const { return rate_from + rate_to - T(2) * (to - from); }
+  T rate_at(T share) const { return rate_from + share * (rate_to - rate_from - T(3) * bend() * (T(1) - share)); }
+  // Where that rate turns back.
+  T turn() const { return T(0.5) + (rate_from - rate_to) / (T(6) * bend()); }
+};
+
+// A bound that rises and falls is seen at this many points of the way. More than `unseen` of its largest value, up and
+// down again, and the stages of the step may have missed it.
+constexpr int looks = 128;
+constexpr double unseen = 0.2;
+
+// f() with C at each point of the way.
+template <class S, class F>
+void look_along(Batch<S>& batch, int i, const Way<typename S::Scalar>& way, F f) {
+  using T = typename S::Scalar;
+  const T C = batch.C[i];
+  for (int look = 0; look <= looks; ++look) batch.C[i] = way.at(T(look) / T(looks)), f();
+  batch.C[i] = C;
+}
+
+template <class S>
+bool leaps_over_bound(Batch<S>& batch, int i, const Way<typename S::Scalar>& way) {
+  const bool up = batch.mode[i] == Mode::pushed;
+  if (!batch.law->moving || (!up && batch.mode[i] != Mode::pulled)) return false;
+  double first = 0, last = 0, changes = 0, most = 0;
+  bool any = false;
+  look_along(batch, i, way, [&] {
+    Guard<typename S::Scalar> guard;
+    batch.law->guard(batch, i, &guard);
+    const double bound = double(up ? guard.upper : guard.lower);
+    if (any) changes += std::abs(bound - last);
+    else first = bound;
+    any = true, last = bound, most = std::max(most, std::abs(bound));
+  });
+  return std::isfinite(most) && changes - std::abs(last - first) > unseen * most;
+}
+
+// The least margin on a way, and the largest at its ends. A way comes near an event if it leaves less than `close` of
+// the dip between them. Cubics err by less than that.
+constexpr double close = 0.5;
+struct Dip {
+  double ends = 0, least = 0;
+  bool leaps(double threshold) const { return least < threshold; }
+  bool comes_near(double threshold) const { return least - threshold < close * (ends - least); }
+};
+
+// f(batch, i, k) for each single row that may leap, the k-th of Flow::margins.
+template <class S, class F>
+void each_single_row(Island<S>& island, F f) {
+  size_t k = 0;
+  each_guarded_slot(island, [&](Batch<S>& batch, int slot) {
+    const size_t first = std::exchange(k, k + static_cast<size_t>(batch.ops->rows));
+    if (batch.ops->rows == 1 && batch.law->cone_rows == 0) f(batch, slot, first);
+  });
+}
+
+template <class S>
+double threshold(const Flow<S>& flow, size_t k) {
+  return std::min(double(flow.margins_chosen[k]), 0.0) + passed;
+}
+
+// Only a way that turns back comes back from an end, or from the place of another event.
+template <class S>
+bool may_come_back(const Batch<S>& batch, int i, const Way<typename S::Scalar>& way) {
+  return (batch.mode[i] == Mode::off || batch.law->distance) && way.rate_from * way.rate_to < 0;
+}
+
+// A row that slips comes to rest within the step and slips on in its end. Between them it may have stuck.
+template <class S>
+bool may_rest(const Batch<S>& batch, int i, const Way<typename S::Scalar>& way) {
+  const bool slips = batch.mode[i] == Mode::pushed || batch.mode[i] == Mode::pulled;
+  return slips && way.turn() > 0 && way.turn() < 1;
+}
+
+template <class S>
+Dip dip_of_way(Batch<S>& batch, int i, const Way<typename S::Scalar>& way,
+               const Resolution<typename S::Scalar>& resolution, typename S::Scalar rate) {
+  double first = 0, last = 0, least = 0;
+  bool any = false;
+  look_along(batch, i, way, [&] {
+    last = double(margin_of_row(batch, i, resolution, rate));
+    if (!std::exchange(any, true)) first = least = last;
+    least = std::min(least, last);
+  });
+  return {std::max(first, last), least};
+}
+
+template <class S>
+Dip dip_of_rate(const Batch<S>& batch, int i, const Way<typename S::Scalar>& way,
+                const Resolution<typename S::Scalar>& resolution, typename S::Scalar h) {
+  const auto margin = [&](auto rate) { return double(margin_of_row(batch, i, resolution, rate / h)); };
+  return {std::max(margin(way.rate_from), margin(way.rate_to)), margin(way.rate_at(way.turn()))};
+}
+
+// The state between is looked at in the points between so many parts of the step.
+constexpr int looks_between = 32;
+
+// True if a row that comes near an event has passed it there. Leaves the end as it was.
+template <class S>
+bool leaps_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+                   typename S::Scalar h) {
+  using T = typename S::Scalar;
+  Flow<S>& flow = island.flow;
+  const auto take_turns_of_end = [&] { std::swap(flow.start_turns, flow.end_turns); };
+  take_turns_of_end(), keep_turns(island), take_turns_of_end();
+  bool any = false;
+  flow.length = h;
+  look_between(world, island, method, time + h, T(0));
+  restore_turns(island);
+  for (int look = 1; look < looks_between && !any; ++look) {
+    const T at = h * T(look) / T(looks_between);
+    look_between(world, island, method, time + h, h - at);
+    each_single_row(island, [&](Batch<S>& batch, int i, size_t k) {
+      if (!flow.ways[k].near) return;
+      const T C = batch.C[i];
+      batch.ops->position(batch, i, i + 1, world.bodies, time + at);
+      batch.ops->velocity(batch, i, i + 1, world.bodies.velocity.data(), batch.rate.data());
+      any |= double(margin_of_row(batch, i, flow.resolution[k], batch.rate[i] + batch.bias[i])) < threshold(flow, k);
+      batch.C[i] = C;
+    });
+  }
+  take_turns_of_end(), restore_turns(island), take_turns_of_end();
+  go_to_end(world, island, method, time + h);
+  flow.end_kept = false;  // the step may still end at an event
+  return any;
+}
+
+}  // namespace
+
+template <class S>
+void note_ways(const WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
+  using T = typename S::Scalar;
+  size_t k = 0;
+  each_guarded_slot(island, [&](Batch<S>& batch, int slot) {
+    const auto first = batch.C.begin() + slot * batch.ops->rows;
+    T C[most_rows];
+    std::copy_n(first, batch.ops->rows, C);
+    batch.ops->position(batch, slot, slot + 1, world.bodies, time);
+    for (int r = 0; r < batch.ops->rows; ++r, ++k) island.flow.ways[k] = {first[r], island.flow.row_rates[k]};
+    std::copy_n(C, batch.ops->rows, first);
+  });
+}
+
+template <class S>
+bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+           typename S::Scalar h) {
+  using T = typename S::Scalar;
+  Flow<S>& flow = island.flow;
+  bool any = false, near = false;
+  each_single_row(island, [&](Batch<S>& batch, int i, size_t k) {
+    auto& start = flow.ways[k];
+    const Way<T> way{start.C, batch.C[i], h * start.rate, h * flow.row_rates[k]};
+    start.near = false;
+    const auto look = [&](const Dip& dip) {
+      any |= dip.leaps(threshold(flow, k)), start.near |= dip.comes_near(threshold(flow, k));
+    };
+    any |= leaps_over_bound(batch, i, way);
+    if (may_come_back(batch, i, way)) look(dip_of_way(batch, i, way, flow.resolution[k], flow.row_rates[k]));
+    if (may_rest(batch, i, way)) look(dip_of_rate(batch, i, way, flow.resolution[k], h));
+    near |= start.near;
+  });
+  return any || (near && method.further_terms > 0 && leaps_between(world, island, method, time, h));
+}
+
+#define CDOT_INSTANTIATE(S)                                            \
+  template void note_ways(const WorldData<S>&, Island<S>&, S::Scalar); \
+  template bool leaps(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

@@ -1,0 +1,19 @@
+// Events that a step leaps over: they begin and end within it. No estimate of the error sees them.
+#pragma once
+
+#include "runtime/step/runge_kutta.hpp"
+
+namespace cdot {
+
+// Call at the start of a step.
+template <class S>
+void note_ways(const WorldData<S>& world, Island<S>& island, typename S::Scalar time);
+
+// True if the step of h from `time` on, whose end is the present state, leapt over an event: a row met its end and came
+// back, or came to rest and slipped on, or the bound of a force rose and fell, as over the tooth of a ratchet. The
+// cubic way of a row tells; where it comes near an event, the method's interpolant decides.
+template <class S>
+bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+           typename S::Scalar h);
+
+}  // namespace cdot
