@@ -36,7 +36,8 @@ struct CollocationWorkspace {
 template <class T>
 struct StartOfWay {
   T C = T(0), rate = T(0);
-  bool near = false;  // the way comes near an event
+  bool near = false;                                  // the way comes near an event
+  double least = std::numeric_limits<double>::max();  // margin of a held row's force at the stages
 };
 
 template <class S>

@@ -166,6 +166,17 @@ void note_ways(const WorldData<S>& world, Island<S>& island, typename S::Scalar 
   });
 }
 
+// Where friction grows with a load, its bound is known at the ends of a step only.
+template <class S>
+void note_forces(Island<S>& island, bool first) {
+  Flow<S>& flow = island.flow;
+  each_single_row(island, [&](Batch<S>& batch, int i, size_t k) {
+    if (batch.mode[i] != Mode::held || batch.law->by_load) return;
+    const double margin = double(margin_of_row(batch, i, flow.resolution[k], typename S::Scalar(0)));
+    flow.ways[k].least = first ? margin : std::min(flow.ways[k].least, margin);
+  });
+}
+
 template <class S>
 bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
            typename S::Scalar h) {
@@ -180,6 +191,8 @@ bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
       any |= dip.leaps(threshold(flow, k)), start.near |= dip.comes_near(threshold(flow, k));
     };
     any |= leaps_over_bound(batch, i, way);
+    if (batch.mode[i] == Mode::held)
+      any |= start.least < threshold(flow, k) && double(flow.margins[k]) >= threshold(flow, k);
     if (may_come_back(batch, i, way)) look(dip_of_way(batch, i, way, flow.resolution[k], flow.row_rates[k]));
     if (may_rest(batch, i, way)) look(dip_of_rate(batch, i, way, flow.resolution[k], h));
     near |= start.near;
@@ -188,6 +201,7 @@ bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
 }
 
 #define CDOT_INSTANTIATE(S)                                            \
+  template void note_forces(Island<S>&, bool);                         \
   template void note_ways(const WorldData<S>&, Island<S>&, S::Scalar); \
   template bool leaps(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)

@@ -9,9 +9,13 @@ namespace cdot {
 template <class S>
 void note_ways(const WorldData<S>& world, Island<S>& island, typename S::Scalar time);
 
+// Call after each stage of an explicit step: of rows that are held, how near their forces come to a bound.
+template <class S>
+void note_forces(Island<S>& island, bool first);
+
 // True if the step of h from `time` on, whose end is the present state, leapt over an event: a row met its end and came
-// back, or came to rest and slipped on, or the bound of a force rose and fell, as over the tooth of a ratchet. The
-// cubic way of a row tells; where it comes near an event, the method's interpolant decides.
+// back, or came to rest and slipped on, or let go and held again, or the bound of a force rose and fell, as over the
+// tooth of a ratchet. The cubic way of a row tells; where it comes near an event, the method's interpolant decides.
 template <class S>
 bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
            typename S::Scalar h);

@@ -13,6 +13,7 @@
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/step/collocation.hpp"
+#include "runtime/step/leaps.hpp"
 #include "runtime/step/rank_loss.hpp"
 
 namespace cdot {
@@ -175,7 +176,10 @@ template <class S>
 bool take_stages(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                  typename S::Scalar h) {
   if (method.implicit) return collocate(world, island, method, time, h);
-  for (int stage = 1; stage < method.stages; ++stage) take_stage(world, island, method, stage, time, h);
+  for (int stage = 1; stage < method.stages; ++stage) {
+    take_stage(world, island, method, stage, time, h);
+    note_forces(island, stage == 1);
+  }
   combine(island.flow, method.a[method.stages], method.stages, h);
   set_numbers(world, island, island.flow.now.data());
   return true;
