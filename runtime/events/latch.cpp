@@ -44,7 +44,8 @@ void latch_after_substep(WorldData<S>& world, typename S::Scalar h) {
       if (!has_events(segment)) continue;
       Batch<S>& batch = *segment.batch;
       any = true;
-      batch.ops->position(batch, segment.begin, segment.end, world.bodies, T(world.time) + h);
+      // C alone is rounded otherwise than beside J, which a state restored has.
+      if (!island.evaluated) batch.ops->position(batch, segment.begin, segment.end, world.bodies, T(world.time) + h);
       batch.ops->velocity(batch, segment.begin, segment.end, world.bodies.velocity.data(), batch.rate.data());
     }
     if (!any || !latch_by_impulses(island, h)) continue;
