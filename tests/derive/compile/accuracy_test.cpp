@@ -100,9 +100,9 @@ TEST(CompiledWays, AreLeftOutWithAReason) {
   EXPECT_NE(only.text.find("no way is left: there is no compiler /no/such/compiler. Fix: install g++, or set CXX"),
             std::string::npos)
       << only.text;
-  const ShellResult gear = accuracy("tests/torture/found/gear_at_half_a_turn.toml", "--only 'rk4, direct' --levels 2");
+  const ShellResult gear = accuracy("tests/derive/compile/scenes/soft_gear.toml", "--only 'rk4, direct' --levels 2");
   EXPECT_NE(gear.text.find("not compiled\n    rk4: "), std::string::npos) << gear.text;
-  EXPECT_NE(gear.text.find("turn.toml:37:1: error: j2: cdot compile knows no rows that count whole turns"),
+  EXPECT_NE(gear.text.find("soft_gear.toml:33:1: error: teeth: cdot compile knows no soft rows that count whole turns"),
             std::string::npos)
       << gear.text;
 }
