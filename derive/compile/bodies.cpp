@@ -176,8 +176,9 @@ std::string BodyTexts::judged() const {
       }
       speeds += fmt::format("    most = larger({}, most);\n", square);
       const double mass = turns ? b.inv_I : b.inv_m;
-      const std::string share =
-          fmt::format("select({0} > T({1}) * ({2}), T(1), T({1}))", change, "single ? 1e-4 : 1e-9", size);
+      const std::string share =  // as the World has it: runtime/step/work_in_part.hpp
+          fmt::format("select({} > T({}) * ({}), T(1), T({}))", change, "single ? 1e-4 : 1e-9", size,
+                      "single ? 9.5367431640625e-05 : 1.7763568394002505e-11");
       if (turns && b.inertia_turns)
         energies += fmt::format("    before = sum;\n{}    sum = before + {} * (sum - before);\n",
                                 spin_energy_of(b, name), share);

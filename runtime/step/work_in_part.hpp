@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runtime/state/world_data.hpp"
 #include "runtime/step/kick_drift.hpp"
@@ -26,12 +27,13 @@ double work_of_joints(const Island<S>& island) {
   return work;
 }
 
-// The kinetic energy of the motions that the joints changed in this part. A wheel that merely spins counts by the
-// round-off of its energy: else where nothing changes, as of a cart on a rail, any round-off would be too much work.
+// The kinetic energy of the motions that the joints changed in this part. Others, as of a wheel that merely spins or of
+// a cart on a rail, count as much as makes the round-off of their work slight.
 template <class S>
 double moved_energy(const WorldData<S>& world, const Island<S>& island) {
   using T = typename S::Scalar;
   constexpr double same = by_precision<T>(1e-4, 1e-9);
+  constexpr double of_round_off = 8 * double(std::numeric_limits<T>::epsilon()) / slight_work<T>;
   double energy = 0;
   for (size_t k = 0; k < island.bodies.size(); ++k) {
     const int i = island.bodies[k];
@@ -44,7 +46,7 @@ double moved_energy(const WorldData<S>& world, const Island<S>& island) {
         own += 0.5 * double(momentum[c]) * double(v[c]);
         change += std::abs(double(v[c]) - double(before[c])), size += std::abs(double(v[c]));
       }
-      energy += change > same * size ? own : same * own;
+      energy += change > same * size ? own : of_round_off * own;
     }
   }
   return energy;
