@@ -5,7 +5,7 @@
 
 namespace cdot {
 
-// Call at the start of a step.
+// Call at the start of a step whose length the error chooses.
 template <class S>
 void note_ways(const WorldData<S>& world, Island<S>& island, typename S::Scalar time);
 

@@ -178,7 +178,7 @@ bool take_stages(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& 
   if (method.implicit) return collocate(world, island, method, time, h);
   for (int stage = 1; stage < method.stages; ++stage) {
     take_stage(world, island, method, stage, time, h);
-    note_forces(island, stage == 1);
+    if (world.settings.local_error > 0) note_forces(island, stage == 1);
   }
   combine(island.flow, method.a[method.stages], method.stages, h);
   set_numbers(world, island, island.flow.now.data());

@@ -309,7 +309,7 @@ bool take_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& me
   }
   keep_start(world, island, method, time, goes_on);
   flow.low.assign(flow.margins.begin(), flow.margins.end());
-  note_ways(world, island, time);
+  if (world.settings.local_error > 0) note_ways(world, island, time);
   flow.end_kept = flow.projects_stages = false;
   // A hook after the substep may change the World, so no step may pass the end.
   const T reach = world.after_substep.empty() ? std::min(furthest_reach * h, way.to_break) : way.left;
