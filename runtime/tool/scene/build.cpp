@@ -137,6 +137,7 @@ std::string end_name(const Scene& scene, const PassedEnd& end) {
 template <class S>
 std::string inconsistency_report(const Scene& scene, const BasicWorld<S>& world, double tolerance) {
   std::string report;
+  const std::string_view project = scene.project ? "" : ", or set project = true";
   const std::vector<Inconsistency> rows = world.inconsistencies(tolerance);
   int violated = 0;
   std::size_t begin = 0, end = 0;  // the rows of one joint
@@ -150,14 +151,14 @@ std::string inconsistency_report(const Scene& scene, const BasicWorld<S>& world,
     report += scene.source->paragraph(
         "warning", source.where,
         fmt::format("the start violates {} \"{}\": {}", source.definition.type, source.name, list),
-        "correct the pose or velocity, or set project = true");
+        fmt::format("correct the pose or velocity{}", project));
   }
   for (const PassedEnd& end : world.passed_ends(tolerance)) {
     if (++violated > most_violated) continue;
     report +=
         scene.source->paragraph("warning", scene.joints[static_cast<std::size_t>(end.joint)].where,
                                 fmt::format("the start passes {} by {:.3g} (m or rad)", end_name(scene, end), end.by),
-                                "correct the pose or the end, or set project = true");
+                                fmt::format("correct the pose or the end{}", project));
   }
   if (violated > most_violated)
     report += fmt::format("warning: the start violates {} more joint{}\n", violated - most_violated,

@@ -41,6 +41,17 @@ TEST(Run, InconsistentStartIsReportedPerJointAndRow) {
   EXPECT_EQ(result.time, 1);
 }
 
+// Two pins 1.25 m apart hold a rod at points 1 m apart. To project is no fix where the scene does so.
+TEST(Run, AProjectionInVainIsNoAdvice) {
+  std::string warnings;
+  const std::string other =
+      "[[joint]]\nname = \"other\"\ntype = \"revolute\"\nbodies = [\"world\", \"rod\"]\npa = [1.25, 0]\npb = [0.5, "
+      "0]\n";
+  simulate(scene_of("project = true\n" + std::string(pendulum) + other), {}, warnings);
+  EXPECT_NE(warnings.find("the start violates revolute \"other\""), std::string::npos) << warnings;
+  EXPECT_NE(warnings.find("  fix: correct the pose or velocity\n"), std::string::npos) << warnings;
+}
+
 // The hinge stands 0.25 rad outside its limit; the rope is 0.3 m too long. Both are told with place and amount and fail
 // the run, and the projection that the message advises mends them.
 TEST(Run, AStartBeyondAnEndIsReportedAndFails) {
