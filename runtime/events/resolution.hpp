@@ -1,4 +1,4 @@
-// What counts as 0 for the events of a row: differences of C, of its rate and of its force.
+// Differences of C, of its rate and of its force that count as 0 for the events of a row.
 #pragma once
 
 #include "runtime/state/world_data.hpp"

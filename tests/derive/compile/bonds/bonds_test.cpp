@@ -157,6 +157,21 @@ TEST(CompiledBonds, BreakInTimeInTheTest) {
   breaks_in_the_test<bonds_radau5<double>>();
 }
 
+// One scene by each method, beside the World.
+template <template <class> class Euler, template <class> class Implicit, template <class> class Rattle,
+          template <class> class Rk4, template <class> class Dop853, template <class> class Radau5>
+void run_by_six_methods(const std::string& file, double until) {
+  const auto runs = [&](auto of, Integrator integrator) {
+    cdot::runs_as_the_world<decltype(of)>(scenes + file, integrator, 1e-9, until);
+  };
+  runs(Euler<double>{}, Integrator::euler);
+  runs(Implicit<double>{}, Integrator::implicit);
+  runs(Rattle<double>{}, Integrator::rattle);
+  runs(Rk4<double>{}, Integrator::rk4);
+  runs(Dop853<double>{}, Integrator::dop853);
+  runs(Radau5<double>{}, Integrator::radau5);
+}
+
 // The impulse of a blow is a load of the step in which it falls: by Runge-Kutta methods m v of the weight, so m v / h.
 template <class Scene>
 void blow_is_a_load() {
@@ -172,15 +187,8 @@ void blow_is_a_load() {
 }
 
 TEST(CompiledBonds, BreakByBlowsAsInTheWorld) {
-  const auto runs = [](auto of, Integrator integrator) {
-    cdot::runs_as_the_world<decltype(of)>(scenes + "blows.toml", integrator, 1e-9, 0.8);
-  };
-  runs(blows_euler<double>{}, Integrator::euler);
-  runs(blows_implicit<double>{}, Integrator::implicit);
-  runs(blows_rattle<double>{}, Integrator::rattle);
-  runs(blows_rk4<double>{}, Integrator::rk4);
-  runs(blows_dop853<double>{}, Integrator::dop853);
-  runs(blows_radau5<double>{}, Integrator::radau5);
+  run_by_six_methods<blows_euler, blows_implicit, blows_rattle, blows_rk4, blows_dop853, blows_radau5>("blows.toml",
+                                                                                                       0.8);
   blow_is_a_load<blows_rk4<double>>();
   blow_is_a_load<blows_dop853<double>>();
   blow_is_a_load<blows_radau5<double>>();
@@ -281,15 +289,8 @@ TEST(CompiledBonds, LanesAreAsAlone) {
 
 // Two types of such a header once had the same name.
 TEST(CompiledBonds, GoBesideEverythingElse) {
-  const auto runs = [](auto of, Integrator integrator) {
-    cdot::runs_as_the_world<decltype(of)>(scenes + "everything.toml", integrator, 1e-9, 1.5);
-  };
-  runs(everything_euler<double>{}, Integrator::euler);
-  runs(everything_implicit<double>{}, Integrator::implicit);
-  runs(everything_rattle<double>{}, Integrator::rattle);
-  runs(everything_rk4<double>{}, Integrator::rk4);
-  runs(everything_dop853<double>{}, Integrator::dop853);
-  runs(everything_radau5<double>{}, Integrator::radau5);
+  run_by_six_methods<everything_euler, everything_implicit, everything_rattle, everything_rk4, everything_dop853,
+                     everything_radau5>("everything.toml", 1.5);
 }
 
 }  // namespace
