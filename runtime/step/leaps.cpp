@@ -8,6 +8,7 @@
 
 #include "runtime/events/events.hpp"
 #include "runtime/events/guarded.hpp"
+#include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/step/between.hpp"
 
@@ -120,10 +121,24 @@ Dip dip_of_rate(const Batch<S>& batch, int i, const Way<typename S::Scalar>& way
 // The state between is looked at in the points between so many parts of the step.
 constexpr int looks_between = 32;
 
-// True if a row that comes near an event has passed it there. Leaves the end as it was.
+// Where friction grows with a load, its bound is known at the ends of a step only.
 template <class S>
-bool leaps_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
-                   typename S::Scalar h) {
+bool may_let_go(const Batch<S>& batch, int i) {
+  return batch.mode[i] == Mode::held && !batch.law->by_load;
+}
+
+// A row that is held at the end, and whose force is bounded.
+template <class S>
+bool may_have_let_go(const Batch<S>& batch, int i, const Flow<S>& flow, size_t k) {
+  const double margin = double(flow.margins[k]);
+  return may_let_go(batch, i) && margin >= threshold(flow, k) && std::isfinite(margin);
+}
+
+// True if a row has passed its event at one of the looks 1, 2, ... before the last, at a time of at(look) after the
+// start: by its force a row that is held, otherwise one that comes near. Leaves the end as it was.
+template <class S, class F>
+bool passes_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+                    typename S::Scalar h, bool by_force, int last, F at) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
   const auto take_turns_of_end = [&] { std::swap(flow.start_turns, flow.end_turns); };
@@ -132,13 +147,17 @@ bool leaps_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>
   flow.length = h;
   look_between(world, island, method, time + h, T(0));
   restore_turns(island);
-  for (int look = 1; look < looks_between && !any; ++look) {
-    const T at = h * T(look) / T(looks_between);
-    look_between(world, island, method, time + h, h - at);
+  for (int look = 1; look < last && !any; ++look) {
+    look_between(world, island, method, time + h, h - at(look));
+    if (by_force) {
+      evaluate_anew(world, island, time + at(look));
+      island.factored = false;
+      accelerate(world, island, time + at(look));
+    }
     each_single_row(island, [&](Batch<S>& batch, int i, size_t k) {
-      if (!flow.ways[k].near) return;
+      if (by_force ? !may_have_let_go(batch, i, flow, k) : !flow.ways[k].near) return;
       const T C = batch.C[i];
-      batch.ops->position(batch, i, i + 1, world.bodies, time + at);
+      batch.ops->position(batch, i, i + 1, world.bodies, time + at(look));
       batch.ops->velocity(batch, i, i + 1, world.bodies.velocity.data(), batch.rate.data());
       any |= double(margin_of_row(batch, i, flow.resolution[k], batch.rate[i] + batch.bias[i])) < threshold(flow, k);
       batch.C[i] = C;
@@ -166,12 +185,11 @@ void note_ways(const WorldData<S>& world, Island<S>& island, typename S::Scalar 
   });
 }
 
-// Where friction grows with a load, its bound is known at the ends of a step only.
 template <class S>
 void note_forces(Island<S>& island, bool first) {
   Flow<S>& flow = island.flow;
   each_single_row(island, [&](Batch<S>& batch, int i, size_t k) {
-    if (batch.mode[i] != Mode::held || batch.law->by_load) return;
+    if (!may_let_go(batch, i)) return;
     const double margin = double(margin_of_row(batch, i, flow.resolution[k], typename S::Scalar(0)));
     flow.ways[k].least = first ? margin : std::min(flow.ways[k].least, margin);
   });
@@ -182,7 +200,7 @@ bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
            typename S::Scalar h) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
-  bool any = false, near = false;
+  bool any = false, near = false, held = false;
   each_single_row(island, [&](Batch<S>& batch, int i, size_t k) {
     auto& start = flow.ways[k];
     const Way<T> way{start.C, batch.C[i], h * start.rate, h * flow.row_rates[k]};
@@ -191,13 +209,20 @@ bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
       any |= dip.leaps(threshold(flow, k)), start.near |= dip.comes_near(threshold(flow, k));
     };
     any |= leaps_over_bound(batch, i, way);
-    if (batch.mode[i] == Mode::held)
-      any |= start.least < threshold(flow, k) && double(flow.margins[k]) >= threshold(flow, k);
+    const bool bounded = may_have_let_go(batch, i, flow, k);
+    any |= bounded && start.least < threshold(flow, k);
     if (may_come_back(batch, i, way)) look(dip_of_way(batch, i, way, flow.resolution[k], flow.row_rates[k]));
     if (may_rest(batch, i, way)) look(dip_of_rate(batch, i, way, flow.resolution[k], h));
     near |= start.near;
+    held |= bounded;
   });
-  return any || (near && method.further_terms > 0 && leaps_between(world, island, method, time, h));
+  if (any) return true;
+  const auto at_stage = [&](int stage) { return h * T(method.c[stage]); };
+  if (held && method.implicit && passes_between(world, island, method, time, h, true, method.stages - 1, at_stage))
+    return true;
+  const auto at_part = [&](int look) { return h * T(look) / T(looks_between); };
+  return near && method.further_terms > 0 &&
+         passes_between(world, island, method, time, h, false, looks_between, at_part);
 }
 
 #define CDOT_INSTANTIATE(S)                                            \

@@ -9,7 +9,8 @@ namespace cdot {
 template <class S>
 void note_ways(const WorldData<S>& world, Island<S>& island, typename S::Scalar time);
 
-// Call after each stage of an explicit step: of rows that are held, how near their forces come to a bound.
+// Call after each stage of an explicit step: of rows that are held, how near their forces come to a bound. Newton needs
+// no such forces at the stages of an implicit step: leaps() finds them there.
 template <class S>
 void note_forces(Island<S>& island, bool first);
 
