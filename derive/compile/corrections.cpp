@@ -370,7 +370,7 @@ std::string corrections_of(double tolerance, const Contents& has, const std::str
 
 std::string bounded_of(const std::string& is_rate, const Contents& has) {
   std::string text;
-  if (has.rows || has.bounded || has.midpoint || has.collocated > 0) text += largest_row;
+  if (has.rows || has.bounded || has.midpoint || has.snaps || has.collocated > 0) text += largest_row;
   if (!has.bounded) return text;
   const std::string impulses =
       when(has.rows, "    T l[bounded][rows];\n") +

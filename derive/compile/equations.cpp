@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <stdexcept>
 
+#include "derive/compile/borne/borne.hpp"
 #include "derive/compile/foresight/aim.hpp"
 #include "derive/compile/midpoint/middle.hpp"
 #include "derive/compile/rows/bounds.hpp"
@@ -96,6 +97,12 @@ class EquationWriter {
     if (!dampers.empty()) out_.dampen = dampers.dampen();
     out_.effect_of = dampers.effect_of(), out_.triangle = dampers.triangle();
     if (!out_.effect_of.empty()) out_.notice = dampers.notice(), out_.look = dampers.look();
+    if (mechanism_.has_bonds_on_effects()) {
+      const Borne borne(blocks_);
+      out_.bear_start = borne.at_start(out_.constants, dampers);
+      if (!dampers.empty() || mechanism_.method == Method::rattle)
+        out_.bear_end = borne.at_end(out_.constants, dampers);
+    }
     if (out_.finishes) out_.finish = dampers.finish(joints_);
     for (std::size_t b = 0; b < mechanism_.bounded.size() && mechanism_.method == Method::rattle; ++b)
       out_.exerts |= prescribes_rate(blocks_, b);
@@ -131,6 +138,7 @@ class EquationWriter {
     if (system().size() > 0 || !mechanism_.bounded.empty()) out_.stiffen = middle.stiffen();
     out_.improve = middle.improve();
     out_.taut = middle.tensions().rows(), out_.taut_numbers = middle.tensions().numbers();
+    if (mechanism_.has_bonds_on_effects()) out_.bear = middle.bear(Borne(blocks_));
   }
 
   void write_foreseen() {
@@ -163,6 +171,10 @@ class EquationWriter {
 
   void write_bonds() {
     out_.strain = strain_of(blocks_, out_.constants);
+    const Borne borne(blocks_);
+    out_.first_borne = borne.first();
+    if (mechanism_.method == Method::euler && borne.size() > 0) out_.bear = borne.in_kick(out_.constants);
+    if (mechanism_.on_accelerations() && borne.size() > 0) out_.bear = borne.at_rates(out_.constants);
     if (mechanism_.method == Method::rattle)
       out_.draw =
           displace_of(blocks_, joints_, out_.constants, [&](std::size_t b) { return prescribes_rate(blocks_, b); });
@@ -240,10 +252,11 @@ class EquationWriter {
 }  // namespace
 
 std::vector<const Program*> programs_of_equations(const Equations& e) {
-  return {&e.evaluate, &e.errors,  &e.rates,     &e.accelerate, &e.solve,     &e.apply,  &e.aim,     &e.solve_aimed,
-          &e.fall,     &e.kick,    &e.potential, &e.reach,      &e.past,      &e.along,  &e.angles,  &e.dampen,
-          &e.notice,   &e.look,    &e.finish,    &e.exert,      &e.distances, &e.guard,  &e.resolve, &e.carry,
-          &e.weigh,    &e.stiffen, &e.improve,   &e.displace,   &e.nearest,   &e.strain, &e.draw,    &e.drift_of_ends};
+  return {&e.evaluate,    &e.errors,  &e.rates,  &e.accelerate,    &e.solve,   &e.apply,      &e.aim,
+          &e.solve_aimed, &e.fall,    &e.kick,   &e.potential,     &e.reach,   &e.past,       &e.along,
+          &e.angles,      &e.dampen,  &e.notice, &e.look,          &e.finish,  &e.exert,      &e.distances,
+          &e.guard,       &e.resolve, &e.carry,  &e.weigh,         &e.stiffen, &e.improve,    &e.displace,
+          &e.nearest,     &e.strain,  &e.draw,   &e.drift_of_ends, &e.bear,    &e.bear_start, &e.bear_end};
 }
 
 std::set<std::string> functions_of(const Program& program) {

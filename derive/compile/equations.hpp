@@ -59,10 +59,14 @@ struct Equations {
   Program distances;      // q, v, time -> after, until: distances from events
   Program draw;    // by RATTLE: q, time, J, lambda, mu -> d: the pull of joints and of rows that prescribe a rate
   Program strain;  // load, time -> from: the distances of joints from their end
-  std::vector<std::size_t> first_rows;  // by joint; the last one is the number of all rows
-  Program guard;                        // by Runge-Kutta methods (methods/modes.hpp): q, v, time -> B
-  Program carry;                        // q, time, J, lambda, force -> load: the forces with which bounds grow
-  Program resolve;                      // q, v, time, a, force, h -> of_value, of_rate, of_force: resolutions
+  // q, v, time, ... -> borne: forces of effects that may break (borne/borne.hpp). By RATTLE and by the midpoint rule
+  // what they did at the start of a step and at its end, too, in `bear_start` and `bear_end`.
+  Program bear, bear_start, bear_end;
+  std::vector<std::size_t> first_borne;  // by joint that may break; the last one is the number of all rows
+  std::vector<std::size_t> first_rows;   // by joint; the last one is the number of all rows
+  Program guard;                         // by Runge-Kutta methods (methods/modes.hpp): q, v, time -> B
+  Program carry;                         // q, time, J, lambda, force -> load: the forces with which bounds grow
+  Program resolve;                       // q, v, time, a, force, h -> of_value, of_rate, of_force: resolutions
 };
 std::vector<const Program*> programs_of_equations(const Equations& equations);
 // The functions that it calls, beside those of every header.

@@ -137,7 +137,7 @@ class HeaderWriter {
       line("  // Of rows with bounds: 1 if they have begun, if they have ended, if they act.");
       line("  struct Events {\n    T began[bounded], ended[bounded], acts[bounded];\n  };");
     }
-    if (has().bonds) text_ += bonds_type(mechanism_, has());
+    if (has().bonds) text_ += bonds_type(mechanism_, equations_.first_borne.back(), has());
     text_ += state_of(mechanism_, has(), has_inputs());
   }
 
@@ -212,6 +212,7 @@ class HeaderWriter {
                          ", const T& h, Velocity (&next)[bodies]" + (has().rows ? ", T (&lambda)[rows]" : "") +
                          (has().bounded ? ", Bounded& B)" : ")"),
                      equations_.kick);
+    if (has().bears) write_bear(at, moving);
     if (has().corrects_loads()) write_carry(at), text_ += settle_loads_of(has(), equations_.cones);
     if (has().ends) write_ends(at, moving);
     if (has().events) {
@@ -224,13 +225,23 @@ class HeaderWriter {
     if (has().bonds) {
       write_function("How far joints are from breaking", "strain(" + arguments_of_strain(mechanism_),
                      equations_.strain);
-      if (has().rattle) write_function(draws, "draw(" + at + arguments_of_draw(has()), equations_.draw);
-      text_ += snap_of(mechanism_, equations_.first_rows, has());
+      if (has().pulls()) write_function(draws, "draw(" + at + arguments_of_draw(has()), equations_.draw);
+      text_ += snap_of(mechanism_, {equations_.first_rows, equations_.first_borne}, has());
     }
     if (has().angles)
       write_function("Angles with their whole turns",
                      fmt::format("count({}, T (&angle)[{}], T (&turns)[{}])", at, mechanism_.angles, mechanism_.angles),
                      equations_.angles);
+  }
+
+  void write_bear(const std::string& at, const std::string& moving) {
+    const auto write = [&](const char* comment, const std::string& name, const std::string& more, const Program& of) {
+      if (!of.outputs.empty())
+        write_function(comment, name + "(" + at + ", " + moving + more + ", T (&borne)[borne_rows])", of);
+    };
+    write("Forces of effects that may break", "bear", arguments_of_bear(mechanism_.method), equations_.bear);
+    write("What they do at the start of a step of h", "bear_start", ", const T& h", equations_.bear_start);
+    write("What they do at its end", "bear_end", arguments_of_bear_end(has()), equations_.bear_end);
   }
 
   // At both ends of a step.

@@ -65,6 +65,8 @@ constexpr const char* euler_by_kick = R"(    Velocity next[bodies];
 {}    for (int i = 0; i < bodies; ++i) s.v[i] = next[i];
 )";
 
+constexpr const char* euler_bears = "    bear($ss.q, s.time, s.v, h, next, s.bonds.borne);\n";
+
 constexpr const char* kick_with_bounds = R"(    Bounded B;
     T mu[bounded];
     kick({0}, B);
@@ -128,9 +130,10 @@ std::string euler(const Mechanism& mechanism, const Contents& has) {
   if (has.effects || has.bounded) {
     const std::string arguments =
         has.rows ? "$ss.q, s.time, s.v, s.J, h, next, s.lambda" : "$ss.q, s.time, s.v, h, next";
-    text += fmt::format(euler_by_kick, has.bounded ? fmt::format(kick_with_bounds, arguments,
-                                                                 has.rows ? adds_impulses : "", settles_impulses(has))
-                                                   : fmt::format("    kick({});\n", arguments));
+    const std::string kicks =
+        has.bounded ? fmt::format(kick_with_bounds, arguments, has.rows ? adds_impulses : "", settles_impulses(has))
+                    : fmt::format("    kick({});\n", arguments);
+    text += fmt::format(euler_by_kick, kicks + (has.bears ? euler_bears : ""));
   } else {
     text += has.rows ? fmt::format(euler_by_joints, has.feeds ? fmt::format(feeds_back, mechanism.fed_back) : "")
                      : "    push($qs.v, h);\n";
@@ -184,6 +187,8 @@ Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
           .strong = mechanism.on_accelerations() && mechanism.has_strong_motors(),
           .bonds = !mechanism.bonds.empty(),
           .snaps = !mechanism.bonds.empty() && mechanism.on_accelerations(),
+          .bears = !equations.bear_start.outputs.empty() || !equations.bear.outputs.empty(),
+          .bears_end = !equations.bear_end.outputs.empty(),
           .weighs = mechanism.weighs(),
           .drags = std::ranges::any_of(mechanism.bodies, &Body::drags),
           .foresees = !equations.apply.outputs.empty(),
@@ -231,16 +236,29 @@ Calls calls_of(Method method, const Contents& has) {
 }
 
 long operations_of(const Equations& e, const Calls& calls) {
-  const std::pair<int, const Program*> programs[] = {{calls.evaluate, &e.evaluate},   {calls.errors, &e.errors},
-                                                     {calls.rates, &e.rates},         {calls.accelerate, &e.accelerate},
-                                                     {calls.solve, &e.solve},         {1, &e.apply},
-                                                     {calls.fall, &e.fall},           {calls.kick, &e.kick},
-                                                     {calls.past, &e.past},           {1, &e.angles},
-                                                     {calls.distances, &e.distances}, {calls.dampen, &e.dampen},
-                                                     {calls.notice, &e.notice},       {calls.look, &e.look},
-                                                     {calls.finish, &e.finish},       {1, &e.weigh},
-                                                     {calls.improve, &e.stiffen},     {calls.guard, &e.guard},
-                                                     {calls.reach, &e.reach},         {calls.improve, &e.improve}};
+  const std::pair<int, const Program*> programs[] = {{calls.evaluate, &e.evaluate},
+                                                     {calls.errors, &e.errors},
+                                                     {calls.rates, &e.rates},
+                                                     {calls.accelerate, &e.accelerate},
+                                                     {calls.solve, &e.solve},
+                                                     {1, &e.apply},
+                                                     {calls.fall, &e.fall},
+                                                     {calls.kick, &e.kick},
+                                                     {calls.past, &e.past},
+                                                     {1, &e.angles},
+                                                     {calls.distances, &e.distances},
+                                                     {calls.dampen, &e.dampen},
+                                                     {calls.notice, &e.notice},
+                                                     {calls.look, &e.look},
+                                                     {calls.finish, &e.finish},
+                                                     {1, &e.weigh},
+                                                     {calls.improve, &e.stiffen},
+                                                     {calls.guard, &e.guard},
+                                                     {calls.reach, &e.reach},
+                                                     {calls.improve, &e.improve},
+                                                     {1, &e.bear},
+                                                     {1, &e.bear_start},
+                                                     {1, &e.bear_end}};
   long sum = calls.newton;
   for (const auto& [times, program] : programs) sum += long{times} * derive::count(*program).total();
   return sum;
@@ -264,6 +282,7 @@ long state_bytes_of(const Mechanism& mechanism, const Equations& equations, cons
                        long(equations.stored.size()) + (has.closes() ? 1 : 0) + (has.foresees ? 2 : 0) +
                        (has.exerts ? equations.groups : 0) + numbers_of_modes(mechanism, has) +
                        (has.weighs_blows() ? 3 : 2) * mechanism.breakable() +
+                       (has.bears ? long(equations.first_borne.back()) : 0) +
                        (has.events ? 3 * long(mechanism.bounded.size()) : 0);
   return long{sizeof(double)} *
          (1 + of_bodies + of_rows + long(mechanism.bounded.size()) +

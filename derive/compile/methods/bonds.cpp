@@ -13,7 +13,7 @@ constexpr const char* bonds_type_text =
   // 1 for a joint that holds, 0 for one that is broken for good; the load on each, as of the last step [N], [N m].
   struct Bonds {{
     T holds[{0}], load[{0}];
-{5}  }};
+{5}{6}  }};
   // The joint of each strength, and its mechanism.
   static constexpr int joint_of[strengths] = {{{3}}}, mechanism_of[strengths] = {{{4}}};
 )";
@@ -47,7 +47,7 @@ constexpr const char* snap_chooses = R"(    strain($ss.time, s.bonds.load, from)
 )";
 
 // A step that passes the strength of a joint ends there: runtime/events/bonds.cpp.
-constexpr const char* margins_of_joints = R"({0}    weigh_joints(s, {1});
+constexpr const char* margins_of_joints = R"({0}{3}    weigh_joints(s, {1});
     T from[strengths];
     strain($ss.time, s.bonds.load, from);
     for (int k = 0; k < strengths; ++k)
@@ -63,9 +63,7 @@ constexpr const char* chooses_joints = R"(
   static void choose_modes(State& s, const T&) {{
     for (Mask again = T(0) < T(1); any(again);) {{
       State next = s;
-      project(next);
-      accelerate($snext.q, next.time, next.v, next.J, next.lambda, next.a);
-      replace(s, next, again);
+{2}      replace(s, next, again);
       again = snap(s, {1}, T(single ? 1e-5 : 1e-10));
     }}
     find_margins(s);
@@ -73,28 +71,46 @@ constexpr const char* chooses_joints = R"(
   }}
 )";
 
+constexpr const char* accelerates_joints = R"(      project(next);
+      accelerate($snext.q, next.time, next.v, next.J, next.lambda, next.a);
+)";
+constexpr const char* accelerates_freely = "      fall($snext.q, next.time, next.v, next.a);\n";
+constexpr const char* bears_end = R"(    T more[borne_rows];
+    bear_end($ss.q, s.time, s.v, h, {}more);
+    for (int i = 0; i < borne_rows; ++i) s.bonds.borne[i] = s.bonds.borne[i] + more[i];
+)";
+constexpr const char* bears_now = "{0}bear($s{1}.q, {1}.time, {1}.v, {1}.bonds.borne);\n";
+
 const std::vector<int>& bodies_of(const Mechanism& mechanism, const Bond& bond) {
-  return bond.joint < 0 ? mechanism.bounded[static_cast<std::size_t>(bond.rope)].bodies
-                        : mechanism.joints[static_cast<std::size_t>(bond.joint)].bodies;
+  if (bond.joint >= 0) return mechanism.joints[static_cast<std::size_t>(bond.joint)].bodies;
+  return bond.effect >= 0 ? mechanism.effects[static_cast<std::size_t>(bond.effect)].bodies
+                          : mechanism.bounded[static_cast<std::size_t>(bond.bounded)].bodies;
 }
 
 // The norm of its rows' forces.
-std::string load_of(const Bond& bond, const std::vector<std::size_t>& rows) {
-  if (bond.joint < 0) return fmt::format("    s.bonds.load[{}] = magnitude(of_bounds[{}]);\n", bond.holds, bond.rope);
-  const auto joint = static_cast<std::size_t>(bond.joint);
+std::string load_of(const Bond& bond, const FirstRows& rows) {
+  if (!bond.carries) return "";
+  if (bond.bounded >= 0)
+    return fmt::format("    s.bonds.load[{}] = magnitude(of_bounds[{}]);\n", bond.holds, bond.bounded);
+  const bool by_force = bond.effect >= 0;
+  const std::vector<std::size_t>& first = by_force ? rows.borne : rows.of_joints;
+  const auto number = static_cast<std::size_t>(by_force ? bond.holds : bond.joint);
   std::string squares;
-  for (std::size_t r = rows[joint]; r < rows[joint + 1]; ++r)
-    squares += fmt::format("{0}force[{1}] * force[{1}]", squares.empty() ? "" : " + ", r);
+  for (std::size_t r = first[number]; r < first[number + 1]; ++r)
+    squares += fmt::format("{0}{1}[{2}] * {1}[{2}]", squares.empty() ? "" : " + ", by_force ? "borne" : "force", r);
   return fmt::format("    s.bonds.load[{}] = sqrt({});\n", bond.holds, squares);
 }
 
 // Forces of a broken joint.
-std::string forgets_forces(const Bond& bond, const std::vector<std::size_t>& rows, const Contents& has) {
+std::string forgets_forces(const Bond& bond, const FirstRows& rows, const Contents& has) {
   constexpr const char* forgets_row = "    s.{0}[{1}] = select(now[{2}], T(0), s.{0}[{1}]);\n";
-  if (bond.joint < 0) return fmt::format(forgets_row, has.modes ? "modes.force" : "force", bond.rope, bond.holds);
+  if (bond.bounded >= 0 && bond.carries)
+    return fmt::format(forgets_row, has.modes ? "modes.force" : "force", bond.bounded, bond.holds);
   std::string text;
   const auto joint = static_cast<std::size_t>(bond.joint);
-  for (std::size_t r = rows[joint]; r < rows[joint + 1]; ++r) text += fmt::format(forgets_row, "lambda", r, bond.holds);
+  for (std::size_t r = bond.joint < 0 ? 0 : rows.of_joints[joint]; bond.joint >= 0 && r < rows.of_joints[joint + 1];
+       ++r)
+    text += fmt::format(forgets_row, "lambda", r, bond.holds);
   return text;
 }
 
@@ -113,30 +129,52 @@ std::string pulls_anew(const Mechanism& mechanism, const Contents& has) {
 // The parameters of snap() that are forces.
 std::string forces_parameters(const Contents& has) {
   return std::string(has.rows ? ", const T (&force)[rows]" : "") +
-         (has.bounded ? ", const T (&of_bounds)[bounded]" : "");
+         (has.bounded ? ", const T (&of_bounds)[bounded]" : "") + (has.bears ? ", const T (&borne)[borne_rows]" : "");
 }
 }  // namespace
 
-std::string forces_of_state(const Contents& has) {
-  return std::string(has.rows ? "s.lambda" : "") + (has.rows && has.bounded ? ", " : "") +
-         (has.bounded ? "s.modes.force" : "");
+std::string bears_at_start(const Contents& has) {
+  return has.bears ? "    bear_start($ss.q, s.time, s.v, h, s.bonds.borne);\n" : "";
 }
 
-std::string bonds_type(const Mechanism& mechanism, const Contents& has) {
+std::string bears_at_end(const Contents& has, const std::string& end) {
+  return has.bears_end ? fmt::format(bears_end, has.looks ? "given, " + end + ", " : "") : "";
+}
+
+std::string forces_of_state(const Contents& has) {
+  std::string text = has.rows ? ", s.lambda" : "";
+  if (has.bounded) text += ", s.modes.force";
+  if (has.bears) text += ", s.bonds.borne";
+  return text.substr(std::min<std::size_t>(2, text.size()));
+}
+
+std::string bonds_type(const Mechanism& mechanism, std::size_t borne, const Contents& has) {
   const std::vector<int> groups = groups_of(mechanism);
   std::vector<int> joints, of;
   for (const Bond& bond : mechanism.bonds) {
     joints.push_back(bond.holds), of.push_back(group_of(groups, bodies_of(mechanism, bond)));
   }
-  return fmt::format(
-      bonds_type_text, mechanism.breakable(), mechanism.bonds.size(), 1 + *std::ranges::max_element(groups),
-      fmt::join(joints, ", "), fmt::join(of, ", "),
-      has.weighs_blows() ? "    T struck[joints];  // the largest load of an impact in this step\n" : "");
+  const std::string size = has.bears ? fmt::format("  static constexpr int borne_rows = {};\n", borne) : "";
+  return size +
+         fmt::format(bonds_type_text, mechanism.breakable(), mechanism.bonds.size(),
+                     1 + *std::ranges::max_element(groups), fmt::join(joints, ", "), fmt::join(of, ", "),
+                     has.weighs_blows() ? "    T struck[joints];  // the largest load of an impact in this step\n" : "",
+                     has.bears ? "    T borne[borne_rows];  // forces of effects and soft joints among these\n" : "");
 }
 
 std::string arguments_of_strain(const Mechanism& mechanism) {
   return fmt::format("$dconst T& time, const T (&load)[{}], T (&from)[{}])", mechanism.breakable(),
                      mechanism.bonds.size());
+}
+
+std::string arguments_of_bear(Method method) {
+  if (method == Method::euler) return ", const T& h, const Velocity (&next)[bodies]";
+  if (method == Method::implicit) return ", const Velocity (&d)[bodies], const T& h, const T (&K)[effect_rows]";
+  return "";
+}
+
+std::string arguments_of_bear_end(const Contents& has) {
+  return std::string(", const T& h") + (has.looks ? ", const T (&given)[damped], const T (&end)[damped]" : "");
 }
 
 std::string arguments_of_draw(const Contents& has) {
@@ -146,26 +184,30 @@ std::string arguments_of_draw(const Contents& has) {
 
 std::string margins_of_bonds(const Contents& has) {
   return fmt::format(margins_of_joints, "    const T near = T(single ? 1e-5 : 1e-10);\n", forces_of_state(has),
-                     has.modes ? "bounded + " : "");
+                     has.modes ? "bounded + " : "", has.bears ? fmt::format(bears_now, "    ", "s") : "");
 }
 
-std::string snap_of(const Mechanism& mechanism, const std::vector<std::size_t>& rows, const Contents& has) {
+std::string snap_of(const Mechanism& mechanism, const FirstRows& rows, const Contents& has) {
   std::string loads, after = has.rows ? evaluates : "";
   for (std::size_t k = 0; k < mechanism.bonds.size(); ++k) {
     const Bond& bond = mechanism.bonds[k];
     if (k > 0 && mechanism.bonds[k - 1].holds == bond.holds) continue;
     loads += load_of(bond, rows), after += forgets_forces(bond, rows, has);
   }
-  if (has.rattle) after += pulls_anew(mechanism, has);
+  if (has.pulls()) after += pulls_anew(mechanism, has);
   const std::string parameters = forces_parameters(has);
   std::string text = "\n  // The loads on joints, by the forces of all rows.\n  static void weigh_joints(State& s" +
                      parameters + ") {\n    using std::sqrt;\n" + (has.rows ? "    (void)force;\n" : "") +
                      (has.bounded ? "    (void)of_bounds;\n" : "") + loads + "  }\n";
-  text += fmt::format(snap_begins, has.snaps ? "Mask" : "void", parameters + (has.snaps ? ", const T& most" : ""),
-                      std::string(has.rows ? ", force" : "") + (has.bounded ? ", of_bounds" : ""));
+  text += fmt::format(
+      snap_begins, has.snaps ? "Mask" : "void", parameters + (has.snaps ? ", const T& most" : ""),
+      std::string(has.rows ? ", force" : "") + (has.bounded ? ", of_bounds" : "") + (has.bears ? ", borne" : ""));
   text += fmt::format(snap_chooses, has.snaps ? "most" : "T(0)", has.snaps ? " some" : "", after,
                       has.snaps ? "    return some;\n" : "");
-  if (has.snaps && !has.modes) text += fmt::format(chooses_joints, margins_of_bonds(has), forces_of_state(has));
+  if (has.snaps && !has.modes)
+    text += fmt::format(chooses_joints, margins_of_bonds(has), forces_of_state(has),
+                        std::string(has.rows ? accelerates_joints : accelerates_freely) +
+                            (has.bears ? fmt::format(bears_now, "      ", "next") : ""));
   return text;
 }
 

@@ -10,15 +10,26 @@
 namespace cdot::compile {
 
 // The type of State::bonds.
-std::string bonds_type(const Mechanism& mechanism, const Contents& has);
+std::string bonds_type(const Mechanism& mechanism, std::size_t borne, const Contents& has);
 std::string arguments_of_strain(const Mechanism& mechanism);
+// Of bear() and bear_end(), after their velocities.
+std::string arguments_of_bear(Method method);
+std::string arguments_of_bear_end(const Contents& has);
 inline constexpr const char* draws = "d = M^-1 (J^T lambda + R^T mu), R the rows that prescribe a rate";
 // After its poses.
 std::string arguments_of_draw(const Contents& has);
-// snap(); rows: the first row of each joint of the mechanism, and the number of all rows. Its arguments are the forces
-// of these rows and of rows with bounds; by Runge-Kutta methods also the distance at which joints break. There
-// choose_modes() of a mechanism without rows with bounds follows.
-std::string snap_of(const Mechanism& mechanism, const std::vector<std::size_t>& rows, const Contents& has);
+// The first row of each joint of the mechanism, and the number of all rows; the same of rows of effects, by joints that
+// may break.
+struct FirstRows {
+  const std::vector<std::size_t>&of_joints, &borne;
+};
+// snap(); its arguments are the forces of rows of joints, of rows with bounds and of effects; by Runge-Kutta methods
+// also the distance at which joints break. There choose_modes() of a mechanism without rows with bounds follows.
+std::string snap_of(const Mechanism& mechanism, const FirstRows& rows, const Contents& has);
+// By RATTLE and by the midpoint rule: what such effects do at the start of a step, and at its end. `end`: the array of
+// their damping there.
+std::string bears_at_start(const Contents& has);
+std::string bears_at_end(const Contents& has, const std::string& end);
 // By Runge-Kutta methods: these forces at the end of a stride, and lines that find the margins of joints.
 std::string forces_of_state(const Contents& has);
 std::string margins_of_bonds(const Contents& has);

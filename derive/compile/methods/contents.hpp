@@ -26,6 +26,8 @@ struct Contents {
   bool strong = false;         // motors without a largest force among these
   bool bonds = false;          // some joint may break
   bool snaps = false;          // by Runge-Kutta methods: when it does is located in a step
+  bool bears = false;          // among these are effects and soft joints
+  bool bears_end = false;      // whose forces act at the end of a step, too
   bool weighs = false;         // by Euler's steps or RATTLE: the impulses of corrections count as loads
   bool drags = false;          // some body has drag
   bool foresees = false;       // the multipliers of the next projection, by those of the last steps

@@ -64,6 +64,8 @@ constexpr const char* weighs_blow = R"(    for (int k = 0; k < joints; ++k) {
     }
 )";
 constexpr const char* blow_of_rows = "    T blow[rows];\n    for (T& of_row : blow) of_row = T(0);\n";
+constexpr const char* blow_of_effects =
+    "    T unmoved[borne_rows];  // a blow has no impulse of theirs\n    for (T& of_row : unmoved) of_row = T(0);\n";
 constexpr const char* adds_blow =
     "      for (int i = 0; i < rows; ++i) blow[i] = blow[i] + yields.modes.force[e] * B.l[e][i];\n";
 
@@ -80,7 +82,8 @@ std::string yields_of(const Contents& has) {
   const bool weighs_rows = has.snaps && has.rows;
   std::string ends = has.forces ? "    ended = latches(yields);\n" : "";
   if (has.snaps)
-    ends += fmt::format("    ended = snap(yields, {}yields.modes.force, {}) || ended;\n", weighs_rows ? "blow, " : "",
+    ends += fmt::format("{}    ended = snap(yields, {}yields.modes.force, {}{}) || ended;\n",
+                        has.bears ? blow_of_effects : "", weighs_rows ? "blow, " : "", has.bears ? "unmoved, " : "",
                         near_event) +
             weighs_blow;
   return fmt::format(yields, weighs_rows ? blow_of_rows : "", weighs_rows ? adds_blow : "", ends);

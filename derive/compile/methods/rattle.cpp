@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "derive/compile/foresight/foresight.hpp"
+#include "derive/compile/methods/bonds.hpp"
 #include "derive/compile/methods/weights.hpp"
 
 namespace cdot::compile {
@@ -341,6 +342,7 @@ std::string start_of(const Contents& has) {
 
 std::string rattle(double tolerance, const Contents& has) {
   std::string text = fmt::format(begins, has.exerts ? "    start(s, h);\n" : "");
+  text += bears_at_start(has);
   text += has.dampens ? dampens : notes_velocities;
   if (has.carries) text += notes_start;
   if (has.foresees) text += guesses;
@@ -353,6 +355,7 @@ std::string rattle(double tolerance, const Contents& has) {
   text += fmt::format(second_kick, has.looks ? looks : "", has.carries ? "    carry(start_q, s.q, before);\n" : "");
   text += has.finishes ? finishing(has) : has.rows ? joints_end : "";
   if (has.foresees) text += remembers;
+  text += bears_at_end(has, "end");
   text += rattle_weighs(has);
   if (has.events) text += "    latch(s);\n";
   return text + fmt::format("    return {};\n  }}\n", has.closes() ? "s.residual" : "T(0)");

@@ -46,7 +46,7 @@ $W$C{0}    project(s);
 )";
 
 constexpr const char* ends_freely = R"($W$C    fall($ss.q, s.time, s.v, s.a);
-    return T(0);
+{}    return T(0);
 )";
 
 // Of few numbers, the last slope joins number by number: wide loads would wait for what has just been stored.
@@ -103,9 +103,10 @@ std::string arguments_of_slope(const Contents& has) {
 std::string end_on_accelerations(const Contents& has) {
   const std::string inertias =
       has.gyroscopes ? "    for (int i = 0; i < bodies; ++i) s.q[i].I = at.q[i].I;  // as J, of the last stage\n" : "";
+  const char* const finds = has.snaps ? "    find_margins(s);\n" : "";
   const std::string end = has.modes  ? fmt::format(ends_in_modes, has.rows ? evaluates : "", arguments_of_pull(has))
-                          : has.rows ? fmt::format(ends_on_joints, has.snaps ? "    find_margins(s);\n" : "")
-                                     : ends_freely;
+                          : has.rows ? fmt::format(ends_on_joints, finds)
+                                     : fmt::format(ends_freely, finds);
   return inertias + end_begins + end;
 }
 

@@ -105,7 +105,8 @@ constexpr const char* settles_rattle_start_joints = R"(    T drawn[rows];
 
 std::string snaps_with_loads(const Contents& has) {
   if (!has.bonds) return {};
-  return std::string("    snap(s") + (has.rows ? ", carried" : "") + (has.bounded ? ", s.force" : "") + ");\n";
+  return std::string("    snap(s") + (has.rows ? ", carried" : "") + (has.bounded ? ", s.force" : "") +
+         (has.bears ? ", s.bonds.borne" : "") + ");\n";
 }
 
 }  // namespace

@@ -20,16 +20,38 @@ std::vector<RowBlock> blocks_of(const RowBlocks& blocks, const JointRows& joints
   return all;
 }
 
+// An effect acts at the share t of the step: in the middle, or near the end if it is too stiff for the step. With its
+// force F at rest, its stiffness k and u = h^2 k K of its row,
+//
+//   lambda = h F - (t - 1/2) h^2 k rate,   t = max(1/2, 1 - 1 / (2 u)),   and for d: y = -t h^2 k / 2 J d.
+struct EffectInMiddle {
+  std::vector<int> half_impulse, answer;  // by row: lambda / 2, and -y of a rate J d of 1
+  EffectInMiddle(Algebra& algebra, const LawWriter& law, const std::vector<int>& K) {
+    const std::vector<int> F = law.at_rest().force(), k = law.slopes_within_limits().k;
+    const int one = algebra.value(1), half = algebra.value(0.5), h = algebra.input("h");
+    for (std::size_t r = 0; r < F.size(); ++r) {
+      const int stiff = algebra.product({h, k[r]}, {2, 1});
+      const int late = algebra.times(half, algebra.function(Fn::inverse, {algebra.times(stiff, K[r])}));
+      const int t = law.most(half, algebra.sum({{one, late}, {1, -1}}));
+      const int past_middle = algebra.product({algebra.sum({{t, half}, {1, -1}}), stiff, law.rate()[r]}, {1, 1, 1});
+      half_impulse.push_back(algebra.times(half, algebra.sum({{algebra.times(h, F[r]), past_middle}, {1, -1}})));
+      answer.push_back(algebra.times(half, algebra.times(t, stiff)));
+    }
+  }
+};
+
+// K of an effect's rows at the start of a step, from the place `first` on.
+std::vector<int> masses_at_start(Algebra& algebra, const RowBlock& block, std::size_t first) {
+  std::vector<int> K;
+  for (std::size_t r = 0; r < block.rows->count(); ++r) K.push_back(algebra.input(element("K", first + r)));
+  return K;
+}
+
 // One round of Newton. With the stiffness G = -d(J^T lambda)/dq of tension, whose part between bodies stands as rows,
 //
 //   (M + h G / 4) d - J^T y = M (before - v) + (h f + J^T lambda) / 2,   J d = -C / h,
 //
 // and J d = -(J v + dC/dt) of rows of velocities.
-//
-// An effect acts at the share t of the step: in the middle, or near the end if it is too stiff for the step. With its
-// force F at rest, its stiffness k and u = h^2 k K of its row,
-//
-//   lambda = h F - (t - 1/2) h^2 k rate,   t = max(1/2, 1 - 1 / (2 u)),   and for d: y = -t h^2 k / 2 J d.
 class Round {
  public:
   Round(const RowBlocks& stiff, const JointRows& joints, const Tensions& tensions, Constants& constants)
@@ -95,20 +117,12 @@ class Round {
     const RowBlock& block = blocks_.effect(e);
     const Values in = blocks_.inputs_with_jacobian(algebra_, block);
     system_.add_block(algebra_, k, in);
-    std::vector<int> K, half_impulse, share;
-    for (std::size_t r = 0; r < block.rows->count(); ++r) K.push_back(algebra_.input(element("K", share_.size() + r)));
+    const std::vector<int> K = masses_at_start(algebra_, block, share_.size());
     const LawWriter law = LawWriter(blocks_, algebra_, blocks_.mechanism().effects[e], block, in).with_masses(K);
-    const std::vector<int> F = law.at_rest().force(), k_of_row = law.slopes_within_limits().k;
-    const int one = algebra_.value(1), half = algebra_.value(0.5);
-    for (std::size_t r = 0; r < F.size(); ++r) {
-      const int stiff = algebra_.product({h_, k_of_row[r]}, {2, 1});
-      const int late = half_of(algebra_.function(Fn::inverse, {algebra_.times(stiff, K[r])}));
-      const int t = law.most(half, algebra_.sum({{one, late}, {1, -1}}));
-      const int past_middle = algebra_.product({algebra_.sum({{t, half}, {1, -1}}), stiff, law.rate()[r]}, {1, 1, 1});
-      half_impulse.push_back(half_of(algebra_.sum({{algebra_.times(h_, F[r]), past_middle}, {1, -1}})));
-      share.push_back(algebra_.function(Fn::sqrt, {half_of(algebra_.times(t, stiff))}));
-    }
-    blocks_.add_forces(algebra_, block, in, half_impulse, forces_);
+    const EffectInMiddle middle(algebra_, law, K);
+    std::vector<int> share;
+    for (const int answer : middle.answer) share.push_back(algebra_.function(Fn::sqrt, {answer}));
+    blocks_.add_forces(algebra_, block, in, middle.half_impulse, forces_);
     share_.insert(share_.end(), share.begin(), share.end());
     answers.add(in, share);
   }
@@ -246,6 +260,26 @@ Program Middle::stiffen() const {
       }
   }
   return algebra.finish();
+}
+
+Program Middle::bear(const Borne& borne) const {
+  return borne.write(constants_, [&](Algebra& algebra, std::size_t e, const LawWriter& law, const Values& in) {
+    std::size_t first = 0;
+    for (std::size_t before = 0; before < e; ++before) first += blocks_.effect(before).rows->count();
+    const RowBlock& block = blocks_.effect(e);
+    const std::vector<int> K = masses_at_start(algebra, block, first);
+    const EffectInMiddle middle(algebra, law.with_masses(K), K);
+    Values change = in;
+    blocks_.replace_velocities(change, block, velocities_in(blocks_, algebra, "d"));
+    const Values Jd = blocks_.call(algebra, block, "velocity", change);
+    const int per_half = algebra.times(algebra.value(2), algebra.function(Fn::inverse, {algebra.input("h")}));
+    std::vector<int> forces;
+    for (std::size_t r = 0; r < K.size(); ++r) {
+      const int y = algebra.times(middle.answer[r], Jd.at(element("Jv", r)));
+      forces.push_back(algebra.times(per_half, algebra.sum({{middle.half_impulse[r], y}, {1, -1}})));
+    }
+    return forces;
+  });
 }
 
 Program Middle::improve() const { return Round(stiff_, joints_, tensions_, constants_).write(); }

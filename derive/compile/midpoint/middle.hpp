@@ -2,6 +2,7 @@
 // runtime/step/find_middle.cpp.
 #pragma once
 
+#include "derive/compile/borne/borne.hpp"
 #include "derive/compile/midpoint/tensions.hpp"
 #include "derive/compile/rows/joint_rows.hpp"
 
@@ -23,6 +24,10 @@ class Middle {
   // inertias turn. With rows that have bounds, and mu, missed, side -> B: these are without the change of mu, and B
   // gives half of it.
   Program improve() const;
+
+  // q, v, time, d, h, K -> borne: mean forces of effects that may break in a step of h, with a change d of its mean
+  // velocities v from that of the poses.
+  Program bear(const Borne& borne) const;
 
   const Tensions& tensions() const { return tensions_; }
 

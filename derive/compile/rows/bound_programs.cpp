@@ -43,8 +43,7 @@ Program strain_of(const RowBlocks& blocks, Constants& constants) {
   for (std::size_t k = 0; k < blocks.mechanism().bonds.size(); ++k) {
     const Bond& bond = blocks.mechanism().bonds[k];
     const SpecPrograms& spec = blocks.bond(bond);
-    const std::string& owner = bond.joint < 0 ? blocks.bounded(static_cast<std::size_t>(bond.rope)).name
-                                              : blocks.joint(static_cast<std::size_t>(bond.joint)).name;
+    const std::string& owner = blocks.block_of(bond).name;
     Values in;
     for (std::size_t p = 0; p < spec.parameters.size(); ++p)
       in[spec.parameters[p]] =

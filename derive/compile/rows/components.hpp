@@ -30,6 +30,13 @@ void each_component(const RowBlocks& blocks, F f) {
   }
 }
 
+// Velocities as inputs, by the names of components.
+inline Values velocities_in(const RowBlocks& blocks, Algebra& algebra, const std::string& array) {
+  Values velocities;
+  each_component(blocks, [&](const Component& c, double, double) { velocities[c.name] = algebra.input(c.in(array)); });
+  return velocities;
+}
+
 // M^-1 force of one component.
 inline int change_of(const RowBlocks& blocks, Algebra& algebra, const Component& component, const Forces& forces) {
   return blocks.weighted(algebra, component.body, component.column, [&](std::size_t column) {

@@ -66,7 +66,7 @@ AtRates at_rates(Algebra& algebra, const LawWriter& law, const Masses& masses) {
 }
 
 // The impulse per rate of a linear damper at the start: h d min(1/2, 1/(h d K)).
-int start_of(Algebra& algebra, const LawWriter& law, int d, int K) {
+int linear_start(Algebra& algebra, const LawWriter& law, int d, int K) {
   const int half = algebra.product({algebra.value(0.5), algebra.input("h"), d}, {1, 1, 1});
   return law.least(half, algebra.function(Fn::inverse, {K}));
 }
@@ -120,23 +120,38 @@ Dampers::Dampers(const RowBlocks& blocks, Constants& constants)
   }
 }
 
+const Dampers::Damped* Dampers::find(std::size_t effect) const {
+  const auto found = std::ranges::find(damped_, effect, &Damped::effect);
+  return found == damped_.end() ? nullptr : &*found;
+}
+
+std::vector<int> Dampers::start_of(Algebra& algebra, const Damped& damped, const Here& there) const {
+  const std::vector<int>& rate = there.law.rate();
+  std::vector<int> impulses;
+  const LawWriter::Slopes slopes = damped.is_spring ? there.law.slopes() : LawWriter::Slopes{};
+  const AtRates at = damped.is_spring ? AtRates{} : at_rates(algebra, there.law, there.masses);
+  for (std::size_t r = 0; r < rate.size(); ++r) {
+    if (!damped.is_spring) impulses.push_back(algebra.times(at.t[r], at.R[r]));
+    else {
+      const int start = linear_start(algebra, there.law, slopes.d[r], there.masses.own(r));
+      impulses.push_back(algebra.sum({{algebra.times(start, rate[r])}, {-1}}));
+    }
+  }
+  return impulses;
+}
+
+std::vector<int> Dampers::start(Algebra& algebra, std::size_t effect) const {
+  const Here there(blocks_, algebra, effect);
+  const Damped* const damped = find(effect);
+  return damped ? start_of(algebra, *damped, there) : std::vector<int>(there.law.C().size(), algebra.value(0));
+}
+
 Program Dampers::dampen() const {
   Algebra algebra(constants_);
   Forces forces;
   for (const Damped& damped : damped_) {
     const Here there(blocks_, algebra, damped.effect);
-    const std::vector<int>& rate = there.law.rate();
-    std::vector<int> impulses;
-    const LawWriter::Slopes slopes = damped.is_spring ? there.law.slopes() : LawWriter::Slopes{};
-    const AtRates at = damped.is_spring ? AtRates{} : at_rates(algebra, there.law, there.masses);
-    for (std::size_t r = 0; r < rate.size(); ++r) {
-      if (!damped.is_spring) impulses.push_back(algebra.times(at.t[r], at.R[r]));
-      else {
-        const int start = start_of(algebra, there.law, slopes.d[r], there.masses.own(r));
-        impulses.push_back(algebra.sum({{algebra.times(start, rate[r])}, {-1}}));
-      }
-    }
-    blocks_.add_forces(algebra, there.block, there.in, impulses, forces);
+    blocks_.add_forces(algebra, there.block, there.in, start_of(algebra, damped, there), forces);
   }
   each_component(blocks_, [&](const Component& component, double, double) {
     const int change = change_of(blocks_, algebra, component, forces);
@@ -206,8 +221,10 @@ void Dampers::look_at(Algebra& algebra, const Damped& damped, std::size_t number
   algebra.output(element("size", number), algebra.sum({{masses.size(r), masses.size(p)}, {1, 1}}));
 }
 
-EffectRows Dampers::rows_of(Algebra& algebra, const Damped& damped, const LawWriter& law, const Values& in) const {
+EffectRows Dampers::end(Algebra& algebra, std::size_t effect, const LawWriter& law, const Values& in) const {
   EffectRows rows;
+  if (!find(effect)) return rows;
+  const Damped& damped = *find(effect);
   const std::size_t count = law.C().size();
   const Values K =
       damped.is_spring ? blocks_.call(algebra, blocks_.effect(damped.effect), "effective_mass", in) : Values{};
@@ -215,7 +232,7 @@ EffectRows Dampers::rows_of(Algebra& algebra, const Damped& damped, const LawWri
   for (std::size_t r = 0; r < count; ++r) {
     int end = -1;
     if (damped.is_spring) {
-      const int own = K.at(triangle_element("K", r, r)), start = start_of(algebra, law, slopes.d[r], own);
+      const int own = K.at(triangle_element("K", r, r)), start = linear_start(algebra, law, slopes.d[r], own);
       end = algebra.sum({{algebra.times(algebra.input("h"), slopes.d[r]), start}, {1, -1}});
       if (calms_) end = algebra.sum({{end, calming(algebra, law, slopes.k[r], own)}, {1, 1}});
     } else {
@@ -231,7 +248,7 @@ Program Dampers::finish(const JointRows& joints) const {
   KickPlan plan;
   for (const Damped& damped : damped_) plan.effects.push_back(damped.effect);
   plan.rows_of = [&](Algebra& algebra, std::size_t effect, const LawWriter& law, const Values& in) {
-    return rows_of(algebra, *std::ranges::find(damped_, effect, &Damped::effect), law, in);
+    return end(algebra, effect, law, in);
   };
   return finish_of(blocks_, joints, constants_, plan);
 }

@@ -23,6 +23,9 @@ class Dampers {
   // C, rate, K, guess, time, h -> step, given, end, miss, size: each such effect alone at the end of a step, at guessed
   // rates.
   Program look() const;
+  // Of one effect: its impulses at the start of a step, and how it acts at the end; nothing if it has no damper.
+  std::vector<int> start(Algebra& algebra, std::size_t effect) const;
+  EffectRows end(Algebra& algebra, std::size_t effect, const LawWriter& law, const Values& in) const;
   // q, v, time, J, h, given, end -> next, lambda, pull and B.
   Program finish(const JointRows& joints) const;
 
@@ -34,7 +37,8 @@ class Dampers {
     std::size_t triangle = 0;
   };
   struct Here;  // an effect in an Algebra
-  EffectRows rows_of(Algebra& algebra, const Damped& damped, const LawWriter& law, const Values& in) const;
+  const Damped* find(std::size_t effect) const;
+  std::vector<int> start_of(Algebra& algebra, const Damped& damped, const Here& there) const;
   bool calms(const Algebra& algebra, const LawWriter& law) const;
   void look_at(Algebra& algebra, const Damped& damped, std::size_t number) const;
 

@@ -10,13 +10,6 @@ namespace {
 
 using derive::element;
 
-// Velocities as inputs, by the names of components.
-Values velocities_in(const RowBlocks& blocks, Algebra& algebra, const std::string& array) {
-  Values velocities;
-  each_component(blocks, [&](const Component& c, double, double) { velocities[c.name] = algebra.input(c.in(array)); });
-  return velocities;
-}
-
 // The rows r J v' + mu = 0 of effects give mu together with the impulses of the joints: 1 is added to their diagonals.
 // r is their share, and their impulse that of EffectRows: given - r^2 dC/dt + r mu.
 class KickWriter {
@@ -136,22 +129,6 @@ class KickWriter {
   Forces given_;                     // known impulses
 };
 
-// A step of h that is implicit as far as the slopes k and d of the laws say. With rate and F at the start,
-//   lambda = h (F + d (rate - rate') - h k rate') = h (F + d rate) - r^2 rate',   r^2 = h (d + h k)
-EffectRows implicit_rows(Algebra& algebra, const LawWriter& law) {
-  const int h = algebra.input("h");
-  const std::vector<int> F = law.force();
-  const LawWriter::Slopes slopes = law.slopes();
-  EffectRows rows;
-  for (std::size_t r = 0; r < F.size(); ++r) {
-    const int force = algebra.sum({{F[r], algebra.times(slopes.d[r], law.rate()[r])}, {1, 1}});
-    rows.given.push_back(algebra.times(h, force));
-    const int both = algebra.sum({{slopes.d[r], algebra.times(h, slopes.k[r])}, {1, 1}});
-    rows.share.push_back(algebra.function(Fn::sqrt, {algebra.times(h, both)}));
-  }
-  return rows;
-}
-
 // Joints' answers to accelerations without them: J a = gamma.
 class Accelerated {
  public:
@@ -183,6 +160,22 @@ class Accelerated {
 };
 
 }  // namespace
+
+// With the slopes k and d of the law, and rate and F at the start,
+//   lambda = h (F + d (rate - rate') - h k rate') = h (F + d rate) - r^2 rate',   r^2 = h (d + h k)
+EffectRows implicit_rows(Algebra& algebra, const LawWriter& law) {
+  const int h = algebra.input("h");
+  const std::vector<int> F = law.force();
+  const LawWriter::Slopes slopes = law.slopes();
+  EffectRows rows;
+  for (std::size_t r = 0; r < F.size(); ++r) {
+    const int force = algebra.sum({{F[r], algebra.times(slopes.d[r], law.rate()[r])}, {1, 1}});
+    rows.given.push_back(algebra.times(h, force));
+    const int both = algebra.sum({{slopes.d[r], algebra.times(h, slopes.k[r])}, {1, 1}});
+    rows.share.push_back(algebra.function(Fn::sqrt, {algebra.times(h, both)}));
+  }
+  return rows;
+}
 
 Program accelerations_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants) {
   Algebra algebra(constants);

@@ -15,6 +15,9 @@ struct EffectRows {
   std::vector<int> given, share;
 };
 
+// Of a step of h that is implicit as far as the slopes of the law say.
+EffectRows implicit_rows(Algebra& algebra, const LawWriter& law);
+
 // The effects that act in a kick, and how.
 struct KickPlan {
   std::vector<std::size_t> effects;

@@ -36,10 +36,12 @@ LawWriter::LawWriter(const RowBlocks& rows, Algebra& algebra, const Effect& effe
                      const Values& in)
     : rows_(rows), algebra_(algebra), effect_(effect), block_(block), in_(in) {
   const std::size_t count = block_.rows->count();
-  C_ = elements(rows.call(algebra, block_, "position", in), "C", count);
+  RowBlock whole = block_;
+  if (effect.acts_by_force()) whole.holds = -1;  // a law may have no number at C = 0
+  C_ = elements(rows.call(algebra, whole, "position", in), "C", count);
   if (effect.angle >= 0) C_[0] = unwound(algebra, effect.angle, C_[0]).angle;
-  rate_ = elements(rows.call(algebra, block_, "velocity", in), "Jv", count);
-  drift_ = elements(rows.call(algebra, block_, "time_derivative", in), "C_t", count);
+  rate_ = elements(rows.call(algebra, whole, "velocity", in), "Jv", count);
+  drift_ = elements(rows.call(algebra, whole, "time_derivative", in), "C_t", count);
   for (std::size_t r = 0; r < count; ++r) rate_[r] = algebra.sum({{rate_[r], drift_[r]}, {1, 1}});
 }
 

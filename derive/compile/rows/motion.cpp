@@ -52,17 +52,18 @@ Program angles_of(const RowBlocks& blocks, Constants& constants) {
     algebra.output(derive::element("angle", static_cast<std::size_t>(number)), angle.angle);
     algebra.output(derive::element("turns", static_cast<std::size_t>(number)), angle.turns);
   };
+  const auto count_turns = [&](const RowBlock& block) {
+    for (const CountedTurns& turns : *block.turns)
+      output(turns.angle, blocks.counted(algebra, block, turns, blocks.inputs(algebra, block)));
+  };
   const auto count = [&](const Effect& effect, const RowBlock& block) {
+    count_turns(block);
     if (effect.angle < 0) return;
     const int C = blocks.call(algebra, block, "position", blocks.inputs(algebra, block)).at("C[0]");
     output(effect.angle, unwound(algebra, effect.angle, C));
   };
   const Mechanism& all = blocks.mechanism();
-  for (std::size_t j = 0; j < all.joints.size(); ++j)
-    for (const CountedTurns& turns : all.joints[j].turns) {
-      const RowBlock& block = blocks.joint(j);
-      output(turns.angle, blocks.counted(algebra, block, turns, blocks.inputs(algebra, block)));
-    }
+  for (std::size_t j = 0; j < all.joints.size(); ++j) count_turns(blocks.joint(j));
   for (std::size_t e = 0; e < all.effects.size(); ++e) count(all.effects[e], blocks.effect(e));
   for (std::size_t b = 0; b < all.bounded.size(); ++b) count(all.bounded[b], blocks.bounded(b));
   return algebra.finish();

@@ -38,6 +38,7 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
     for (const Effect& effect : *list) {
       std::set<std::string>& of_type = coordinates[effect.type];
       if (!effect.coordinate.empty()) of_type.insert(effect.coordinate);
+      for (const CountedTurns& turns : effect.turns) of_type.insert(turns.coordinate);
       if (!effect.law_type.empty()) coordinates[law_of(effect)];
     }
   for (const Bond& bond : mechanism.bonds) coordinates[bond_of(bond)];
@@ -62,7 +63,7 @@ void RowBlocks::add_joint(const Joint& joint, const std::string& name) {
   const SpecPrograms& spec = types_.at(joint.type);
   joints_.push_back({name, name, &spec, &spec.rows, &joint.bodies, &joint.parameters});
   RowBlock& block = joints_.back();
-  block.joint = &joint, block.holds = joint.holds;
+  block.joint = &joint, block.holds = joint.holds, block.turns = &joint.turns;
   if (!joint.in_time.empty()) block.in_time = &joint.in_time;
   check_time(block, joint.name);
   if (joint.coordinate.empty()) return;
@@ -83,6 +84,12 @@ void RowBlocks::note_coordinate_laws(const derive::SpecsFolder& specs) {
 std::string RowBlocks::law_of(const Effect& effect) const {
   if (!effect.coordinate.empty() && coordinate_laws_.contains(effect.law_type)) return "coordinate/" + effect.law_type;
   return (mechanism_.spatial() && !effect.coordinate.empty() ? "planar/" : "") + effect.law_type;
+}
+
+const RowBlock& RowBlocks::block_of(const Bond& bond) const {
+  if (bond.joint >= 0) return joints_[static_cast<std::size_t>(bond.joint)];
+  if (bond.effect >= 0) return effects_[static_cast<std::size_t>(bond.effect)];
+  return bounded_[static_cast<std::size_t>(bond.bounded)];
 }
 
 std::string RowBlocks::bond_of(const Bond& bond) const {
@@ -119,7 +126,7 @@ RowBlock RowBlocks::block_of(const std::string& name, const Effect& effect) cons
   RowBlock block{name,           effect.coordinate.empty() ? name : owner_of(name, effect.name),
                  &spec,          coordinate.empty() ? &spec.rows : &spec.coordinates.at(coordinate),
                  &effect.bodies, &effect.parameters};
-  block.holds = effect.holds;
+  block.holds = effect.holds, block.turns = &effect.turns;
   if (!effect.coordinate.empty()) block.in_time = functions_of(effect.name);
   else if (move_in_time(effect, block)) block.in_time = &effect.in_time;
   if (!effect.parameters_in_time.empty()) block.in_time = &effect.parameters_in_time;
@@ -189,8 +196,8 @@ Values RowBlocks::inputs(Algebra& algebra, const RowBlock& block) const {
   }
   in["pi"] = algebra.value(3.14159265358979323846);
   in["time"] = algebra.input("time");
-  if (block.joint)
-    for (const CountedTurns& turns : block.joint->turns)
+  if (block.turns)
+    for (const CountedTurns& turns : *block.turns)
       in[spec.parameters[turns.parameter]] = counted(algebra, block, turns, in).turns;
   if (block.holds >= 0) in["holds"] = algebra.input(element("bonds.holds", static_cast<std::size_t>(block.holds)));
   return in;

@@ -31,6 +31,7 @@ struct RowBlock {
   const Joint* motor = nullptr;                            // whose speed is the rate of its row
   const std::map<std::size_t, InTime>* in_time = nullptr;  // parameters that follow functions of time; null: none
   const Joint* joint = nullptr;                            // if it is one
+  const std::vector<CountedTurns>* turns = nullptr;        // of its parameters; null: none
   int holds = -1;                                          // of a joint that may break, or on one: as Joint::holds
 };
 
@@ -55,6 +56,8 @@ class RowBlocks {
   const RowBlock& joint(std::size_t j) const { return joints_[j]; }
   const RowBlock& effect(std::size_t e) const { return effects_[e]; }
   const RowBlock& bounded(std::size_t b) const { return bounded_[b]; }
+  // Of the joint that may break by it.
+  const RowBlock& block_of(const Bond& bond) const;
   // The spec by which a joint breaks.
   const SpecPrograms& bond(const Bond& bond) const { return types_.at(bond_of(bond)); }
   // The spec whose law the effect has.

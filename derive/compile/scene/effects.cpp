@@ -156,6 +156,7 @@ class EffectReader {
     effect.law = Effect::spring;
     effect.numbers = constants_of(record(joint).places[0]);
     effect.numbers.push_back(0);  // C itself is the distance from rest
+    if (counts_turns(world_, joint)) effect.turns = turns_of(world_.joint_type(joint), mechanism_);
     mechanism_.effects.push_back(std::move(effect));
   }
 
@@ -307,13 +308,31 @@ int tensions_of(BasicWorld<S>& world, const Place& place) {
 }
 
 template <class S>
+bool counts_turns(BasicWorld<S>& world, int joint) {
+  const std::vector<Place>& places = world.data().joints[static_cast<std::size_t>(joint)].places;
+  return !places.empty() && world.data().batches[static_cast<std::size_t>(places[0].batch)]->ops->counters > 0;
+}
+
+std::vector<CountedTurns> turns_of(const JointType& type, Mechanism& mechanism) {
+  std::vector<CountedTurns> turns;
+  for (const CoordinateInfo& coordinate : type.coordinates)
+    for (const ParameterInfo& info : type.parameters)
+      if (info.unit == "rad" && info.name == std::string(coordinate.name) + "_turns")
+        turns.push_back({static_cast<std::size_t>(info.offset), std::string(coordinate.name), mechanism.angles++});
+  return turns;
+}
+
+template <class S>
 void read_effects(const Scene& scene, BasicWorld<S>& world, const RefuseEffect& refuse, Mechanism& mechanism) {
   EffectReader<S>(scene, world, refuse, mechanism).read();
 }
 
-template int tensions_of(BasicWorld<Planar<double>>&, const Place&);
-template int tensions_of(BasicWorld<Spatial<double>>&, const Place&);
-template void read_effects(const Scene&, BasicWorld<Planar<double>>&, const RefuseEffect&, Mechanism&);
-template void read_effects(const Scene&, BasicWorld<Spatial<double>>&, const RefuseEffect&, Mechanism&);
+#define CDOT_INSTANTIATE(S)                               \
+  template int tensions_of(BasicWorld<S>&, const Place&); \
+  template bool counts_turns(BasicWorld<S>&, int);        \
+  template void read_effects(const Scene&, BasicWorld<S>&, const RefuseEffect&, Mechanism&);
+CDOT_INSTANTIATE(Planar<double>)
+CDOT_INSTANTIATE(Spatial<double>)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot::compile

@@ -28,6 +28,11 @@ bool find_functions(const Scene& scene, const JointRecord& record, int place, Me
 template <class S>
 int tensions_of(BasicWorld<S>& world, const Place& place);
 
+// True if rows of a joint of the World count whole turns; those of a type: runtime/include/cdot/detail/turns.hpp.
+template <class S>
+bool counts_turns(BasicWorld<S>& world, int joint);
+std::vector<CountedTurns> turns_of(const JointType& type, Mechanism& mechanism);
+
 template <class S>
 void read_effects(const Scene& scene, BasicWorld<S>& world, const RefuseEffect& refuse, Mechanism& mechanism);
 

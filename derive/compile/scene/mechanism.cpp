@@ -44,12 +44,11 @@ void refuse_joint(const SceneJoint& joint, const Scene& scene, Refusals& refusal
     refusals.add(joint.where, fmt::format("{}: cdot compile knows no {}", name, part), "leave it to cdot-run");
   };
   const JointType* type = find_joint_type(scene.dimension, joint.definition.type);
-  if (!joint.bonds.empty() && (joint.definition.soft || (type && type->is_effect)))
-    refuse("effects and soft joints that break");
   const auto has = [&](RowKind kind) {
     return type && std::ranges::find(type->row_kinds, kind) != type->row_kinds.end();
   };
-  if (has(RowKind::inequality) && !is_rope(*type))
+  if (has(RowKind::inequality) && joint.definition.soft) refuse("soft ropes, which only pull");
+  else if (has(RowKind::inequality) && !is_rope(*type))
     refuse(fmt::format("inequality beside other rows, as {} has", type->name));
 }
 
@@ -142,22 +141,6 @@ Joint joint_of(const Scene& scene, const BasicWorld<S>& world, int index) {
 }
 
 template <class S>
-bool counts_turns(BasicWorld<S>& world, int joint) {
-  const std::vector<Place>& places = world.data().joints[static_cast<std::size_t>(joint)].places;
-  return !places.empty() && world.data().batches[static_cast<std::size_t>(places[0].batch)]->ops->counters > 0;
-}
-
-// Those that the World counts in a joint: runtime/include/cdot/detail/turns.hpp.
-std::vector<CountedTurns> turns_of(const JointType& type, Mechanism& mechanism) {
-  std::vector<CountedTurns> turns;
-  for (const CoordinateInfo& coordinate : type.coordinates)
-    for (const ParameterInfo& info : type.parameters)
-      if (info.unit == "rad" && info.name == std::string(coordinate.name) + "_turns")
-        turns.push_back({static_cast<std::size_t>(info.offset), std::string(coordinate.name), mechanism.angles++});
-  return turns;
-}
-
-template <class S>
 void add_joint(const Scene& scene, BasicWorld<S>& world, int index, Mechanism& mechanism) {
   Joint joint = joint_of(scene, world, index);
   joint.holds = number_among_breakable(world, index);
@@ -200,11 +183,11 @@ void refuse_counters(const Scene& scene, BasicWorld<S>& world) {
   Refusals refusals(scene);
   for (int i = 0; i < static_cast<int>(scene.joints.size()); ++i) {
     const SceneJoint& joint = scene.joints[static_cast<std::size_t>(i)];
-    const bool knows = !world.joint_type(i).is_effect && !is_rope(world.joint_type(i)) && !joint.definition.soft;
+    const bool knows = !world.joint_type(i).is_effect && !is_rope(world.joint_type(i));
     if (!knows && counts_turns(world, i))
       refusals.add(joint.where,
-                   fmt::format("{}: cdot compile knows no soft rows that count whole turns, as {} has", joint.name,
-                               joint.definition.type),
+                   fmt::format("{}: cdot compile knows no effects by rows that count whole turns, as {} has",
+                               joint.name, joint.definition.type),
                    "leave it to cdot-run");
   }
   refusals.throw_any();

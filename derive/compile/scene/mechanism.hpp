@@ -98,17 +98,20 @@ struct Effect {
   int loaded_by_row = -1, loaded_by_joint = -1;
   int cone = -1;   // of a row of a force along several coordinates: the first one of these, among Mechanism::bounded
   int holds = -1;  // of a joint that may break, on which it acts: as Joint::holds
-  bool by_own_force = false;  // an event of the row depends on the force that it carries
-  int tensions = 0;           // as Joint::tensions
+  bool by_own_force = false;          // an event of the row depends on the force that it carries
+  int tensions = 0;                   // as Joint::tensions
+  std::vector<CountedTurns> turns{};  // of a soft joint: as Joint::turns
+  bool acts_by_force() const { return law <= limited; }
   bool is_loaded() const { return loaded_by_row >= 0 || loaded_by_joint >= 0; }
 };
 
 // By which a joint breaks.
 struct Bond {
-  std::string name, type;         // "hinge.breaking", "breaking"
-  int holds = 0;                  // the number of the joint among those that may break
-  int joint = -1, rope = -1;      // which carries the load: among Mechanism::joints or Mechanism::bounded
-  std::vector<double> numbers{};  // Parameters<T> of the spec
+  std::string name, type;                     // "hinge.breaking", "breaking"
+  int holds = 0;                              // the number of the joint among those that may break
+  int joint = -1, bounded = -1, effect = -1;  // it, among Mechanism::joints, Mechanism::bounded, Mechanism::effects
+  bool carries = true;                        // false: an effect without rows of its own, which has no load
+  std::vector<double> numbers{};              // Parameters<T> of the spec
 };
 
 using Method = Integrator;
@@ -145,6 +148,9 @@ struct Mechanism {
   int breakable() const { return bonds.empty() ? 0 : bonds.back().holds + 1; }  // joints that may break
   bool has_rates() const {
     return std::ranges::any_of(joints, [](const Joint& joint) { return std::ranges::count(joint.is_rate, true) > 0; });
+  }
+  bool has_bonds_on_effects() const {  // by forces
+    return std::ranges::any_of(bonds, [](const Bond& bond) { return bond.effect >= 0; });
   }
   bool has_events_by_force() const { return std::ranges::any_of(bounded, &Effect::by_own_force); }
   // By these methods the impulses of corrections count as loads.

@@ -143,10 +143,10 @@ void lanes_are_as_alone() {
 }
 
 template <class Compiled>
-typename Compiled::State state_after(int steps) {
+typename Compiled::State state_after(int steps, double step = Compiled::default_step) {
   typename Compiled::State state;
   Compiled::reset(state);
-  for (int k = 0; k < steps; ++k) Compiled::step(state);
+  for (int k = 0; k < steps; ++k) Compiled::step(state, step);
   return state;
 }
 
