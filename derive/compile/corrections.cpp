@@ -98,7 +98,7 @@ constexpr const char* moves_of_ends = R"(      T mu[bounded] = {{}};
       for (int i = 0; i < bounded; ++i) passed = passed || active[i];
       if (any(passed)) {{
         if (!reached) reach($sat.q, at.time, {0}B);
-        reached = true;
+{3}        reached = true;
         T along_ends[bounded], c[bounded];
         along($sat.q, at.time, d, along_ends);
         for (int i = 0; i < bounded; ++i) c[i] = -over[i] - along_ends[i];
@@ -127,7 +127,8 @@ constexpr const char* sums_impulses = R"(      for (int i = 0; i < rows; ++i) la
 std::string ends_of(const Contents& has) {
   const bool keeps = has.gyroscopes && !has.modes;
   const std::string by_all = fmt::format(moves_by_all, has.rows ? sums_impulses : "", has.rows ? "s.J, lambda, " : "");
-  return fmt::format(moves_of_ends, has.rows ? "s.J, " : "", keeps ? "" : adds_moves_of_ends, keeps ? by_all : "");
+  return fmt::format(moves_of_ends, has.rows ? "s.J, " : "", keeps ? "" : adds_moves_of_ends, keeps ? by_all : "",
+                     when(has.shares_impulses(), "        if (!reached) share(s.J, B);\n"));
 }
 
 constexpr const char* moves_bodies =
@@ -158,6 +159,7 @@ constexpr const char* projects_rows = R"(    rates(s.J, s.v, rate);
     solve($qs.J, rate, lambda, d);
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] - d[i];
 )";
+constexpr const char* shares_projected = "    share(s.J, lambda);\n";
 
 // A lane without a held row keeps its bits.
 constexpr const char* projects_held_rows = R"(    Mask held[bounded], some = T(1) < T(0);
@@ -362,7 +364,7 @@ std::string corrections_of(double tolerance, const Contents& has, const std::str
   }
   if (has.weighs_joints()) text += project_with_impulses();
   else if (has.projects()) text += project_begins + when(has.rows, "    T rate[rows], lambda[rows];\n");
-  if (has.projects()) text += when(has.rows, projects_rows);
+  if (has.projects()) text += when(has.rows, projects_rows) + when(has.shares_impulses(), shares_projected);
   if (has.modes) text += fmt::format(projects_held_rows, has.rows ? "s.J, " : "");
   if (has.projects()) text += "  }\n";
   return text;

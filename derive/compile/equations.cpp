@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "derive/compile/borne/borne.hpp"
+#include "derive/compile/borne/shares.hpp"
 #include "derive/compile/foresight/aim.hpp"
 #include "derive/compile/midpoint/middle.hpp"
 #include "derive/compile/rows/bounds.hpp"
@@ -34,7 +35,6 @@ class EquationWriter {
     blocks_.note_start(out_.constants);
     if (system().size() > 0) {
       out_.evaluate = joints_.evaluate(out_.constants, out_.stored);
-      check_redundancy();
       write_errors();
       write_rates();
       write_solve();
@@ -171,6 +171,7 @@ class EquationWriter {
 
   void write_bonds() {
     out_.strain = strain_of(blocks_, out_.constants);
+    if (system().size() > 0 && system().has_redundant_rows()) write_share();
     const Borne borne(blocks_);
     out_.first_borne = borne.first();
     if (mechanism_.method == Method::euler && borne.size() > 0) out_.bear = borne.in_kick(out_.constants);
@@ -184,13 +185,13 @@ class EquationWriter {
     out_.first_rows.push_back(row);
   }
 
-  // The World shares the loads of redundant rows.
-  void check_redundancy() const {
-    if (!mechanism_.bonds.empty() && system().has_redundant_rows())
+  void write_share() {
+    if (mechanism_.has_loads())
       throw std::runtime_error(
           fmt::format("{}: cdot compile knows no joints that break beside redundant ones, whose loads are to be "
-                      "shared. Fix: leave it to cdot-run",
+                      "shared, and friction by a load. Fix: leave it to cdot-run",
                       mechanism_.bonds.front().name));
+    out_.share = share_of(joints_, out_.constants);
   }
 
   void check_inputs() const {
@@ -252,11 +253,12 @@ class EquationWriter {
 }  // namespace
 
 std::vector<const Program*> programs_of_equations(const Equations& e) {
-  return {&e.evaluate,    &e.errors,  &e.rates,  &e.accelerate,    &e.solve,   &e.apply,      &e.aim,
-          &e.solve_aimed, &e.fall,    &e.kick,   &e.potential,     &e.reach,   &e.past,       &e.along,
-          &e.angles,      &e.dampen,  &e.notice, &e.look,          &e.finish,  &e.exert,      &e.distances,
-          &e.guard,       &e.resolve, &e.carry,  &e.weigh,         &e.stiffen, &e.improve,    &e.displace,
-          &e.nearest,     &e.strain,  &e.draw,   &e.drift_of_ends, &e.bear,    &e.bear_start, &e.bear_end};
+  return {&e.evaluate, &e.errors,        &e.rates,     &e.accelerate, &e.solve,     &e.apply,
+          &e.aim,      &e.solve_aimed,   &e.fall,      &e.kick,       &e.potential, &e.reach,
+          &e.past,     &e.along,         &e.angles,    &e.dampen,     &e.notice,    &e.look,
+          &e.finish,   &e.exert,         &e.distances, &e.guard,      &e.resolve,   &e.carry,
+          &e.weigh,    &e.stiffen,       &e.improve,   &e.displace,   &e.nearest,   &e.strain,
+          &e.draw,     &e.drift_of_ends, &e.bear,      &e.bear_start, &e.bear_end,  &e.share};
 }
 
 std::set<std::string> functions_of(const Program& program) {

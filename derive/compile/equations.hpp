@@ -58,6 +58,7 @@ struct Equations {
   Program displace;       // q, time, J, lambda, mu -> d; where inertias turn
   Program distances;      // q, v, time -> after, until: distances from events
   Program draw;    // by RATTLE: q, time, J, lambda, mu -> d: the pull of joints and of rows that prescribe a rate
+  Program share;   // J, lambda -> shared: loads of redundant rows of joints that may break (borne/shares.hpp)
   Program strain;  // load, time -> from: the distances of joints from their end
   // q, v, time, ... -> borne: forces of effects that may break (borne/borne.hpp). By RATTLE and by the midpoint rule
   // what they did at the start of a step and at its end, too, in `bear_start` and `bear_end`.

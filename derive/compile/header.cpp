@@ -226,6 +226,9 @@ class HeaderWriter {
       write_function("How far joints are from breaking", "strain(" + arguments_of_strain(mechanism_),
                      equations_.strain);
       if (has().pulls()) write_function(draws, "draw(" + at + arguments_of_draw(has()), equations_.draw);
+      if (has().shares)
+        write_function("Loads shared among redundant rows",
+                       "share(const Jacobian& J, const T (&lambda)[rows], T (&shared)[rows])", equations_.share);
       text_ += snap_of(mechanism_, {equations_.first_rows, equations_.first_borne}, has());
     }
     if (has().angles)

@@ -5,6 +5,7 @@
 #include "derive/compile/collocation/radau.hpp"
 #include "derive/compile/foresight/foresight.hpp"
 #include "derive/compile/gyroscopes.hpp"
+#include "derive/compile/methods/bonds.hpp"
 #include "derive/compile/methods/rattle.hpp"
 #include "derive/compile/methods/runge_kutta.hpp"
 #include "derive/compile/methods/weights.hpp"
@@ -138,6 +139,7 @@ std::string euler(const Mechanism& mechanism, const Contents& has) {
     text += has.rows ? fmt::format(euler_by_joints, has.feeds ? fmt::format(feeds_back, mechanism.fed_back) : "")
                      : "    push($qs.v, h);\n";
   }
+  text += shares(has, "s.lambda");
   if (has.closes()) text += "    const T left = s.residual;\n" + notes_poses(has);
   if (has.gyroscopes || !has.foresees) text += drifts(has, "s");
   text += "    s.time = s.time + h;\n";
@@ -189,6 +191,7 @@ Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
           .snaps = !mechanism.bonds.empty() && mechanism.on_accelerations(),
           .bears = !equations.bear_start.outputs.empty() || !equations.bear.outputs.empty(),
           .bears_end = !equations.bear_end.outputs.empty(),
+          .shares = !equations.share.outputs.empty(),
           .weighs = mechanism.weighs(),
           .drags = std::ranges::any_of(mechanism.bodies, &Body::drags),
           .foresees = !equations.apply.outputs.empty(),

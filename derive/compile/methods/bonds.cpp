@@ -71,6 +71,20 @@ constexpr const char* chooses_joints = R"(
   }}
 )";
 
+constexpr const char* shares_in_place = R"(
+  static void share(const Jacobian& J, T (&lambda)[rows]) {
+    T shared[rows];
+    share(J, lambda, shared);
+    for (int i = 0; i < rows; ++i) lambda[i] = shared[i];
+  }
+)";
+constexpr const char* shares_of_ends = R"(
+  static void share(const Jacobian& J, Bounded& B) {
+    for (T (&of_row)[rows] : B.l) share(J, of_row);
+  }
+)";
+constexpr const char* shares_now = "    T shared[rows];\n    share(s.J, force, shared);\n";
+
 constexpr const char* accelerates_joints = R"(      project(next);
       accelerate($snext.q, next.time, next.v, next.J, next.lambda, next.a);
 )";
@@ -78,6 +92,15 @@ constexpr const char* accelerates_freely = "      fall($snext.q, next.time, next
 constexpr const char* bears_end = R"(    T more[borne_rows];
     bear_end($ss.q, s.time, s.v, h, {}more);
     for (int i = 0; i < borne_rows; ++i) s.bonds.borne[i] = s.bonds.borne[i] + more[i];
+)";
+constexpr const char* bears_round = R"(      T borne[borne_rows];
+      bear($smiddle, s.time, s.v, d, h, K, borne);
+      for (int i = 0; i < borne_rows; ++i) in_middle[i] = select(goes_on, borne[i], in_middle[i]);
+)";
+constexpr const char* adds_borne =
+    "    for (int i = 0; i < borne_rows; ++i) s.bonds.borne[i] = s.bonds.borne[i] + in_middle[i];\n";
+constexpr const char* shares_round = R"(      evaluate($smiddle, s.time, s.J);
+      share(s.J, y);
 )";
 constexpr const char* bears_now = "{0}bear($s{1}.q, {1}.time, {1}.v, {1}.bonds.borne);\n";
 
@@ -88,7 +111,7 @@ const std::vector<int>& bodies_of(const Mechanism& mechanism, const Bond& bond) 
 }
 
 // The norm of its rows' forces.
-std::string load_of(const Bond& bond, const FirstRows& rows) {
+std::string load_of(const Bond& bond, const FirstRows& rows, const char* forces) {
   if (!bond.carries) return "";
   if (bond.bounded >= 0)
     return fmt::format("    s.bonds.load[{}] = magnitude(of_bounds[{}]);\n", bond.holds, bond.bounded);
@@ -97,7 +120,7 @@ std::string load_of(const Bond& bond, const FirstRows& rows) {
   const auto number = static_cast<std::size_t>(by_force ? bond.holds : bond.joint);
   std::string squares;
   for (std::size_t r = first[number]; r < first[number + 1]; ++r)
-    squares += fmt::format("{0}{1}[{2}] * {1}[{2}]", squares.empty() ? "" : " + ", by_force ? "borne" : "force", r);
+    squares += fmt::format("{0}{1}[{2}] * {1}[{2}]", squares.empty() ? "" : " + ", by_force ? "borne" : forces, r);
   return fmt::format("    s.bonds.load[{}] = sqrt({});\n", bond.holds, squares);
 }
 
@@ -131,14 +154,32 @@ std::string forces_parameters(const Contents& has) {
   return std::string(has.rows ? ", const T (&force)[rows]" : "") +
          (has.bounded ? ", const T (&of_bounds)[bounded]" : "") + (has.bears ? ", const T (&borne)[borne_rows]" : "");
 }
+std::string sharing_of(const Contents& has) {
+  return std::string(has.shares_impulses() || (has.shares && has.midpoint) ? shares_in_place : "") +
+         (has.shares_impulses() && has.ends ? shares_of_ends : "");
+}
+
 }  // namespace
 
 std::string bears_at_start(const Contents& has) {
   return has.bears ? "    bear_start($ss.q, s.time, s.v, h, s.bonds.borne);\n" : "";
 }
 
+std::string declares_borne(const Contents& has) {
+  return has.bears ? "    T in_middle[borne_rows];\n    for (T& of_row : in_middle) of_row = T(0);\n" : "";
+}
+
+std::string loads_in_round(const Contents& has) {
+  return std::string(has.bears ? bears_round : "") + (has.shares ? shares_round : "");
+}
+
+std::string shares(const Contents& has, const std::string& impulses) {
+  return has.shares ? "    share(s.J, " + impulses + ");\n" : "";
+}
+
 std::string bears_at_end(const Contents& has, const std::string& end) {
-  return has.bears_end ? fmt::format(bears_end, has.looks ? "given, " + end + ", " : "") : "";
+  return (has.bears && has.midpoint ? adds_borne : "") +
+         (has.bears_end ? fmt::format(bears_end, has.looks ? "given, " + end + ", " : "") : "");
 }
 
 std::string forces_of_state(const Contents& has) {
@@ -188,15 +229,17 @@ std::string margins_of_bonds(const Contents& has) {
 }
 
 std::string snap_of(const Mechanism& mechanism, const FirstRows& rows, const Contents& has) {
-  std::string loads, after = has.rows ? evaluates : "";
+  const bool at_once = has.shares && has.snaps;  // by other methods each impulse has been
+  std::string loads = at_once ? shares_now : "", after = has.rows ? evaluates : "";
   for (std::size_t k = 0; k < mechanism.bonds.size(); ++k) {
     const Bond& bond = mechanism.bonds[k];
     if (k > 0 && mechanism.bonds[k - 1].holds == bond.holds) continue;
-    loads += load_of(bond, rows), after += forgets_forces(bond, rows, has);
+    loads += load_of(bond, rows, at_once ? "shared" : "force"), after += forgets_forces(bond, rows, has);
   }
   if (has.pulls()) after += pulls_anew(mechanism, has);
   const std::string parameters = forces_parameters(has);
-  std::string text = "\n  // The loads on joints, by the forces of all rows.\n  static void weigh_joints(State& s" +
+  std::string text = sharing_of(has) +
+                     "\n  // The loads on joints, by the forces of all rows.\n  static void weigh_joints(State& s" +
                      parameters + ") {\n    using std::sqrt;\n" + (has.rows ? "    (void)force;\n" : "") +
                      (has.bounded ? "    (void)of_bounds;\n" : "") + loads + "  }\n";
   text += fmt::format(

@@ -28,6 +28,7 @@ struct Contents {
   bool snaps = false;          // by Runge-Kutta methods: when it does is located in a step
   bool bears = false;          // among these are effects and soft joints
   bool bears_end = false;      // whose forces act at the end of a step, too
+  bool shares = false;         // loads of these are shared among redundant rows
   bool weighs = false;         // by Euler's steps or RATTLE: the impulses of corrections count as loads
   bool drags = false;          // some body has drag
   bool foresees = false;       // the multipliers of the next projection, by those of the last steps
@@ -42,6 +43,7 @@ struct Contents {
   bool corrects_loads() const { return loads && (weighs || midpoint); }  // by impulses beside those found
   bool carries_over() const { return loads && weighs && !rattle; }       // impulses of the last corrections
   bool weighs_joints() const { return weighs && (bonds || loads) && rows; }
+  bool shares_impulses() const { return shares && weighs_joints(); }
   bool closes() const { return (rows || ends) && !open; }
   bool stiffens() const { return midpoint && (rows || bounded) && (turns || taut); }  // by tension
   bool weighs_blows() const { return snaps && modes; }                                // of impacts, as loads of joints

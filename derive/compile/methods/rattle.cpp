@@ -154,6 +154,8 @@ constexpr const char* frees_ends = R"(          for (int f = 0; f < freed; ++f) 
             }
           }
 )";
+constexpr const char* shares_impulse = "      share(s.J, impulse);\n";
+constexpr const char* shares_ends = "          share(s.J, reached);\n";
 constexpr const char* notes_found =
     "      for (int i = 0; i < rows; ++i) found[i] = found[i] - (T(1) / half) * impulse[i];\n";
 constexpr const char* no_changes = R"(      Velocity d[bodies];
@@ -293,7 +295,9 @@ std::string closing(double tolerance, const Contents& has) {
                                  has.frees ? frees_changes : "")
                    : no_changes;
   if (has.ends)
-    text += fmt::format(end_changes, has.rows ? "s.J, " : "", weighs_end_changes(has), has.frees ? frees_ends : "");
+    text += fmt::format(end_changes, has.rows ? "s.J, " : "", weighs_end_changes(has),
+                        std::string(has.frees ? frees_ends : "") + (has.shares ? shares_ends : ""));
+  if (has.shares) text += shares_impulse;
   if (has.foresees || has.weighs_joints()) text += notes_found;
   return text + fmt::format(round_ends, tolerance, has.pulls() ? "(a[i] + s.pull[i])" : "a[i]", drifts(has, "at"),
                             has.foresees
@@ -337,6 +341,7 @@ std::string start_of(const Contents& has) {
                     has.loads ? settles_start_with_loads(has) : "    settle(B, hold, mu);\n") +
         fmt::format(sums_pulls, "", has.rows ? fmt::format(sums_lambda, "") : "", "") + start_holds;
   else text += start_by_joints;
+  text += shares(has, "lambda");
   return text + fmt::format(start_ends, has.rows ? start_lambda : "", repeats_at_start(has));
 }
 
@@ -356,6 +361,7 @@ std::string rattle(double tolerance, const Contents& has) {
   text += has.finishes ? finishing(has) : has.rows ? joints_end : "";
   if (has.foresees) text += remembers;
   text += bears_at_end(has, "end");
+  text += shares(has, "s.lambda");
   text += rattle_weighs(has);
   if (has.events) text += "    latch(s);\n";
   return text + fmt::format("    return {};\n  }}\n", has.closes() ? "s.residual" : "T(0)");

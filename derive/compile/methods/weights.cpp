@@ -128,7 +128,10 @@ std::string declares_gained(const Contents& has) {
          (has.ends ? "    T gained_by_ends[bounded];\n    for (T& of_row : gained_by_ends) of_row = T(0);\n" : "");
 }
 
-std::string gains_of_rows(const Contents& has) { return has.weighs_joints() ? weighs_rows : ""; }
+std::string gains_of_rows(const Contents& has) {
+  return std::string(has.shares_impulses() ? "      share(s.J, lambda);\n" : "") +
+         (has.weighs_joints() ? weighs_rows : "");
+}
 
 std::string gains_of_ends(const Contents& has) {
   return has.weighs && has.ends ? fmt::format(weighs_ends, has.weighs_joints() ? weighs_rows_by_ends : "") : "";

@@ -61,16 +61,6 @@ constexpr const char* measures = R"(      errors($ss.q, end, C);
       const T of_joints = largest(C);
 )";
 
-constexpr const char* declares_borne = R"(    T in_middle[borne_rows];
-    for (T& of_row : in_middle) of_row = T(0);
-)";
-constexpr const char* bears_round = R"(      T borne[borne_rows];
-      bear($smiddle, s.time, s.v, d, h, K, borne);
-      for (int i = 0; i < borne_rows; ++i) in_middle[i] = select(goes_on, borne[i], in_middle[i]);
-)";
-constexpr const char* adds_borne =
-    "    for (int i = 0; i < borne_rows; ++i) s.bonds.borne[i] = s.bonds.borne[i] + in_middle[i];\n";
-
 // Ends that are passed are errors. Such rows miss their end by a rate.
 constexpr const char* measures_ends = R"(      nearest($ss.q, end, off, side);
       for (int i = 0; i < bounded; ++i) {{
@@ -270,7 +260,7 @@ std::string ending(const Contents& has) {
                                           settles_x(has, "s.q", "s.hold", alone), has.cones ? " && cone_of[i] < 0" : "")
                             : "");
   else if (has.rows) text += projects;
-  if (has.bears) text += adds_borne + bears_at_end(has, "at_end");
+  text += shares(has, "y") + bears_at_end(has, "at_end");
   if (!has.rows) return text + "    (void)last, (void)work, (void)residual;\n";
   return text + judges_end + (has.ends ? forgives_hits : "") + stores_end;
 }
@@ -317,7 +307,7 @@ std::string round(const Mechanism& mechanism, const Contents& has) {
   text += "      T power;\n" + improves(has, "middle", "h");
   if (has.bounded)
     text += fmt::format(settles_round, adds_bounded(has, "      "), settles_x(has, "middle", "hold", in_middle_by));
-  if (has.bears) text += bears_round;
+  text += loads_in_round(has);
   const auto bodies = static_cast<double>(std::ranges::count_if(mechanism.bodies, &Body::moves));
   const double goal = 0.01 * mechanism.tolerance, few = std::clamp(bodies * bodies, 1e2, 1e4);
   return text +
@@ -347,6 +337,7 @@ std::string rescue(const Contents& has) {
   text += improves(has, "s.q", "twice");
   if (has.bounded)
     text += fmt::format(rescue_settles, adds_bounded(has, "    "), settles_x(has, "s.q", "s.hold", alone));
+  text += shares(has, "y");
   if (has.bears) text += "    bear($ss.q, s.time, s.v, d, twice, K, s.bonds.borne);\n";
   text += rescue_moves + drifts(has, "s", "h") + "    s.time = s.time + h;\n";
   if (has.gyroscopes) text += follows;
@@ -381,7 +372,7 @@ std::string implicit(const Mechanism& mechanism, const Contents& has) {
   if (has.drags) text += "    drag(s.v, half);\n";
   text += notes_part;
   text += declares(has);
-  if (has.bears) text += declares_borne;
+  text += declares_borne(has);
   if (has.rows) text += part_guesses;
   if (has.bounded) text += guesses_bounded;
   if (has.ends) text += declares_ends;

@@ -54,7 +54,9 @@ class RowSystem {
   void write_changes(Algebra& algebra, const std::vector<int>& lambda,
                      const std::function<Values(std::size_t block)>& inputs) const;
   const std::vector<std::size_t>& order() const { return order_; }
-  // At the start. After factor().
+  // After factor(), by places in the order: whether L has this number, and whether a row is redundant at the start.
+  bool has_L(std::size_t i, std::size_t j) const { return L_[i][j]; }
+  bool is_redundant(std::size_t place) const { return redundant_[place]; }
   bool has_redundant_rows() const { return std::ranges::find(redundant_, true) != redundant_.end(); }
 
  private:
