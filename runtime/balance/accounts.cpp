@@ -26,13 +26,12 @@ bool is_driven(const Island<S>& island) {
   return false;
 }
 
-// Of Flow::first_kick: at most two a row.
 template <class S>
-size_t numbers_of_kick(const Island<S>& island) {
+size_t rows_with_bounds(const Island<S>& island) {
   int rows = 0;
   for (const auto& [batch, begin, end, whole] : island.segments)
-    if (batch->law) rows += (end - begin) * batch->ops->rows;
-  return static_cast<size_t>(2 * rows);
+    if (batch->law && batch->law->guard) rows += (end - begin) * batch->ops->rows;
+  return static_cast<size_t>(rows);
 }
 
 }  // namespace
@@ -45,7 +44,7 @@ void prepare_accounts(WorldData<S>& world) {
     island.rows_work = rows_may_work(island);
     island.works = island.rows_work || S::has_gyroscopes;
     island.driven = is_driven(island);
-    island.flow.first_kick.assign(numbers_of_kick(island), 0);
+    island.flow.first_kick.assign(rows_with_bounds(island), 0);
     works |= island.works;
     find_free_motions(world, island, at);
     if (island.floats) island.momentum.assign(7, -1.0);

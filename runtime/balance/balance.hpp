@@ -89,7 +89,8 @@ void book_work(WorldData<S>& world, Island<S>& island);
 enum class Impulses : char {
   euler,         // `lambda` over h; springs and dampers act with the rate at the end of the kick
   dampers,       // `lambda` of springs, which holds their dampers alone
-  rattle_start,  // `correction` over h, without dampers; forces act at Flow::velocity, as the dampers have left it
+  rattle_start,  // `correction` over h, without dampers, and Batch::at_rest; forces act at Flow::velocity, as the
+                 // dampers have left it
   rattle_end,    // `lambda` over h but that of springs, from Flow::velocity on; drag with the rate at begin_kick()
   middle,        // `correction` over h, without dampers and drag; the velocities are the mean of the kick
   end,           // `lambda` of a projection; that of springs holds their dampers
@@ -105,10 +106,6 @@ enum class Impulses : char {
 // Call at the start and at the end of a kick of h. C and J are those of the kick.
 template <class S>
 void begin_kick(WorldData<S>& world, const Island<S>& island);
-// Call in each kick of RATTLE: keeps the forces at rest in Batch::impulse for book_kick(), which comes when C is
-// another one.
-template <class S>
-void note_at_rest(Island<S>& island);
 template <class S>
 void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typename S::Scalar h);
 // Call at the end of a step of Euler's method: a spring given by its frequency changes its stiffness with the pose.

@@ -29,29 +29,6 @@ struct Work {
 template <class T>
 constexpr T at_rest[most_rows] = {};
 
-// Of a force at rest an energy may store a part: then the other part is kept after it.
-template <class S>
-bool stores_some(const Batch<S>& batch) {
-  return batch.law->is_of_effect() && batch.law->energy;
-}
-template <class S>
-int numbers_at_rest(const Batch<S>& batch) {
-  return (stores_some(batch) ? 2 : 1) * batch.ops->rows;
-}
-template <class S>
-void find_unstored_at_rest(const Batch<S>& batch, int slot, double* to) {
-  typename S::Scalar unstored[most_rows];
-  batch.law->unstored(batch, slot, at_rest<typename S::Scalar>, unstored);
-  for (int r = 0; r < batch.ops->rows; ++r) to[r] = double(unstored[r]);
-}
-template <class S>
-void find_at_rest(const Batch<S>& batch, int slot, double* to) {
-  typename S::Scalar whole[most_rows];
-  batch.law->force(batch, slot, at_rest<typename S::Scalar>, whole);
-  for (int r = 0; r < batch.ops->rows; ++r) to[r] = double(whole[r]);
-  if (stores_some(batch)) find_unstored_at_rest(batch, slot, to + batch.ops->rows);
-}
-
 // dC/dt of one slot whose bias holds something else by now. C and J keep their values.
 template <class S>
 void find_drift(const WorldData<S>& world, Batch<S>& batch, int slot, typename S::Scalar time,
@@ -63,54 +40,93 @@ void find_drift(const WorldData<S>& world, Batch<S>& batch, int slot, typename S
   std::swap_ranges(bias, bias + rows, drift);
 }
 
-// The parts of a spring in the impulses of its rows. RATTLE exerts springs as forces, which are in no impulse: those at
-// rest, over h, which its kick left in Flow::first_kick. Its impulses of springs are those of dampers.
+// The parts of a spring in the impulses of its rows. RATTLE exerts springs as forces (work_of_forces()).
 enum class Springs : char { none, whole, dampers, without_dampers, as_forces };
 
-// Rows of springs whose impulse is that of dampers alone, of springs without dampers, or both as forces. `lambda` is
-// that of the part in impulses. Batch::rate has J v of the mean velocity. C must be that of the kick.
-template <class S, class Lambda>
-void work_of_parted_springs(const WorldData<S>& world, Batch<S>& batch, int slot, Lambda lambda, Springs springs,
-                            typename S::Scalar time, double h, Work& work) {
+// Rows of springs whose impulse `lambda` is that of dampers alone, or of springs without dampers. Batch::rate has J v
+// of the mean velocity. C must be that of the kick.
+template <class S>
+void work_of_parted_springs(const WorldData<S>& world, Batch<S>& batch, int slot, const typename S::Scalar* lambda,
+                            Springs springs, typename S::Scalar time, Work& work) {
   const int rows = batch.ops->rows, first = slot * rows;
   const bool drifts = batch.explicit_time();
   typename S::Scalar drift[most_rows];
   if (drifts) find_drift(world, batch, slot, time, drift);
-  for (int r = 0; r < rows && springs != Springs::without_dampers; ++r) {
-    const double impulse = lambda(first + r);
-    work.take(batch.source, impulse * double(drifts ? batch.rate[first + r] + drift[r] : batch.rate[first + r]));
+  for (int r = 0; r < rows; ++r) {
+    const double impulse = lambda[first + r];
+    if (springs == Springs::dampers)
+      work.take(batch.source, impulse * double(drifts ? batch.rate[first + r] + drift[r] : batch.rate[first + r]));
     if (drifts) work.put(batch.source, -impulse * double(drift[r]));
-  }
-  for (int r = 0; r < rows && drifts && springs != Springs::dampers; ++r) {
-    const double impulse = springs == Springs::as_forces ? h * work.first_kick[r] : double(lambda(first + r));
-    work.put(batch.source, -impulse * double(drift[r]));
   }
 }
 
-// Effects whose impulse is that of what rates change, or the force at rest over h, or both.
-template <class S, class Lambda>
-void work_of_parted_effect(const WorldData<S>& world, Batch<S>& batch, int slot, Lambda lambda, Springs springs,
-                           typename S::Scalar time, double h, Work& work) {
+// Effects whose impulse `lambda` is that of what rates change, or the force at rest over h.
+template <class S>
+void work_of_parted_effect(const WorldData<S>& world, Batch<S>& batch, int slot, const typename S::Scalar* lambda,
+                           Springs springs, typename S::Scalar time, double h, Work& work) {
   using T = typename S::Scalar;
   const int rows = batch.ops->rows, first = slot * rows;
   const bool drifts = batch.explicit_time();
-  T drift[most_rows], rate[most_rows];
+  T drift[most_rows] = {}, whole[most_rows], unstored[most_rows];
   if (drifts) find_drift(world, batch, slot, time, drift);
-  for (int r = 0; r < rows; ++r) rate[r] = drifts ? batch.rate[first + r] + drift[r] : batch.rate[first + r];
-  const auto give = [&](auto impulse, auto whole) {
+  const auto give = [&](auto impulse, auto all) {
     double done = 0;
-    for (int r = 0; r < rows; ++r) done += impulse(r) * double(rate[r]);
+    for (int r = 0; r < rows; ++r) done += impulse(r) * double(batch.rate[first + r] + drift[r]);
     work.give(batch.source, done);
-    for (int r = 0; r < rows && drifts; ++r) work.put(batch.source, -whole(r) * double(drift[r]));
+    for (int r = 0; r < rows && drifts; ++r) work.put(batch.source, -all(r) * double(drift[r]));
   };
-  const auto of_rates = [&](int r) { return double(lambda(first + r)); };
-  if (springs != Springs::without_dampers) give(of_rates, of_rates);
-  if (springs == Springs::dampers) return;
-  double now[2 * most_rows];
-  if (springs != Springs::as_forces) find_at_rest(batch, slot, now);
-  const double* const resting = springs == Springs::as_forces ? work.first_kick : now;
-  const double* const unstored = stores_some(batch) ? resting + rows : resting;
-  give([&](int r) { return h * unstored[r]; }, [&](int r) { return h * resting[r]; });
+  const auto of_rates = [&](int r) { return double(lambda[first + r]); };
+  if (springs == Springs::dampers) return give(of_rates, of_rates);
+  batch.law->force(batch, slot, at_rest<T>, whole);
+  batch.law->unstored(batch, slot, at_rest<T>, unstored);
+  give([&](int r) { return h * double(unstored[r]); }, [&](int r) { return h * double(whole[r]); });
+}
+
+// Adds dC/dt to Batch::rate, and puts in the work of what moves C against the impulses.
+template <class S>
+void add_drifts(const WorldData<S>& world, const Segment<S>& segment, typename S::Scalar time, double h, Work& work) {
+  Batch<S>& batch = *segment.batch;
+  typename S::Scalar drift[most_rows];
+  for (int slot = segment.begin, i = slot * batch.ops->rows; slot < segment.end; ++slot) {
+    find_drift(world, batch, slot, time, drift);
+    for (int r = 0; r < batch.ops->rows; ++r, ++i) {
+      const double of_rates = batch.law->spring ? double(batch.lambda[i]) : 0;
+      work.put(batch.source, -(of_rates + h * double(batch.at_rest[i])) * double(drift[r]));
+      batch.rate[i] += drift[r];
+    }
+  }
+}
+
+// Rows that RATTLE exerts as forces: Batch::at_rest over h, and in Batch::lambda the impulses of what rates change.
+// Most need no rates: an energy stores the whole force at rest, and nothing damps.
+template <class S>
+void work_of_forces(const WorldData<S>& world, const Segment<S>& segment, const typename S::Velocity* mean,
+                    typename S::Scalar time, double h, Work& work) {
+  Batch<S>& batch = *segment.batch;
+  const Law<S>& law = *batch.law;
+  const int rows = batch.ops->rows, begin = segment.begin * rows, end = segment.end * rows;
+  const bool of_effect = law.is_of_effect(), unstored = law.stores_part || (of_effect && !law.energy);
+  const bool drifts = batch.explicit_time();
+  const auto* const lambda = batch.lambda.data();
+  if (!drifts && !unstored && std::all_of(lambda + begin, lambda + end, [](auto x) { return x == 0; })) return;
+  batch.ops->velocity(batch, segment.begin, segment.end, mean, batch.rate.data());
+  if (drifts) add_drifts(world, segment, time, h, work);
+  if (!law.spring) return;
+  const auto* const rate = batch.rate.data();
+  if (!of_effect) {
+    for (int i = begin; i < end; ++i) work.take(batch.source, double(lambda[i]) * double(rate[i]));
+    return;
+  }
+  const auto* const resting = (law.stores_part ? batch.unstored_at_rest : batch.at_rest).data();
+  for (int first = begin; first < end; first += rows) {
+    double by_rates = 0, at_rest = 0;
+    for (int i = first; i < first + rows; ++i) {
+      by_rates += double(lambda[i]) * double(rate[i]);
+      at_rest += double(resting[i]) * double(rate[i]);
+    }
+    work.give(batch.source, by_rates);
+    if (unstored) work.give(batch.source, h * at_rest);
+  }
 }
 
 }  // namespace cdot

@@ -24,9 +24,9 @@ void find_damping(const Batch<S>& batch, int slot, const typename S::Scalar* rat
 
 // Rows that are springs, given J v of the rate at which they acted and, in Batch::rate, of the mean velocity. Of an
 // effect without energy the impulse itself does the work: a stiff servo acts implicitly, so its force is not that of C.
-template <class S, class Lambda>
+template <class S>
 void work_of_springs(const WorldData<S>& world, Batch<S>& batch, int slot, const typename S::Scalar* acted,
-                     Lambda lambda, typename S::Scalar time, double h, Work& work) {
+                     const typename S::Scalar* lambda, typename S::Scalar time, double h, Work& work) {
   using T = typename S::Scalar;
   const int rows = batch.ops->rows;
   T drift[most_rows] = {}, rate[most_rows], force[most_rows];
@@ -38,11 +38,11 @@ void work_of_springs(const WorldData<S>& world, Batch<S>& batch, int slot, const
   double done = 0;
   for (int r = 0; r < rows; ++r) {
     const int i = slot * rows + r;
-    const double impulse = by_impulse ? double(lambda(i)) : h * double(force[r]);
+    const double impulse = by_impulse ? double(lambda[i]) : h * double(force[r]);
     const double of_row = impulse * double(batch.rate[i] + drift[r]);
     if (of_effect) done += of_row;
     else work.take(batch.source, of_row);
-    work.put(batch.source, -double(lambda(i)) * double(drift[r]));
+    work.put(batch.source, -double(lambda[i]) * double(drift[r]));
   }
   work.give(batch.source, done);
 }
@@ -57,16 +57,20 @@ void work_of_rate(const Batch<S>& batch, const Guard<typename S::Scalar>& guard,
   else work.take(batch.source, done);
 }
 
-// Rows with bounds: motors put in, friction takes, limits, ropes and latches take what hits them. Other rows that are
-// held on both sides without a rate of their own do no work. Flow::first_kick keeps that of the first kick.
-template <class S, class Lambda>
-void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& work) {
+// Whether an impulse of a row counts.
+enum class Rows : char { all, springs, others };
+
+// Rows with bounds, at most so many: motors put in, friction takes, limits, ropes and latches take what hits them.
+// Other rows that are held on both sides without a rate of their own do no work. Flow::first_kick keeps that of the
+// first kick.
+template <int most, class S>
+void work_of_bounded(const Batch<S>& batch, int slot, const typename S::Scalar* lambda, Kick kick, Work& work) {
   const int rows = batch.ops->rows;
-  double done[most_rows];
+  double done[most];
   bool idle = true;
   for (int r = 0; r < rows; ++r) {
     const int i = slot * rows + r;
-    done[r] = double(lambda(i)) * double(batch.rate[i]) + (kick == Kick::second ? work.first_kick[r] : 0);
+    done[r] = double(lambda[i]) * double(batch.rate[i]) + (kick == Kick::second ? work.first_kick[r] : 0);
     idle = idle && done[r] == 0;
   }
   if (kick == Kick::first) std::copy_n(done, rows, work.first_kick);
@@ -75,7 +79,7 @@ void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& 
   const bool has_ends = batch.law->error;
   const bool ends_move = has_ends && batch.driven() && !batch.drives_of(slot).empty();
   const bool in_time = batch.explicit_time() || (!has_ends && batch.law->in_time);
-  Guard<typename S::Scalar> guards[most_rows];
+  Guard<typename S::Scalar> guards[most];
   if (!in_time) batch.law->guard(batch, slot, guards);
   for (int r = 0; r < rows; ++r) {
     if (ends_move) work.give(batch.source, done[r]);
@@ -86,39 +90,53 @@ void work_of_bounded(Batch<S>& batch, int slot, Lambda lambda, Kick kick, Work& 
   }
 }
 
-// All rows that may do work, given J v of mean velocities by batch.ops->velocity(..., mean). `acted` finds J v at which
-// whole springs acted, into Batch::impulse. alone: rows that are no springs have no impulse. Returns true if a spring
-// may be given by its frequency.
-template <class S, class Lambda, class Acted>
-bool work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S::Velocity* mean, Lambda lambda,
-                  Acted acted, Springs springs, bool alone, Kick kick, typename S::Scalar time, double h, Work& work) {
+// True if an energy of these rows, whose law has by_mass, changes with K.
+template <class S>
+bool any_by_mass(const Segment<S>& segment) {
+  for (int slot = segment.begin; slot < segment.end; ++slot)
+    if (segment.batch->law->by_mass(*segment.batch, slot)) return true;
+  return false;
+}
+
+// Rows that may do work, given J v of mean velocities by batch.ops->velocity(..., mean). `impulses` gives those of a
+// batch; `acted` finds J v at which whole springs acted, into Batch::impulse. Returns true if a spring is given by its
+// frequency.
+template <class S, class Array, class Acted>
+bool work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S::Velocity* mean, Array impulses,
+                  Acted acted, Springs springs, Rows which, Kick kick, typename S::Scalar time, double h, Work& work) {
   bool by_mass = false;
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     const int begin = segment.begin, end = segment.end, rows = batch.ops->rows;
     if (!batch.law && !batch.explicit_time()) continue;
-    if (alone && !(batch.law && batch.law->spring)) continue;
+    if (which != Rows::all && (batch.law && batch.law->spring) != (which == Rows::springs)) continue;
     if (springs == Springs::none && batch.law && (batch.law->spring || batch.law->force)) continue;
+    by_mass = by_mass || (batch.law && batch.law->by_mass && any_by_mass(segment));
+    if (springs == Springs::as_forces && batch.law && batch.law->force) {
+      work_of_forces(world, segment, mean, time, h, work);
+      continue;
+    }
+    const auto* const lambda = impulses(batch);
+    const auto idle = [](auto impulse) { return impulse == 0; };
+    if (kick == Kick::only && std::all_of(lambda + begin * rows, lambda + end * rows, idle)) {
+      if (!batch.law || batch.law->guard) continue;
+    }
     batch.ops->velocity(batch, begin, end, mean, batch.rate.data());
-    by_mass |= batch.law && batch.law->by_mass;
-    const auto of_row = [&](int i) { return lambda(batch, i); };
     if (!batch.law) {
-      for (int i = begin * rows; i < end * rows; ++i) work.put(batch.source, double(of_row(i)) * double(batch.rate[i]));
+      for (int i = begin * rows; i < end * rows; ++i) work.put(batch.source, double(lambda[i]) * double(batch.rate[i]));
     } else if (batch.law->spring && springs != Springs::whole) {
-      const bool of_effect = batch.law->is_of_effect(), as_forces = springs == Springs::as_forces;
-      const auto of_part = [&](int i) { return as_forces ? batch.lambda[i] : of_row(i); };
       for (int slot = begin; slot < end; ++slot) {
-        if (of_effect) work_of_parted_effect(world, batch, slot, of_part, springs, time, h, work);
-        else work_of_parted_springs(world, batch, slot, of_part, springs, time, h, work);
-        if (as_forces) work.first_kick += numbers_at_rest(batch);
+        if (batch.law->is_of_effect()) work_of_parted_effect(world, batch, slot, lambda, springs, time, h, work);
+        else work_of_parted_springs(world, batch, slot, lambda, springs, time, work);
       }
     } else if (batch.law->force) {
-      if (springs == Springs::as_forces) work.first_kick += (end - begin) * numbers_at_rest(batch);
       const auto* const rates = acted(batch, begin, end);
       for (int slot = begin; slot < end; ++slot)
-        work_of_springs(world, batch, slot, rates + slot * rows, of_row, time, h, work);
+        work_of_springs(world, batch, slot, rates + slot * rows, lambda, time, h, work);
     } else if (batch.law->guard) {
-      for (int slot = begin; slot < end; ++slot) work_of_bounded(batch, slot, of_row, kick, work);
+      for (int slot = begin; slot < end; ++slot)  // coordinates have one row
+        rows == 1 ? work_of_bounded<1>(batch, slot, lambda, kick, work)
+                  : work_of_bounded<most_rows>(batch, slot, lambda, kick, work);
     }
   }
   return by_mass;
@@ -199,13 +217,10 @@ void add(WorldData<S>& world, const Work& work) {
 }
 
 template <class S>
-typename S::Scalar impulse_of(Impulses impulses, const Batch<S>& batch, int i) {
-  const bool spring = batch.law && batch.law->spring;
-  const bool no_springs = impulses == Impulses::rattle_end || impulses == Impulses::relaxed;
-  if (impulses == Impulses::dampers ? !spring : no_springs && spring) return 0;
+const typename S::Scalar* impulses_of(Impulses impulses, const Batch<S>& batch) {
   const bool corrected = impulses == Impulses::rattle_start || impulses == Impulses::middle ||
                          impulses == Impulses::drift || impulses == Impulses::relaxed;
-  return corrected ? batch.correction[i] : batch.lambda[i];
+  return (corrected ? batch.correction : batch.lambda).data();
 }
 
 template <class S>
@@ -223,6 +238,10 @@ constexpr Springs springs_of(Impulses impulses) {
   if (impulses == Impulses::euler || impulses == Impulses::soft) return Springs::whole;
   if (impulses == Impulses::rattle_start || impulses == Impulses::rattle_end) return Springs::as_forces;
   return impulses == Impulses::middle ? Springs::without_dampers : Springs::dampers;
+}
+
+constexpr Rows rows_of(Impulses impulses) {
+  return impulses == Impulses::dampers ? Rows::springs : impulses == Impulses::relaxed ? Rows::others : Rows::all;
 }
 
 // `impulses`, or a type that holds it: the halves of RATTLE are booked in each step, by code of their own.
@@ -245,15 +264,16 @@ void book(WorldData<S>& world, Island<S>& island, Kind impulses, typename S::Sca
   Work work{world.accounts.by_source.data(), island.flow.first_kick.data()};
   const bool of_rows = impulses == Impulses::drift || impulses == Impulses::dampers || impulses == Impulses::end ||
                        impulses == Impulses::relaxed;
-  if (!of_rows) work_on_bodies(world, island, start.data(), mean.data(), impulses != Impulses::middle, at_end, h, work);
+  if (!of_rows && (S::has_gyroscopes || !island.drags.empty()))
+    work_on_bodies(world, island, start.data(), mean.data(), impulses != Impulses::middle, at_end, h, work);
   const bool by_mass = work_of_rows(
-      world, island, mean.data(), [&](const Batch<S>& batch, int i) { return impulse_of(impulses, batch, i); },
+      world, island, mean.data(), [&](const Batch<S>& batch) { return impulses_of(impulses, batch); },
       [&](Batch<S>& batch, int begin, int end) {
         batch.ops->velocity(batch, begin, end, acted, batch.impulse.data());
         if (at_end && sweeps(world.settings.solver)) find_rates_met(batch, begin, end);
         return batch.impulse.data();
       },
-      springs_of(impulses), impulses == Impulses::dampers, kick_of(impulses), island.evaluated_at, double(h), work);
+      springs_of(impulses), rows_of(impulses), kick_of(impulses), island.evaluated_at, double(h), work);
   if (by_mass && (impulses == Impulses::rattle_start || impulses == Impulses::rattle_end))
     work_of_stiffness(world, island, island.evaluated_at, start.data(), double(h), work);
   if (!of_rows && world.driven) work_of_drives(island, double(h), work);
@@ -266,21 +286,6 @@ template <class S>
 void begin_kick(WorldData<S>& world, const Island<S>& island) {
   if (!works_now(world, island)) return;
   for (int i : island.bodies) world.start_of_kick[i] = world.bodies.velocity[i];
-}
-
-template <class S>
-void note_at_rest(Island<S>& island) {
-  double* to = island.flow.first_kick.data();
-  for (const auto& [batch, begin, end, whole] : island.segments) {
-    if (!batch->law || !batch->law->force) continue;
-    const int rows = batch->ops->rows;
-    const auto* from = batch->impulse.data() + begin * rows;
-    const bool stores = stores_some(*batch);
-    for (int slot = begin; slot < end; ++slot) {
-      for (int r = 0; r < rows; ++r) *to++ = double(*from++);
-      if (stores) find_unstored_at_rest(*batch, slot, to), to += rows;
-    }
-  }
 }
 
 template <class S>
@@ -302,12 +307,12 @@ void find_power(WorldData<S>& world, Island<S>& island, typename S::Scalar time,
   const auto* const v = world.bodies.velocity.data();
   work_on_bodies(world, island, v, v, true, false, T(1), work);
   work_of_rows(
-      world, island, v, [](const Batch<S>& batch, int i) { return batch.lambda[i]; },
+      world, island, v, [](const Batch<S>& batch) { return batch.lambda.data(); },
       [&](Batch<S>& batch, int begin, int end) {
         batch.ops->effective_mass(batch, begin, end, world.bodies);
         return batch.rate.data();
       },
-      Springs::whole, false, Kick::only, time, 1, work);
+      Springs::whole, Rows::all, Kick::only, time, 1, work);
   work_of_stiffness(world, island, time, v, 1, work);
   if (world.driven) work_of_drives(island, 1, work);
   power[0] = T(work.put_in), power[1] = T(work.taken);
@@ -332,7 +337,6 @@ void book_stiffness(WorldData<S>& world, Island<S>& island) {
 
 #define CDOT_INSTANTIATE(S)                                                   \
   template void begin_kick(WorldData<S>&, const Island<S>&);                  \
-  template void note_at_rest(Island<S>&);                                     \
   template void book_kick(WorldData<S>&, Island<S>&, Impulses, S::Scalar);    \
   template void find_power(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar*); \
   template void book_stiffness(WorldData<S>&, Island<S>&);

@@ -73,6 +73,8 @@ void add_rows(WorldData<S>& world, int joint, const BlockOps<S>* ops, const Law<
     grow(batch.upper, ops->rows, std::numeric_limits<T>::infinity());
     grow(batch.mode, ops->rows, Mode::bounded);
     grow(batch.load, 1);
+    if (law->force) grow(batch.at_rest, ops->rows);
+    if (law->stores_part) grow(batch.unstored_at_rest, ops->rows);
     if (law->distance) grow(batch.happened, 1);
     for (double constant : constants) batch.constants.push_back(T(constant));
     if (!batch.spans.empty()) batch.spans.push_back(-unbounded), batch.spans.push_back(unbounded);

@@ -53,7 +53,7 @@ struct FlowWorkspace {
   std::vector<T> now;               // numbers of a stage, laid out like FlowState::start
   std::vector<T> low, high;         // margins at the start of a step, then on both sides of an event
   std::vector<StartOfWay<T>> ways;  // [guarded]
-  std::vector<double> first_kick;   // of rows under laws: [J] in the first of two kicks; by RATTLE, forces at rest
+  std::vector<double> first_kick;   // of rows with bounds: [J] in the first of two kicks
   int guarded = 0;                  // number of guarded rows
   T fixed_step = 0;                 // its length; 0: the error chooses the steps
   bool projects_stages = false;     // in steps near a loss of rank

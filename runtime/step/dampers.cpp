@@ -15,11 +15,9 @@ void weigh_springs(const WorldData<S>& world, const Island<S>& island) {
 }
 
 template <class S>
-void find_spring_impulses(Batch<S>& batch, int begin, int end, typename S::Scalar h) {
+void find_forces_at_rest(const Batch<S>& batch, int begin, int end, typename S::Scalar* force) {
   constexpr typename S::Scalar at_rest[most_rows] = {};
-  const int rows = batch.ops->rows;
-  for (int slot = begin; slot < end; ++slot) batch.law->force(batch, slot, at_rest, batch.impulse.data() + slot * rows);
-  for (int i = begin * rows; i < end * rows; ++i) batch.impulse[i] *= h;
+  for (int slot = begin; slot < end; ++slot) batch.law->force(batch, slot, at_rest, force + slot * batch.ops->rows);
 }
 
 // t R(r) at the start of a step of h: half of it, or less where the effect is stiff for the step.
@@ -46,10 +44,10 @@ void push_dampers(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
       push_effects(batch, begin, end, h);
       continue;
     }
-    find_spring_impulses(batch, begin, end, h / 2);
+    find_forces_at_rest(batch, begin, end, batch.impulse.data());
     each_spring(batch, begin, end, [&](int i, const SpringNumbers<T>& spring, T K) {
       const T damping = -dampers(spring, K, h, false).start * (batch.rate[i] + batch.bias[i]);
-      batch.lambda[i] = pulls_only(batch, i) ? std::max(damping, -batch.impulse[i]) : damping;
+      batch.lambda[i] = pulls_only(batch, i) ? std::max(damping, -(h / 2 * batch.impulse[i])) : damping;
     });
   }
   for (const auto& [batch, begin, end, whole] : island.segments)
@@ -64,12 +62,10 @@ void find_rates_of_effects(WorldData<S>& world, const Island<S>& island) {
 }
 
 template <class S>
-void look_at_effects(WorldData<S>& world, const Island<S>& island, typename S::Scalar time, bool noted) {
-  for (const auto& [batch, begin, end, whole] : island.segments) {
-    const bool in_time = is_force(*batch) && batch->explicit_time();
-    const bool books_force = in_time || (batch->law && batch->law->is_of_effect() && !(noted && batch->law->spring));
-    if (books_force) batch->ops->position(*batch, begin, end, world.bodies, time);
-  }
+void look_at_effects(WorldData<S>& world, const Island<S>& island, typename S::Scalar time) {
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    if (is_force(*batch) && (batch->explicit_time() || batch->law->is_of_effect()))
+      batch->ops->position(*batch, begin, end, world.bodies, time);
 }
 
 template <class S>
@@ -78,12 +74,12 @@ void forget_dampers(WorldData<S>& world, const Island<S>& island) {
     if (segment.batch->law && segment.batch->law->is_of_effect()) restore_drift(world, island, segment);
 }
 
-#define CDOT_INSTANTIATE(S)                                                        \
-  template void weigh_springs(const WorldData<S>&, const Island<S>&);              \
-  template void find_spring_impulses(Batch<S>&, int, int, S::Scalar);              \
-  template void push_dampers(WorldData<S>&, Island<S>&, S::Scalar);                \
-  template void find_rates_of_effects(WorldData<S>&, const Island<S>&);            \
-  template void look_at_effects(WorldData<S>&, const Island<S>&, S::Scalar, bool); \
+#define CDOT_INSTANTIATE(S)                                                  \
+  template void weigh_springs(const WorldData<S>&, const Island<S>&);        \
+  template void find_forces_at_rest(const Batch<S>&, int, int, S::Scalar*);  \
+  template void push_dampers(WorldData<S>&, Island<S>&, S::Scalar);          \
+  template void find_rates_of_effects(WorldData<S>&, const Island<S>&);      \
+  template void look_at_effects(WorldData<S>&, const Island<S>&, S::Scalar); \
   template void forget_dampers(WorldData<S>&, const Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

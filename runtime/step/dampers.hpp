@@ -102,17 +102,17 @@ bool has_effects(const Island<S>& island) {
 // J v of effects, into Batch::rate.
 template <class S>
 void find_rates_of_effects(WorldData<S>& world, const Island<S>& island);
-// C of effects at the present poses. `noted`: forces at rest need none (note_at_rest()).
+// C at the present poses of what is_force(), if it is of an effect or in time.
 template <class S>
-void look_at_effects(WorldData<S>& world, const Island<S>& island, typename S::Scalar time, bool noted = false);
+void look_at_effects(WorldData<S>& world, const Island<S>& island, typename S::Scalar time);
 
 // K of the rows under a law, which the numbers of springs need.
 template <class S>
 void weigh_springs(const WorldData<S>& world, const Island<S>& island);
 
-// The force of springs at rest and of constant forces, times h, into Batch::impulse.
+// The force of springs at rest and of constant forces, laid out like the batch's rows.
 template <class S>
-void find_spring_impulses(Batch<S>& batch, int begin, int end, typename S::Scalar h);
+void find_forces_at_rest(const Batch<S>& batch, int begin, int end, typename S::Scalar* force);
 
 // The impulses of dampers at the start of a step of h, into `lambda` and the velocities. C, J and K must be present.
 template <class S>

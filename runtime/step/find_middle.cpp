@@ -57,10 +57,10 @@ void look_at_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h
     if (round >= rounds_with_new_directions && is_bounded(batch) && !batch.law->error) continue;
     batch.ops->evaluate(batch, begin, end, world.bodies, T(world.time) + h / 2);
     if (!is_force(batch)) continue;
-    find_spring_impulses(batch, begin, end, h);
+    find_forces_at_rest(batch, begin, end, batch.impulse.data());
     each_row(batch, begin, end, [&](int i) {
       batch.softness[i] = 0;
-      batch.lower[i] = batch.upper[i] = batch.impulse[i];
+      batch.lower[i] = batch.upper[i] = batch.impulse[i] *= h;
     });
     batch.ops->velocity(batch, begin, end, world.bodies.velocity.data(), batch.rate.data());
     each_spring(batch, begin, end, [&](int i, const SpringNumbers<T>& spring, T K) {

@@ -107,7 +107,7 @@ void bound_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     if (!batch.law) continue;
     const int begin = segment.begin * batch.ops->rows, end = segment.end * batch.ops->rows;
     if (is_force(batch)) {
-      const auto pulled = [h](const Batch<S>& of, int i) { return h / 2 * of.impulse[i]; };  // in the last kick
+      const auto pulled = [h](const Batch<S>& of, int i) { return h / 2 * of.at_rest[i]; };  // in the last kick
       bound_dampers(batch, segment.begin, segment.end, h, false, pulled);
       continue;
     }

@@ -45,10 +45,11 @@ void kick(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     if (!is_force(batch)) continue;
-    find_spring_impulses(batch, segment.begin, segment.end, T(1));
-    batch.ops->apply(batch, segment.begin, segment.end, all, batch.impulse.data(), all.velocity_rate.data());
+    find_forces_at_rest(batch, segment.begin, segment.end, batch.at_rest.data());
+    batch.ops->apply(batch, segment.begin, segment.end, all, batch.at_rest.data(), all.velocity_rate.data());
+    for (int slot = segment.begin; batch.law->stores_part && slot < segment.end; ++slot)
+      batch.law->unstored(batch, slot, at_rest<T>, batch.unstored_at_rest.data() + slot * batch.ops->rows);
   }
-  note_at_rest(island);
   for (size_t k = 0; k < island.bodies.size(); ++k) {
     const int i = island.bodies[k];
     all.velocity[i] = S::sum(island.flow.velocity[k], all.velocity_rate[i], h);
@@ -257,25 +258,30 @@ void expect_end_velocities(WorldData<S>& world, Island<S>& island) {
   }
 }
 
-// Loads and reactions count the impulses of springs and constant forces, which act as forces: those of a kick of h
-// (note_at_rest()), and at the start those of dampers in `lambda`.
+// Loads and reactions count the impulses of springs and constant forces, which act as forces: those of a kick of h, and
+// at the start those of dampers in `lambda`.
 template <class S>
 void note_impulses_of_forces(Island<S>& island, typename S::Scalar h, bool at_start) {
-  using T = typename S::Scalar;
-  const double* force = island.flow.first_kick.data();
   for (const auto& [batch, begin, end, whole] : island.segments) {
     if (!is_force(*batch)) continue;
-    const int rows = batch->ops->rows, further = stores_some(*batch) ? rows : 0;
-    for (int i = begin * rows; i < end * rows; ++i) {
-      batch->correction[i] += h * T(*force++);
-      if (at_start && batch->law->spring) batch->correction[i] += batch->lambda[i];
-      if ((i + 1) % rows == 0) force += further;
+    const bool damps = at_start && batch->law->spring;
+    for (int i = begin * batch->ops->rows; i < end * batch->ops->rows; ++i) {
+      batch->correction[i] += h * batch->at_rest[i];
+      if (damps) batch->correction[i] += batch->lambda[i];
     }
   }
 }
 
-// Books the first half: at the poses of its start, to which J belongs. Dampers act before the other impulses, but
-// joints work against them: only along the mean of the whole half kick do joints do no work.
+// True if f(batch) is, of a force.
+template <class S, class F>
+bool any_force(const Island<S>& island, F f) {
+  return std::any_of(island.segments.begin(), island.segments.end(),
+                     [&](const Segment<S>& s) { return is_force(*s.batch) && f(*s.batch); });
+}
+
+// Books the first half: at the poses of its start, to which J belongs, where the books evaluate anything. Dampers act
+// before the other impulses, but joints work against them: only along the mean of the whole half kick do joints do no
+// work.
 template <class S>
 void book_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
@@ -284,10 +290,12 @@ void book_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     for (size_t k = 0; k < island.bodies.size(); ++k)
       std::swap(world.bodies.pose[island.bodies[k]], island.flow.pose[k]);
   };
-  swap_poses();
-  look_at_effects(world, island, T(world.time), true);
+  const bool in_time = any_force(island, [](const Batch<S>& batch) { return batch.explicit_time(); });
+  const bool at_poses = in_time || any_force(island, [](const Batch<S>& batch) { return batch.law->by_mass; });
+  if (at_poses) swap_poses();
+  if (in_time) look_at_effects(world, island, T(world.time));
   book_kick(world, island, Impulses::rattle_start, h);
-  swap_poses();
+  if (at_poses) swap_poses();
 }
 
 }  // namespace

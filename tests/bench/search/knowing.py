@@ -2,9 +2,10 @@
 """The cost of knowing the error of a run: instructions that the estimate and the balance add to those of the rest.
 
 Usage: tests/bench/search/knowing.py CDOT_RUN [INTEGRATOR]     (rattle; needs valgrind, takes some minutes)
+       tests/bench/search/knowing.py CDOT_RUN INTEGRATOR STEPS SCENE...     fails if one share is above 5 %
 
-Counts by callgrind, of the whole process, over all scenes of specs/scenes at steps of 2 ms. The energy itself does not
-count: it stands in each row of a trajectory.
+Counts by callgrind, of the whole process that reads, runs and reports a scene, over all scenes of specs/scenes at steps
+of 2 ms. The energy itself does not count: it stands in each row of a trajectory.
 """
 import re
 import statistics
@@ -44,15 +45,30 @@ def counted(program, scene, integrator, steps):
     return whole, parts
 
 
+def share_of(counts):
+    whole, parts = counts
+    known = sum(parts.values())
+    return 100 * known / (whole - known)
+
+
+def check(program, integrator, steps, scenes):
+    shares = {scene: share_of(counted(program, scene, integrator, int(steps))) for scene in scenes}
+    for scene, share in shares.items():
+        print(f"{integrator}, {steps} steps: {share:5.2f} % in {scene}")
+    sys.exit(not all(share <= MOST for share in shares.values()))
+
+
 def main():
     program, integrator = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else "rattle"
+    if len(sys.argv) > 4:
+        check(program, integrator, sys.argv[3], sys.argv[4:])
     scenes = sorted(str(scene) for scene in Path("specs/scenes").glob("**/*.toml"))
     for steps in COUNTS:
         shares = {part: [] for part in ("all", *PARTS)}
         for scene in scenes:
             whole, parts = counted(program, scene, integrator, steps)
             known = sum(parts.values())
-            shares["all"].append((100 * known / (whole - known), scene))
+            shares["all"].append((share_of((whole, parts)), scene))
             for part, instructions in parts.items():
                 shares[part].append((100 * instructions / (whole - known), scene))
         for part, values in shares.items():

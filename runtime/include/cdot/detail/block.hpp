@@ -136,7 +136,8 @@ struct Law {
   // Of an effect: the part of `force` that no energy stores. Its `fill` and `spring` read Batch::rate. Null: the laws
   // of springs and constant forces, whose dampers are all that is not stored.
   void (*unstored)(const Batch<S>&, int slot, const T* rate, T* force) = nullptr;
-  bool in_time = false;  // the force depends on the time: its island never sleeps
+  bool stores_part = false;  // an energy stores a part of the force, and not all of it
+  bool in_time = false;      // the force depends on the time: its island never sleeps
   // Of an effect whose force has limits: stiffness and damping within these. Null: no limits.
   void (*within_limits)(const Batch<S>&, int slot, SpringNumbers<T>*) = nullptr;
   bool moving = false;  // of a bounded row: its bounds may change with C or with the time
@@ -211,8 +212,10 @@ struct BatchWorkspace {
   std::vector<T> rate;       // J v of the last velocities
   std::vector<T> error;      // the part of C that a projection removes
   std::vector<T> impulse;    // of one round of a projection, or a known force
-  std::vector<T> load;       // [slot] force that bounds grow with (runtime/solve/loads.hpp), at acceleration level
-  T time = 0;                // of C
+  // RATTLE: forces of the last kick, those at rest, and what no energy stores of them where Law::stores_part.
+  std::vector<T> at_rest, unstored_at_rest;
+  std::vector<T> load;  // [slot] force that bounds grow with (runtime/solve/loads.hpp), at acceleration level
+  T time = 0;           // of C
   // Numbers in time, those of a slot from first_drive[home] to first_drive[home + 1]; both empty if there are none.
   std::vector<Drive> drives;
   std::vector<int> first_drive;

@@ -115,6 +115,7 @@ struct EffectLaw {
   }
 
   static constexpr bool has_energy = requires { &Effect::template energy<T>; };
+  static constexpr bool stores_part = has_energy && requires { &Effect::template unstored<T>; };
   static double energy(const Batch<S>& batch, int slot) {
     T E = 0;
     if constexpr (has_energy)
@@ -219,6 +220,7 @@ inline constexpr Law<S> effect_law{
     .guard = nullptr,
     .spring = EffectLaw<S, Effect, where>::spring,
     .unstored = EffectLaw<S, Effect, where>::unstored,
+    .stores_part = EffectLaw<S, Effect, where>::stores_part,
     .in_time = Effect::law_in_time,
     .within_limits = EffectLaw<S, Effect, where>::has_limits ? EffectLaw<S, Effect, where>::within_limits : nullptr,
     .power = EffectLaw<S, Effect, where>::has_energy ? EffectLaw<S, Effect, where>::power : nullptr};
