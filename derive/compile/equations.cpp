@@ -58,6 +58,7 @@ class EquationWriter {
     // pull beside the joints. Rows of velocities have no error by which a wrong guess is taken back.
     if (system().size() > 0 && foresees()) write_foreseen();
     drop_unread();
+    out_.apart = stages_read_no_centre();
     check_inputs();
     return std::move(out_);
   }
@@ -183,6 +184,18 @@ class EquationWriter {
     for (std::size_t j = 0; j < mechanism_.joints.size(); row += blocks_.joint(j++).rows->count())
       out_.first_rows.push_back(row);
     out_.first_rows.push_back(row);
+  }
+
+  bool stages_read_no_centre() const {
+    const bool is_explicit = mechanism_.method == Method::rk4 || mechanism_.method == Method::dop853;
+    if (!is_explicit || !mechanism_.bounded.empty()) return false;
+    std::set<std::string> read;
+    for (const Program* program : {&out_.evaluate, &out_.accelerate, &out_.fall})
+      read.merge(derive::inputs_read(*program, {}));
+    return std::ranges::none_of(read, [](const std::string& input) {
+      const bool of_body = input.starts_with("q[") || input.starts_with("v[");
+      return of_body && (input.ends_with("].x") || input.ends_with("].y") || input.ends_with("].z"));
+    });
   }
 
   void write_share() {

@@ -25,6 +25,7 @@ struct Equations {
   Program aim;                     // q, time, J -> B: Aim, the factor of J' M^-1 J^T with J' of q
   Program solve_aimed;             // J, B, b -> lambda with J' M^-1 J^T lambda = b, d = M^-1 J^T lambda
   std::vector<std::string> aimed;  // the numbers that `aim` writes
+  bool apart = false;              // by explicit Runge-Kutta methods: no stage reads a centre of mass or its velocity
   // Without:
   Program fall;       // q, v, time -> a
   Program kick;       // q, v, time, J, h -> next: v after an Euler step with effects; lambda of the joints

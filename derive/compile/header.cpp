@@ -56,9 +56,9 @@ class HeaderWriter {
     write_corrections();
     if (has().exerts) text_ += start_of(has());
     write_step();
-    const auto moving = static_cast<std::size_t>(std::ranges::count_if(mechanism_.bodies, &Body::moves));
     text_ += "};\n\n}  // namespace cdot::scenes\n";
-    return {unrolled(with_arguments(std::move(text_)), {moving, equations_.rows.size(), mechanism_.rates()}), name_,
+    const auto [bodies_moving, rates, centres] = slope_size(mechanism_, has().apart);
+    return {unrolled(with_arguments(std::move(text_)), {bodies_moving, equations_.rows.size(), rates, centres}), name_,
             operations_of(equations_, calls_of(mechanism_.method, has())),
             state_bytes_of(mechanism_, equations_, has())};
   }
@@ -106,7 +106,7 @@ class HeaderWriter {
     line(fmt::format("  static constexpr double default_step = {};  // [s]", mechanism_.step));
     for (const auto& [name, value] : equations_.constants.named)
       line(fmt::format("  static constexpr double {} = {};", name, value));
-    text_ += types_of(mechanism_, name_);
+    text_ += types_of(mechanism_, name_, has().apart);
     if (has().rows) {
       line("  // The numbers of J, and K = J M^-1 J^T = L D L^T with the rows numbered in the order of elimination.");
       line("  struct Jacobian {");

@@ -199,6 +199,7 @@ Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
           .feeds = mechanism.fed_back > 0,
           .turns = std::ranges::any_of(mechanism.bodies, &Body::turns),
           .taut = equations.taut > 0,
+          .apart = equations.apart,
           .collocated = mechanism.method == Method::radau5 ? mechanism.components() : 0};
 }
 
@@ -338,7 +339,7 @@ std::string step_of(const Mechanism& mechanism, const Contents& has) {
   if (mechanism.method == Method::rattle) return rattle(mechanism.tolerance, has);
   if (mechanism.method == Method::implicit) return implicit(mechanism, has);
   if (mechanism.method == Method::radau5) return radau(mechanism, has);
-  return runge_kutta(mechanism.method, has, mechanism.rates() <= few_rates);
+  return runge_kutta(mechanism.method, has, slope_size(mechanism, has.apart).rates <= few_rates);
 }
 
 }  // namespace cdot::compile

@@ -48,7 +48,8 @@ std::string unrolled(const std::string& text, const Counts& counts) {
     std::size_t count, few;
   } loops[] = {{"for (int i = 0; i < bodies; ++i) ", counts.bodies, 16},
                {"for (int i = 0; i < rows; ++i) ", counts.rows, 16},
-               {"for (int i = 0; i < Slope::size; ++i) ", counts.rates, few_rates}};
+               {"for (int i = 0; i < Slope::size; ++i) ", counts.rates, few_rates},
+               {"for (int i = 0; i < Slope::centres; ++i) ", counts.centres, few_rates}};
   std::string lines;
   std::istringstream all(text);
   for (std::string line; std::getline(all, line);) {

@@ -132,6 +132,59 @@ constexpr const char* slope_type =
   }};
 )";
 
+constexpr const char* slope_type_apart =
+    R"(  // Rates of angles and of spins, as one list: sums of lists are loops that a compiler makes wide. No stage reads a
+  // centre of mass, so accelerations of these are summed at the end alone: `way` with weights b (1 - c), since
+  // sum b_j a_jl = b_l (1 - c_l).
+  struct Slope {{
+    static constexpr int of_body = {0}, size = bodies * of_body, along = {1}, centres = bodies * along;
+    T of[size], linear[centres], way[centres];
+    void set(int i, const Rate& q, const Velocity& v) {{
+      T* const to = of + of_body * i;
+      T* const centre = linear + along * i;
+      {2}
+    }}
+    // Angles and spins of a body at a stage, after h.
+    void turn(int i, const T& h, const Pose& q, const Velocity& v, Pose& q_then, Velocity& v_then) const {{
+      const T* const to = of + of_body * i;
+      {5}
+    }}
+    Rate rate(int i, const Velocity& v, const T& h) const {{
+      const T* const to = of + of_body * i;
+      const T* const centre = way + along * i;
+      return {{{3}}};
+    }}
+    Velocity acceleration(int i) const {{
+      const T* const to = of + of_body * i;
+      const T* const centre = linear + along * i;
+      return {{{4}}};
+    }}
+  }};
+)";
+
+std::string slope_apart(bool spatial) {
+  const std::vector<std::string> turns =
+      spatial ? std::vector<std::string>{"q.e0", "q.e1", "q.e2", "q.e3", "v.wx", "v.wy", "v.wz"}
+              : std::vector<std::string>{"q.w", "v.w"};
+  const std::size_t along = spatial ? 3 : 2, of_pose = spatial ? 4 : 1;
+  std::string sets, turned, of_rate, of_velocity;
+  for (std::size_t k = 0; k < turns.size(); ++k) {
+    sets += fmt::format("to[{}] = {}, ", k, turns[k]);
+    const std::string name = turns[k] == "q.w" ? "angle" : turns[k].substr(2);
+    turned += fmt::format("{0}{1}_then.{2} = {1}.{2} + h * to[{3}]", k == 0 ? "" : ", ", turns[k][0], name, k);
+    (k < of_pose ? of_rate : of_velocity) += fmt::format(", to[{}]", k);
+  }
+  std::string centre_rate, centre_velocity;
+  for (std::size_t k = 0; k < along; ++k) {
+    const char axis = "xyz"[k];
+    sets += fmt::format("centre[{}] = v.{}{}", k, axis, k + 1 == along ? ";" : ", ");
+    centre_rate += fmt::format("{}v.{} + h * centre[{}]", k == 0 ? "" : ", ", axis, k);
+    centre_velocity += fmt::format("{}centre[{}]", k == 0 ? "" : ", ", k);
+  }
+  return fmt::format(slope_type_apart, turns.size(), along, sets, centre_rate + of_rate, centre_velocity + of_velocity,
+                     turned + ";");
+}
+
 std::string slope_of(bool spatial) {
   const std::vector<std::string> rates = spatial ? std::vector<std::string>{"x", "y", "z", "e0", "e1", "e2", "e3"}
                                                  : std::vector<std::string>{"x", "y", "w"};
@@ -153,8 +206,16 @@ std::string slope_of(bool spatial) {
 
 }  // namespace
 
-std::string types_of(const Mechanism& mechanism, const std::string& name) {
-  const std::string slope = mechanism.on_accelerations() ? slope_of(mechanism.spatial()) : "";
+SlopeSize slope_size(const Mechanism& mechanism, bool apart) {
+  const auto moving = static_cast<std::size_t>(std::ranges::count_if(mechanism.bodies, &Body::moves));
+  if (!apart) return {moving, moving * (mechanism.spatial() ? 13 : 6), 0};
+  return {moving, moving * (mechanism.spatial() ? 7 : 2), moving * mechanism.linear()};
+}
+
+std::string types_of(const Mechanism& mechanism, const std::string& name, bool apart) {
+  const std::string slope = !mechanism.on_accelerations() ? ""
+                            : apart                       ? slope_apart(mechanism.spatial())
+                                                          : slope_of(mechanism.spatial());
   if (!mechanism.spatial()) return planar_types + slope;
   const bool gyroscopes = mechanism.has_gyroscopes();
   std::string text = fmt::format("  using Wide = {}<typename WideOf<T>::type>;\n", name) + spatial_pose;

@@ -8,7 +8,15 @@
 namespace cdot::compile {
 
 // Pose, Velocity and Rate, that of a pose; choose(), move(), rate_of(), in the struct of that name.
-std::string types_of(const Mechanism& mechanism, const std::string& name);
+// `apart`: stages of a Runge-Kutta method read no centre of mass.
+std::string types_of(const Mechanism& mechanism, const std::string& name, bool apart);
+
+// Bodies that move, and numbers of a slope of a Runge-Kutta method: rates that each stage sums, and accelerations of
+// centres of mass that are summed at the end alone.
+struct SlopeSize {
+  std::size_t bodies, rates, centres;
+};
+SlopeSize slope_size(const Mechanism& mechanism, bool apart);
 
 // Numbers of a State for each body that moves: with its accelerations or, of a step at velocities, its momentum; pulls:
 // the accelerations are those by joints.

@@ -36,6 +36,7 @@ struct Contents {
   bool feeds = false;          // velocities take a share of C back
   bool turns = false;          // some body does
   bool taut = false;           // by the midpoint rule: tension has rows between bodies
+  bool apart = false;          // by explicit Runge-Kutta methods: stages read no centre of mass and no velocity of one
   std::size_t collocated = 0;  // by Radau IIA: components of velocities
   bool strides() const { return modes || snaps; }                        // steps end strides at events
   bool projects() const { return (rows || modes) && !open; }             // velocities

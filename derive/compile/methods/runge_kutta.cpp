@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <vector>
 
 #include "derive/compile/methods/modes.hpp"
 #include "derive/compile/methods/strides.hpp"
@@ -18,10 +19,16 @@ constexpr const char* stages_begin = R"(
     Evaluated at;
     Velocity v[bodies];
 {3}    for (int i = 0; i < bodies; ++i) at.q[i] = s.q[i];
-    for (int i = 0; i < bodies; ++i) k[0].set(i, rate_of(s.q[i], s.v[i]), s.a[i]);
+{5}    for (int i = 0; i < bodies; ++i) k[0].set(i, rate_of(s.q[i], s.v[i]), s.a[i]);
 )";
 
-constexpr const char* stages_end = R"({0}    for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], h * now.rate(i));
+constexpr const char* moves_at_stage = R"(    for (int i = 0; i < bodies; ++i) move(at.q[i], s.q[i], h * now.rate(i));
+    for (int i = 0; i < bodies; ++i) v[i] = s.v[i] + h * now.acceleration(i);
+)";
+constexpr const char* turns_at_stage =
+    "    for (int i = 0; i < bodies; ++i) now.turn(i, h, s.q[i], s.v[i], at.q[i], v[i]);\n";
+
+constexpr const char* stages_end = R"({0}    for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], h * now.rate(i{2}));
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + h * now.acceleration(i);
 {1}  }}
 )";
@@ -49,37 +56,59 @@ constexpr const char* ends_freely = R"($W$C    fall($ss.q, s.time, s.v, s.a);
 {}    return T(0);
 )";
 
+// A list of the slopes that is summed, into one of the sum.
+struct Summed {
+  const char *size, *to, *of;
+};
+
 // Of few numbers, the last slope joins number by number: wide loads would wait for what has just been stored.
-template <class Method>
-std::string combined(const Method& method, int stage, bool few) {
+std::string combined(const std::vector<double>& weights, const Summed& list, bool few) {
   std::string sum, last;
   int count = 0;
-  for (int j = 0; j < std::min(stage, method.stages); ++j) {
-    const double weight = method.a[stage][j];
+  for (std::size_t j = 0; j < weights.size(); ++j) {
+    const double weight = weights[j];
     if (weight == 0) continue;
     if (count++ > 0) sum += last;
     const char* sign = count == 1 ? (weight < 0 ? "-" : "") : weight < 0 ? " - " : " + ";
-    last = fmt::format("{}T({}) * k[{}].of[i]", sign, std::abs(weight), j);
+    last = fmt::format("{}T({}) * k[{}].{}[i]", sign, std::abs(weight), j, list.of);
   }
-  const char* const all = "    for (int i = 0; i < Slope::size; ++i) now.of[i] = {};\n";
-  if (count < 3 || !few) return fmt::format(fmt::runtime(all), sum + last);
-  return fmt::format("    for (int i = 0; i != Slope::size; ++i) now.of[i] = {};\n", sum) +
-         fmt::format(fmt::runtime(all), "now.of[i]" + last);
+  const auto all = [&](const char* until, const std::string& terms) {
+    return fmt::format("    for (int i = 0; i {} Slope::{}; ++i) now.{}[i] = {};\n", until, list.size, list.to, terms);
+  };
+  if (count < 3 || !few) return all("<", sum + last);
+  return all("!=", sum) + all("<", fmt::format("now.{}[i]{}", list.to, last));
+}
+
+template <class Method>
+std::vector<double> weights_of(const Method& method, int stage) {
+  return {method.a[stage], method.a[stage] + std::min(stage, method.stages)};
+}
+
+// Centres of mass at the end: their velocities, and their way without that of the velocity at the start.
+template <class Method>
+std::string centres(const Method& method, bool few) {
+  std::vector<double> b = weights_of(method, method.stages);
+  const std::string of_velocity = combined(b, {"centres", "linear", "linear"}, few);
+  for (std::size_t j = 0; j < b.size(); ++j) b[j] *= 1 - method.c[j];
+  return of_velocity + combined(b, {"centres", "way", "linear"}, few);
 }
 
 template <class Method>
 std::string explicit_stages(const Method& method, const char* title, const Contents& has, bool few) {
   std::string text = fmt::format(stages_begin, title, method.stages, has.rows ? "; then C = 0 and J v = -dC/dt" : "",
-                                 has.rows ? "    T forces[rows];\n" : "", head_on_accelerations(has));
+                                 has.rows ? "    T forces[rows];\n" : "", head_on_accelerations(has),
+                                 has.apart ? "    for (int i = 0; i < bodies; ++i) v[i] = s.v[i];\n" : "");
+  const char* const centre = has.apart ? ", s.v[i], h" : "";
+  const auto sums = [&](int stage) { return combined(weights_of(method, stage), {"size", "of", "of"}, few); };
   for (int stage = 1; stage < method.stages; ++stage) {
-    text += combined(method, stage, few);
-    text += "    for (int i = 0; i < bodies; ++i) move(at.q[i], s.q[i], h * now.rate(i));\n";
-    text += "    for (int i = 0; i < bodies; ++i) v[i] = s.v[i] + h * now.acceleration(i);\n";
+    text += sums(stage);
+    text += has.apart ? turns_at_stage : moves_at_stage;
     text += fmt::format("    at.time = s.time + T({}) * h;\n", double(method.c[stage]));
     text += has.spatial ? "    turn(at.q);\n" : "    turn(at.q, s.q);\n";
     text += fmt::format("    slope($sat, v, {}k[{}]);\n", arguments_of_slope(has), stage);
   }
-  return text + fmt::format(stages_end, combined(method, method.stages, few), end_on_accelerations(has)) +
+  const std::string last = sums(method.stages) + (has.apart ? centres(method, few) : "");
+  return text + fmt::format(stages_end, last, end_on_accelerations(has), centre) +
          (has.strides() ? step_by_events(has) : "");
 }
 

@@ -138,10 +138,6 @@ struct Mechanism {
   int angles = 0;                                // that count whole turns
   std::vector<std::string> notes;                // parts of the scene that are left out
 
-  // Numbers of a slope of a Runge-Kutta method.
-  std::size_t rates() const {
-    return static_cast<std::size_t>(std::ranges::count_if(bodies, &Body::moves)) * (spatial() ? 13 : 6);
-  }
   bool spatial() const { return dimension == 3; }
   // True for a Runge-Kutta method; the others step velocities by impulses.
   bool on_accelerations() const { return works_on_accelerations(method); }
