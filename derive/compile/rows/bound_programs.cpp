@@ -125,7 +125,7 @@ Program carry_of(const RowBlocks& blocks, const JointRows& joints, Constants& co
 }
 
 bool has_ends(const RowBlocks& blocks, std::size_t bounded) {
-  return !prescribes_rate(blocks, bounded) && blocks.mechanism().bounded[bounded].law != Effect::limited;
+  return !prescribes_rate(blocks, bounded) && !blocks.mechanism().bounded[bounded].acts_by_force();
 }
 
 }  // namespace cdot::compile

@@ -131,7 +131,7 @@ int BoundWriter::distance(const std::optional<Program>& event) const {
 }
 
 BoundWriter::Kick BoundWriter::kick_while_it_acts(int h) const {
-  if (effect_.law == Effect::limited) return of_force(h);
+  if (effect_.acts_by_force()) return of_force(h);
   return is_rate() ? of_rate(h) : of_ends(h);
 }
 
@@ -266,13 +266,21 @@ BoundWriter::Kick BoundWriter::of_ends(int h) const {
 BoundWriter::Kick BoundWriter::of_force(int h) const {
   const int F = law_.force_without_limits()[0];
   const LawWriter::Slopes slopes = law_.slopes();
-  const Values limits = law_.call(law_.spec().rows.function("limits"));
   const int both = algebra_.sum({{slopes.d[0], algebra_.times(h, slopes.k[0])}, {1, 1}});
   const int s = algebra_.times(h, both), tiny = algebra_.value(1e-20);
   const int softness = algebra_.function(Fn::inverse, {law_.most(s, tiny)});
   const int force = algebra_.sum({{F, algebra_.times(slopes.d[0], law_.rate()[0])}, {1, 1}});
-  return {algebra_.sum({{algebra_.product({h, force, softness}, {1, 1, 1})}, {-1}}), softness,
-          algebra_.times(h, limits.at("lower[0]")), algebra_.times(h, limits.at("upper[0]"))};
+  const int bias = algebra_.sum({{algebra_.product({h, force, softness}, {1, 1, 1})}, {-1}});
+  if (effect_.pulls) return of_pull(h, bias, softness);
+  const Values limits = law_.call(law_.spec().rows.function("limits"));
+  return {bias, softness, algebra_.times(h, limits.at("lower[0]")), algebra_.times(h, limits.at("upper[0]"))};
+}
+
+// A slack rope may become taut within the step, but not longer.
+BoundWriter::Kick BoundWriter::of_pull(int h, int bias, int softness) const {
+  const int C = law_.C()[0], zero = algebra_.value(0), way = algebra_.times(C, algebra_.function(Fn::inverse, {h}));
+  const auto if_slack = [&](int slack, int taut) { return algebra_.function(Fn::select, {C, slack, taut}); };
+  return {if_slack(way, bias), if_slack(zero, softness), zero, algebra_.value(boundless)};
 }
 
 // The part of C beyond the end.

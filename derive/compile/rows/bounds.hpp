@@ -87,6 +87,7 @@ class BoundWriter {
   Kick of_rate(int h) const;
   Kick of_ends(int h) const;
   Kick of_force(int h) const;
+  Kick of_pull(int h, int bias, int softness) const;
   // lower and upper: bounds of the force, or ends.
   Values bounds() const;
   int bound(const Values& bounds, const std::string& name, double missing) const;

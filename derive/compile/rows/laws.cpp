@@ -99,6 +99,7 @@ std::vector<int> LawWriter::force_without_limits() const {
 
 std::vector<int> LawWriter::force() const {
   std::vector<int> F = force_without_limits();
+  if (effect_.pulls) F[0] = most(F[0], algebra_.value(0));
   if (!has_limits()) return F;
   const Values limits = call(spec().rows.function("limits"));
   for (std::size_t r = 0; r < F.size(); ++r) {
@@ -124,6 +125,9 @@ LawWriter::Slopes LawWriter::spring_slopes() const {
     slopes.k.push_back(algebra_.times(algebra_.value(w * w, block_.name + "_w2"), mass));
     slopes.d.push_back(algebra_.times(algebra_.value(2 * n[2] * w, block_.name + "_2zw"), mass));
   }
+  for (int* slope : {&slopes.k[0], &slopes.d[0]})  // a rope is slack where C > 0
+    if (effect_.pulls && !algebra_.is_zero(*slope))
+      *slope = algebra_.function(Fn::select, {C_[0], algebra_.value(0), *slope});
   return slopes;
 }
 

@@ -80,7 +80,7 @@ Program potential_of(const RowBlocks& blocks, Constants& constants) {
   const Mechanism& all = blocks.mechanism();
   for (std::size_t e = 0; e < all.effects.size(); ++e) add(all.effects[e], blocks.effect(e));
   for (std::size_t b = 0; b < all.bounded.size(); ++b)
-    if (all.bounded[b].law == Effect::limited) add(all.bounded[b], blocks.bounded(b));
+    if (all.bounded[b].acts_by_force()) add(all.bounded[b], blocks.bounded(b));
   algebra.output("E", algebra.sum(terms));
   return algebra.finish();
 }

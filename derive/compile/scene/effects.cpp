@@ -47,7 +47,7 @@ class EffectReader {
       if (record(j).places.empty()) continue;  // between immovable bodies
       if (!notes_parameters(source, j)) continue;
       if (world_.joint_type(j).is_effect) add_of_joint(source, j);
-      else if (source.definition.soft) add_soft(source.name, j);
+      else if (source.definition.soft) add_soft(source.name, j, is_rope(world_.joint_type(j)));
       else if (is_rope(world_.joint_type(j))) add_rope(source, j);
       add_on_coordinates(source, j);
     }
@@ -151,13 +151,14 @@ class EffectReader {
     add_bounded(source, effect, record(joint).places[0]);
   }
 
-  void add_soft(const std::string& name, int joint) {
+  void add_soft(const std::string& name, int joint, bool pulls = false) {
     Effect effect = along(name, joint);
-    effect.law = Effect::spring;
+    effect.law = Effect::spring, effect.pulls = pulls;
     effect.numbers = constants_of(record(joint).places[0]);
     effect.numbers.push_back(0);  // C itself is the distance from rest
     if (counts_turns(world_, joint)) effect.turns = turns_of(world_.joint_type(joint), mechanism_);
-    mechanism_.effects.push_back(std::move(effect));
+    const bool has_bounds = pulls && mechanism_.method == Method::euler;
+    (has_bounds ? mechanism_.bounded : mechanism_.effects).push_back(std::move(effect));
   }
 
   void add_on_coordinates(const SceneJoint& source, int joint) {

@@ -47,7 +47,11 @@ void refuse_joint(const SceneJoint& joint, const Scene& scene, Refusals& refusal
   const auto has = [&](RowKind kind) {
     return type && std::ranges::find(type->row_kinds, kind) != type->row_kinds.end();
   };
-  if (has(RowKind::inequality) && joint.definition.soft) refuse("soft ropes, which only pull");
+  const auto& soft = joint.definition.soft;
+  const Integrator method = scene.settings.integrator;
+  const bool is_damped = soft && (soft->damping > 0 || soft->damping_ratio > 0);
+  const bool unknown = method == Integrator::implicit || (method == Integrator::rattle && is_damped);
+  if (has(RowKind::inequality) && soft && unknown) refuse("soft ropes by implicit, and damped ones by rattle");
   else if (has(RowKind::inequality) && !is_rope(*type))
     refuse(fmt::format("inequality beside other rows, as {} has", type->name));
 }

@@ -98,6 +98,7 @@ struct Effect {
   int loaded_by_row = -1, loaded_by_joint = -1;
   int cone = -1;   // of a row of a force along several coordinates: the first one of these, among Mechanism::bounded
   int holds = -1;  // of a joint that may break, on which it acts: as Joint::holds
+  bool pulls = false;                 // a soft rope: a spring where C <= 0, whose force is never negative
   bool by_own_force = false;          // an event of the row depends on the force that it carries
   int tensions = 0;                   // as Joint::tensions
   std::vector<CountedTurns> turns{};  // of a soft joint: as Joint::turns

@@ -36,10 +36,12 @@ TEST(CompileCommand, LeavesOutRoundOffOfPlaces) {
 }
 
 TEST(CompileCommand, RefusesPartsThatItDoesNotKnowWithTheirLines) {
-  const ShellResult rope = compile("tests/derive/compile/scenes/refused.toml --integrator euler");
+  const ShellResult rope = compile("tests/derive/compile/scenes/refused.toml --integrator implicit");
   EXPECT_EQ(rope.status, 2);
-  EXPECT_NE(rope.text.find("refused.toml:11:1: error: line: cdot compile knows no soft ropes, which only pull"),
-            std::string::npos)
+  EXPECT_NE(
+      rope.text.find(
+          "refused.toml:11:1: error: line: cdot compile knows no soft ropes by implicit, and damped ones by rattle"),
+      std::string::npos)
       << rope.text;
   const ShellResult misfit = compile("tests/hard_cases/incompatible_triangle/planar.toml --integrator euler");
   EXPECT_EQ(misfit.status, 2);
