@@ -101,6 +101,20 @@ void on_stiffness(const Diagnosis::Island& island, const Settings& settings, dou
        fix});
 }
 
+// Runge-Kutta steps that are fixed. Other methods take dampers implicitly.
+void on_decay(const Diagnosis::Island& island, const Settings& settings, double h, const Names& names,
+              std::vector<Concern>& concerns) {
+  const IntegratorRow& row = row_of(settings.integrator);
+  const double decay = h * island.fastest_decay.rate;
+  if (settings.local_error > 0 || !(decay > row.stable_decay / 2)) return;
+  concerns.push_back({true,
+                      fmt::format("a damper slows {} at {:.3g} 1/s, {:.2g} per substep: {} {}",
+                                  names.body(island.fastest_decay.body), island.fastest_decay.rate, decay, row.name,
+                                  decay > row.stable_decay ? fmt::format("is unstable above {:.2g}", row.stable_decay)
+                                                           : "is inaccurate there"),
+                      turns_kept + ", which takes dampers implicitly"});
+}
+
 void on_spin(const Diagnosis::Island& island, const Settings& settings, double h, const Names& names,
              std::vector<Concern>& concerns) {
   const double radians = h * island.fastest_spin, followed = followed_turn(row_of(settings.integrator));
@@ -152,6 +166,7 @@ std::vector<Concern> concerns_about(const Diagnosis::Island& island, const Setti
   const size_t of_rows = concerns.size();
   on_limited_forces(island, settings, concerns);
   on_stiffness(island, settings, h, names, concerns);
+  on_decay(island, settings, h, names, concerns);
   on_spin(island, settings, h, names, concerns);
   on_damping(island, settings, h, names, concerns);
   on_condition(island, settings, single, names, concerns);

@@ -226,6 +226,7 @@ Diagnosis diagnose(BasicWorld<S>& world, double h) {
     find_nearly_redundant_rows(world.data(), island, equations, found);
     found.limited = stiffest_limited_force(world.data(), island, typename S::Scalar(h));
     found.stiffest = stiffest_motion(world.data(), island, equations, typename S::Scalar(h));
+    found.fastest_decay = fastest_decay(world.data(), island, equations);
   }
   world.restore(before);
   return diagnosis;

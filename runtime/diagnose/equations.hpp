@@ -110,4 +110,8 @@ template <class S>
 Diagnosis::Stiffest stiffest_motion(WorldData<S>& world, Island<S>& island, Equations<S>& equations,
                                     typename S::Scalar h);
 
+// The decay that limits explicit steps. The accelerations are linear in small changes of the velocities.
+template <class S>
+Diagnosis::Decay fastest_decay(WorldData<S>& world, Island<S>& island, Equations<S>& equations);
+
 }  // namespace cdot

@@ -4,6 +4,11 @@
 //   G w = -d/de [f(q + e w) + J(q + e w)^T lambda],  w <- P M^-1 G w,  P onto J w = 0,
 //
 // The largest eigenvalue is omega^2 of the stiffest oscillation. An explicit step h is stable while h omega < 2.
+// Likewise
+//
+//   D w = -d/de f(q, v + e w),  w <- P M^-1 D w,
+//
+// whose largest eigenvalue is the rate of the fastest decay, by dampers.
 #include "runtime/motion/motion.hpp"
 
 #include <algorithm>
@@ -20,7 +25,8 @@ namespace cdot {
 namespace {
 
 constexpr int most_rounds = 200;
-constexpr double settled = 1e-3;  // relative change of omega^2 in ten rounds
+constexpr double settled = 1e-3;      // relative change of the eigenvalue in ten rounds
+constexpr double small_speed = 1e-6;  // [sizes/s] of which forces are taken as linear
 
 template <class S>
 class Motion {
@@ -31,10 +37,8 @@ class Motion {
   Motion(WorldData<S>& world, Island<S>& island, Equations<S>& equations)
       : world_(world), island_(island), equations_(equations) {
     for (int i : island.bodies) pose_.push_back(world.bodies.pose[i]);
-    // Euler's methods solve for the forces of springs on coordinates. For others they are known forces.
-    if (!row_of(world.settings.integrator).forces_springs) return;
     for (const Segment<S>& segment : island.segments)
-      if (segment.batch->law && segment.batch->law->force) coordinate_springs_.push_back(segment);
+      if (segment.batch->law && segment.batch->law->force) forces_.push_back(segment);
   }
 
   // The present forces of the joints: J dv/dt = gamma.
@@ -69,6 +73,15 @@ class Motion {
     for (size_t k = 0; k < w.size(); ++k) change[k] = S::sum(S::sum({}, behind[k], T(0.5) / e), ahead[k], T(-0.5) / e);
     for (size_t k = 0; k < w.size(); ++k) world_.bodies.pose[island_.bodies[k]] = pose_[k];
     equations_.evaluate();
+    return within_joints(change);
+  }
+
+  // P M^-1 D w by central differences.
+  Velocities slowed(const Velocities& w) {
+    const T e = T(small_speed) * island_.size / std::max(T(largest(w)), T(1e-30));
+    const Velocities faster = rates_by_velocity(w, e), slower = rates_by_velocity(w, -e);
+    Velocities change(w.size());
+    for (size_t k = 0; k < w.size(); ++k) change[k] = S::sum(S::sum({}, slower[k], T(0.5) / e), faster[k], T(-0.5) / e);
     return within_joints(change);
   }
 
@@ -131,7 +144,9 @@ class Motion {
     for (size_t k = 0; k < w.size(); ++k) all.pose[island_.bodies[k]] = S::moved(pose_[k], S::sum({}, w[k], e));
     if (springs) {
       push_free_bodies(world_, island_);
-      for (const Segment<S>& segment : coordinate_springs_) push_by(segment);
+      // Euler's methods solve for the forces of springs on coordinates. For others they are known forces.
+      if (row_of(world_.settings.integrator).forces_springs)
+        for (const Segment<S>& segment : forces_) push_by(segment);
     } else {
       for (int i : island_.bodies) all.velocity_rate[i] = {};
     }
@@ -141,8 +156,26 @@ class Motion {
         segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, all, segment.batch->lambda.data(),
                                   all.velocity_rate.data());
     }
+    return rates_of_bodies();
+  }
+
+  Velocities rates_by_velocity(const Velocities& w, T e) {
+    Bodies<S>& all = world_.bodies;
+    Velocities before;
+    for (size_t k = 0; k < w.size(); ++k) {
+      auto& v = all.velocity[island_.bodies[k]];
+      before.push_back(v);
+      v = S::sum(v, w[k], e);
+    }
+    push_free_bodies(world_, island_);
+    for (const Segment<S>& segment : forces_) push_by(segment);
+    for (size_t k = 0; k < w.size(); ++k) all.velocity[island_.bodies[k]] = before[k];
+    return rates_of_bodies();
+  }
+
+  Velocities rates_of_bodies() const {
     Velocities found;
-    for (int i : island_.bodies) found.push_back(all.velocity_rate[i]);
+    for (int i : island_.bodies) found.push_back(world_.bodies.velocity_rate[i]);
     return found;
   }
 
@@ -157,7 +190,7 @@ class Motion {
   WorldData<S>& world_;
   Island<S>& island_;
   Equations<S>& equations_;
-  std::vector<Segment<S>> coordinate_springs_;
+  std::vector<Segment<S>> forces_;      // known functions of coordinates and rates
   std::vector<typename S::Pose> pose_;  // in the order of the island's bodies
   bool solves_as_step_ = false;         // by the system of the linearly implicit step
 };
@@ -174,23 +207,17 @@ std::vector<typename S::Velocity> any_motion(const Island<S>& island) {
   return w;
 }
 
-}  // namespace
-
-template <class S>
-Diagnosis::Stiffest stiffest_motion(WorldData<S>& world, Island<S>& island, Equations<S>& equations,
-                                    typename S::Scalar h) {
+// The largest eigenvalue of `apply`, by a power iteration; w is near its eigenvector, of length 1.
+template <class S, class Apply>
+double largest_eigenvalue(const Motion<S>& motion, typename Motion<S>::Velocities& w, Apply apply) {
   using T = typename S::Scalar;
-  Motion<S> motion(world, island, equations);
-  motion.find_forces(h);
-  Diagnosis::Stiffest found;
-  auto w = motion.within_joints(any_motion(island));
-  double before = 0;
+  double found = 0, before = 0;
   for (int round = 0; round < most_rounds; ++round) {
     const double length = std::sqrt(motion.product(w, w));
     if (!(length > 0) || !std::isfinite(length)) return found;
     for (auto& one : w) one = S::sum({}, one, T(1 / length));
-    auto next = motion.stiffened(w, true, true);
-    found.square = motion.product(w, next);
+    auto next = apply(w);
+    found = motion.product(w, next);
     const double size = std::sqrt(motion.product(next, next));
     if (!(size > 0) || !std::isfinite(size)) return found;
     if (round % 10 == 9) {
@@ -199,12 +226,39 @@ Diagnosis::Stiffest stiffest_motion(WorldData<S>& world, Island<S>& island, Equa
     }
     if (round + 1 < most_rounds) w = std::move(next);
   }
-  found.tension = motion.product(w, motion.stiffened(w, true, false));
+  return found;
+}
+
+template <class S>
+int most_moved(const Island<S>& island, const Motion<S>& motion, const typename Motion<S>::Velocities& w) {
   size_t most = 0;
   for (size_t k = 1; k < w.size(); ++k)
     if (motion.product(w[k], w[k]) > motion.product(w[most], w[most])) most = k;
-  found.body = island.bodies[most];
+  return island.bodies[most];
+}
+
+}  // namespace
+
+template <class S>
+Diagnosis::Stiffest stiffest_motion(WorldData<S>& world, Island<S>& island, Equations<S>& equations,
+                                    typename S::Scalar h) {
+  Motion<S> motion(world, island, equations);
+  motion.find_forces(h);
+  auto w = motion.within_joints(any_motion(island));
+  Diagnosis::Stiffest found;
+  found.square = largest_eigenvalue<S>(motion, w, [&](const auto& now) { return motion.stiffened(now, true, true); });
+  if (found.square == 0) return found;
+  found.tension = motion.product(w, motion.stiffened(w, true, false));
+  found.body = most_moved(island, motion, w);
   return found;
+}
+
+template <class S>
+Diagnosis::Decay fastest_decay(WorldData<S>& world, Island<S>& island, Equations<S>& equations) {
+  Motion<S> motion(world, island, equations);
+  auto w = motion.within_joints(any_motion(island));
+  const double rate = largest_eigenvalue<S>(motion, w, [&](const auto& now) { return motion.slowed(now); });
+  return {rate, rate == 0 ? -1 : most_moved(island, motion, w)};
 }
 
 template <class S>
@@ -228,9 +282,10 @@ double stiffest_limited_force(WorldData<S>& world, const Island<S>& island, type
   return most;
 }
 
-#define CDOT_INSTANTIATE(S)                                                           \
-  template double stiffest_limited_force(WorldData<S>&, const Island<S>&, S::Scalar); \
-  template Diagnosis::Stiffest stiffest_motion(WorldData<S>&, Island<S>&, Equations<S>&, S::Scalar);
+#define CDOT_INSTANTIATE(S)                                                                          \
+  template double stiffest_limited_force(WorldData<S>&, const Island<S>&, S::Scalar);                \
+  template Diagnosis::Stiffest stiffest_motion(WorldData<S>&, Island<S>&, Equations<S>&, S::Scalar); \
+  template Diagnosis::Decay fastest_decay(WorldData<S>&, Island<S>&, Equations<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

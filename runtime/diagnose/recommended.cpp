@@ -47,6 +47,8 @@ struct Traits {
   int oscillating = -1, turning = -1;
   bool by_tension = false;
   double limited = 0;  // stiffness of a force with limits, for the step
+  double decay = 0;    // of the fastest decay, per substep
+  int decaying = -1;
 };
 
 bool is_stiff(const Traits& t) {
@@ -54,6 +56,9 @@ bool is_stiff(const Traits& t) {
 }
 
 bool is_uneven(const Traits& t) { return t.heaviest > uneven * t.lightest; }
+
+// Dampers make the steps of the eighth order unstable.
+bool is_damped(const Traits& t) { return t.decay > row_of(Integrator::dop853).stable_decay / 2; }
 
 struct Words {
   const Traits& of;
@@ -83,6 +88,11 @@ constexpr struct {
      [](const Words& w) {
        return fmt::format("{} can make {} oscillate by {:.2g} rad per substep",
                           w.of.by_tension ? "the tension of the joints" : "a spring", w.body(w.of.oscillating), w.of.radians);
+     }},
+    {Integrator::implicit,
+     [](const Traits& t) { return is_damped(t) && (t.turn > quick_turn || t.radians > quick_turn || is_uneven(t)); },
+     [](const Words& w) {
+       return fmt::format("dampers slow {} at a rate of {:.2g} per substep", w.body(w.of.decaying), w.of.decay);
      }},
     {Integrator::dop853,
      [](const Traits& t) { return t.turn > quick_turn && t.radians > quick_turn; },
@@ -132,7 +142,14 @@ void look_at_stiffest(WorldData<S>& world, Island<S>& island, double h, Traits& 
   traits.by_tension = found.tension > 0.5 * found.square;
 }
 
-// The same with `swing` times the weight from every side.
+template <class S>
+void look_at_decay(WorldData<S>& world, Island<S>& island, double h, Traits& traits) {
+  Equations<S> equations(world, island);
+  const Diagnosis::Decay found = fastest_decay(world, island, equations);
+  traits.decay = h * found.rate, traits.decaying = found.body;
+}
+
+// The stiffest motion with `swing` times the weight from every side.
 template <class S>
 void look_at_every_side(WorldData<S>& world, Island<S>& island, double h, Traits& traits) {
   const Settings& s = world.settings;
@@ -174,6 +191,7 @@ Traits traits_of(WorldData<S>& world, int index, double h, std::set<Kind>& known
   const Kind kind{double(island.bodies.size()), double(island.system.rows()), double(island.size), traits.lightest,
                   traits.heaviest};
   if (!lawful && !known.insert(kind).second) return traits;
+  look_at_decay(world, island, h, traits);
   look_at_stiffest(world, island, h, traits);
   look_at_every_side(world, island, h, traits);
   return traits;

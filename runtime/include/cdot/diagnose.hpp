@@ -1,5 +1,5 @@
 // The equations of each island at the present poses: rank, condition, redundant and contradicting rows, fastest
-// oscillation. The World's state does not change.
+// oscillation and decay. The World's state does not change.
 #pragma once
 
 #include <vector>
@@ -37,6 +37,12 @@ struct Diagnosis {
     int body = -1;       // with the largest amplitude
     double tension = 0;  // part of omega^2 from the joints' forces; the other part comes from springs
   };
+  // The fastest decay of a small change of the velocities that the joints allow, by dampers, drag, and effects that
+  // depend on velocities: exp(-rate t).
+  struct Decay {
+    double rate = 0;  // [1/s] negative: the change grows
+    int body = -1;    // with the largest amplitude
+  };
   struct Island {
     std::vector<int> bodies;  // movable ones
     int rows = 0, rank = 0;   // active inequality rows count
@@ -49,6 +55,7 @@ struct Diagnosis {
     std::vector<NearlyRedundant> nearly_redundant;
     int mobility = 0;  // velocities that the rows leave free
     Stiffest stiffest;
+    Decay fastest_decay;
     double limited = 0;                 // stiffness for the step of the stiffest force with limits; stiff above 1
     double lightest = 0, heaviest = 0;  // [kg]
     double fastest_spin = 0;            // [rad/s]

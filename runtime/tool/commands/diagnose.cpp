@@ -69,6 +69,9 @@ std::string island_text(const Scene& scene, const WorstOfIsland& worst, int numb
                         body_name(scene, island.stiffest.body), at_time(worst.stiffest_time),
                         tension ? "the tension of the joints" : "its springs");
   }
+  if (island.fastest_decay.rate > 0)
+    text += fmt::format("  fastest decay   {:.4g} 1/s of {}{}, by dampers\n", island.fastest_decay.rate,
+                        body_name(scene, island.fastest_decay.body), at_time(worst.decay_time));
   if (island.fastest_spin > 0)
     text += fmt::format("  fastest turn    {:.4g} rad/s of {}{}\n", island.fastest_spin,
                         body_name(scene, island.spinning), at_time(worst.spin_time));
@@ -111,6 +114,9 @@ Json island_json(const Scene& scene, const WorstOfIsland& worst) {
           {"stiffest", std::sqrt(std::max(0.0, island.stiffest.square))},
           {"stiffest_time", worst.stiffest_time},
           {"stiffest_body", named(island.stiffest.body)},
+          {"fastest_decay", island.fastest_decay.rate},
+          {"decay_time", worst.decay_time},
+          {"decaying", named(island.fastest_decay.body)},
           {"fastest_spin", island.fastest_spin},
           {"spin_time", worst.spin_time},
           {"spinning", named(island.spinning)}};

@@ -13,10 +13,13 @@ constexpr double evaluations_per_step = 12;  // of the highest order
 }  // namespace
 
 double stiff_price(const Scene& scene, const std::vector<WorstOfIsland>& islands) {
+  const IntegratorRow& row = row_of(Integrator::dop853);
   double price = 0;
-  for (const WorstOfIsland& island : islands)
-    price += evaluations_per_step * scene.duration * std::sqrt(std::max(0.0, island.island.stiffest.square)) /
-             row_of(Integrator::dop853).stable_radians;
+  for (const WorstOfIsland& island : islands) {
+    const double oscillating = std::sqrt(std::max(0.0, island.island.stiffest.square)) / row.stable_radians;
+    const double steps = scene.duration * std::max(oscillating, island.island.fastest_decay.rate / row.stable_decay);
+    price += evaluations_per_step * steps;
+  }
   return price;
 }
 

@@ -26,6 +26,8 @@ void add_island(const Diagnosis::Island& now, double time, WorstOfIsland& worst)
     worst.condition_time = time;
   }
   if (now.stiffest.square > so_far.stiffest.square) so_far.stiffest = now.stiffest, worst.stiffest_time = time;
+  if (now.fastest_decay.rate > so_far.fastest_decay.rate)
+    so_far.fastest_decay = now.fastest_decay, worst.decay_time = time;
   if (now.fastest_spin > so_far.fastest_spin) {
     so_far.fastest_spin = now.fastest_spin, so_far.spinning = now.spinning;
     worst.spin_time = time;
@@ -49,7 +51,7 @@ void add_diagnosis(const Diagnosis& now, double time, std::vector<WorstOfIsland>
   for (const Diagnosis::Island& island : now.islands) {
     const auto known = std::ranges::lower_bound(worst, island.bodies.front(), {}, first);
     if (known != worst.end() && first(*known) == island.bodies.front()) add_island(island, time, *known);
-    else worst.insert(known, {island, time, time, time, time});
+    else worst.insert(known, {island, time, time, time, time, time});
   }
 }
 

@@ -12,7 +12,7 @@ namespace cdot {
 // Each number is the worst of the run, with its time [s].
 struct WorstOfIsland {
   Diagnosis::Island island;
-  double condition_time = 0, rank_time = 0, stiffest_time = 0, spin_time = 0;
+  double condition_time = 0, rank_time = 0, stiffest_time = 0, decay_time = 0, spin_time = 0;
 };
 
 // Adds the diagnosis at one time. Islands are identified by their first body, and `worst` is in its order.

@@ -111,6 +111,33 @@ TEST(Diagnose, StiffestMotionOfASpringOnACoordinate) {
   }
 }
 
+// Of a damper on the angle of a rod about its end, d / I, of one between points, d (1 / m_a + 1 / m_b), and of drag,
+// by every method.
+TEST(Diagnose, FastestDecay) {
+  for (const auto& [name, integrator] : integrators) {
+    Settings s = settings(Solver::direct);
+    s.integrator = integrator;
+    World<double> rod(s), pair(s), dragged(s);
+    add_chain(rod, 1, 0);
+    add_spring(rod, 0, "angle", {.softness = {.by_frequency = false, .stiffness = 300, .damping = 200}});
+    EXPECT_NEAR(diagnose(rod, h).islands.at(0).fastest_decay.rate, 200 * 3, 1e-4) << name;
+    const int heavy = pair.add_body({.mass = 3, .inertia = 1}),
+              light = pair.add_body({.x = 2, .mass = 0.5, .inertia = 1});
+    pair.add_spring({.body_a = heavy, .body_b = light, .rest_length = 2, .damping = 70});
+    EXPECT_NEAR(diagnose(pair, h).islands.at(0).fastest_decay.rate, 70 * (1 / 3.0 + 1 / 0.5), 1e-4) << name;
+    EXPECT_EQ(diagnose(pair, h).islands.at(0).fastest_decay.body, light) << name;
+    dragged.add_body({.mass = 3, .inertia = 1, .linear_damping = 5, .angular_damping = 8});
+    EXPECT_NEAR(diagnose(dragged, h).islands.at(0).fastest_decay.rate, 8, 1e-6) << name;
+  }
+}
+
+TEST(Diagnose, NothingDecaysWithoutDampers) {
+  World<double> world(settings(Solver::direct, Drift::projection, -9.81));
+  add_chain(world, 3, 0);
+  EXPECT_EQ(diagnose(world, h).islands.at(0).fastest_decay.rate, 0);
+  EXPECT_EQ(diagnose(world, h).islands.at(0).fastest_decay.body, -1);
+}
+
 // The linearly implicit step removes the stiffness of tension on rods and on beads: no oscillation exceeds 1 rad per
 // step. With the iterative solver the stiffness on beads remains.
 TEST(Diagnose, SubtractsTheStiffnessThatTheImplicitStepRemoves) {

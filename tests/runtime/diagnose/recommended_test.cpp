@@ -100,6 +100,22 @@ TEST(Recommended, UnevenMassesTakeEighthOrderOrTheMidpointRule) {
 }
 
 // The island that needs most decides for the World, whatever the order.
+// A light body beside a heavy one would get the eighth order, which a damper makes unstable: exp(-h d / I) from 6.2 on.
+TEST(Recommended, DampersOfLightBodiesTakeTheMidpointRule) {
+  const auto damped = [](double damping) {
+    World<double> world(Settings{});
+    const int hand = world.add_body({.mass = 1, .inertia = 1}),
+              thumb = world.add_body({.mass = 0.001, .inertia = 0.001});
+    revolute(world, world.ground(), hand, 0, 0, 0, 0);
+    const int joint = revolute(world, hand, thumb, 0, 0, 0, 0);
+    add_spring(world, joint, "angle", {.softness = {.by_frequency = false, .stiffness = 0, .damping = damping}});
+    return world;
+  };
+  World<double> slight = damped(0.1), strong = damped(0.4);
+  EXPECT_EQ(chosen(slight, h, "bodies from 0.001 to 1 kg hang together"), Integrator::dop853);
+  EXPECT_EQ(chosen(strong, h, "dampers slow body 1 at a rate of 6.7 per substep"), Integrator::implicit);
+}
+
 TEST(Recommended, TheStiffestIslandDecides) {
   for (const bool first : {true, false}) {
     World<double> world(heavy);

@@ -103,6 +103,16 @@ std::vector<fs::path> all_scene_files() {
 
 Scene scene_named(const std::string& name) { return read_scene((scenes_dir() / (name + ".toml")).string()); }
 
+Recorded recorded(const Scene& scene, double seconds_between_rows) {
+  Recorded run;
+  RunOptions options;
+  options.row_times = every(seconds_between_rows, scene.duration);
+  options.row = [&](const Frame& frame) { run.rows.push_back(frame); };
+  std::string warnings;
+  run.result = simulate(scene, options, warnings);
+  return run;
+}
+
 std::vector<Frame> run_of(Scene scene, double until, double every_seconds) {
   std::vector<Frame> frames;
   scene.duration = until;

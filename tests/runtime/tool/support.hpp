@@ -16,6 +16,11 @@ std::filesystem::path scenes_dir();
 std::string read_text(const std::filesystem::path& path);
 // A scene of specs/scenes by its path there without .toml.
 Scene scene_named(const std::string& name);
+struct Recorded {
+  RunResult result;
+  std::vector<Frame> rows;
+};
+Recorded recorded(const Scene& scene, double seconds_between_rows);
 // The states of a run at equal intervals.
 std::vector<Frame> run_of(Scene scene, double until, double every_seconds);
 

@@ -82,6 +82,23 @@ TEST(DiagnoseCommand, SaysThatASpringIsTooStiffForTheStep) {
       << result.out;
 }
 
+// d / m = 1000 1/s. The advice is followed: RATTLE takes the damper implicitly.
+TEST(DiagnoseCommand, SaysThatADamperIsTooStrongForTheStep) {
+  const TemporaryFolder folder;
+  const auto file = folder / "damper.toml";
+  std::ofstream(file) << "duration = 2\nstep = 0.01\n[[body]]\nname = \"ball\"\nmass = 1\nshape = { disc = 1 }\n"
+                         "position = [1, 0]\nvelocity = [1, 0]\n"
+                         "[[spring]]\nbodies = [\"world\", \"ball\"]\nstiffness = 10\nrest = 0.5\ndamping = 1000\n";
+  const std::string command = fmt::format("'{}' --integrator ", file.string());
+  const CommandResult result = cdot_run("diagnose " + command + "dop853");
+  EXPECT_EQ(result.status, 1);
+  for (const char* words : {"fastest decay   1000 1/s of \"ball\", by dampers",
+                            "a damper slows \"ball\" at 1e+03 1/s, 10 per substep: dop853 is unstable above 6.2",
+                            "integrator = \"rattle\", which takes dampers implicitly"})
+    EXPECT_TRUE(says(result.out, words)) << words << "\n" << result.out;
+  EXPECT_EQ(cdot_run("simulate " + command + "rattle").status, 0);
+}
+
 TEST(DiagnoseCommand, PrintsIslands) {
   const CommandResult result = cdot_run("diagnose " + hard("ball_and_chain/planar") + " --at 0");
   EXPECT_EQ(result.status, 0) << result.err;

@@ -30,21 +30,6 @@ const Problem problems[] = {
 };
 constexpr double four_bar_until = 0.7;  // [s]: before two motions are possible
 
-struct Recorded {
-  RunResult result;
-  std::vector<Frame> rows;
-};
-
-Recorded recorded(const Scene& scene, double seconds_between_rows) {
-  Recorded run;
-  RunOptions options;
-  options.row_times = every(seconds_between_rows, scene.duration);
-  options.row = [&](const Frame& frame) { run.rows.push_back(frame); };
-  std::string warnings;
-  run.result = simulate(scene, options, warnings);
-  return run;
-}
-
 // The error that the run claims, and its distance from the reference in the same unit.
 struct Measured {
   Choice choice;
