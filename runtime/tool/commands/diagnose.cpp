@@ -210,7 +210,8 @@ int run(const Options& options) {
   if (options.time) {
     check_within(*options.time, scene.duration);
     run.diagnose_times = {*options.time};
-    scene.duration = std::max(*options.time, 1e-12 * scene.duration);
+    // A method by default is that of the whole run.
+    if (!chooses_method(scene)) scene.duration = std::max(*options.time, 1e-12 * scene.duration);
   }
   std::string warnings;
   const RunResult result = simulate(scene, run, warnings);

@@ -92,7 +92,7 @@ TEST(DiagnoseCommand, SaysThatADamperIsTooStrongForTheStep) {
   const std::string command = fmt::format("'{}' --integrator ", file.string());
   const CommandResult result = cdot_run("diagnose " + command + "dop853");
   EXPECT_EQ(result.status, 1);
-  for (const char* words : {"fastest decay   1000 1/s of \"ball\", by dampers",
+  for (const char* words : {"fastest decay   1000 1/s of \"ball\" at t = ",
                             "a damper slows \"ball\" at 1e+03 1/s, 10 per substep: dop853 is unstable above 6.2",
                             "integrator = \"rattle\", which takes dampers implicitly"})
     EXPECT_TRUE(says(result.out, words)) << words << "\n" << result.out;
@@ -107,6 +107,16 @@ TEST(DiagnoseCommand, PrintsIslands) {
         "rank            82 of 82 rows", "condition of K  1.09e+05", "masses          5.982 to 4021 kg",
         "no warnings: the method suits this scene"})
     EXPECT_TRUE(says(result.out, words)) << words << "\n" << result.out;
+}
+
+TEST(DiagnoseCommand, NamesTheMethodOfTheWholeRunAtEachTime) {
+  const auto method = [](const std::string& options) {
+    const CommandResult result = cdot_run("diagnose " + (scenes_dir() / "simple_pendulum.toml").string() + options);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const std::size_t begin = result.out.find("method: ");
+    return result.out.substr(begin, result.out.find('\n', begin) - begin);
+  };
+  EXPECT_EQ(method(" --at 0"), method(""));
 }
 
 TEST(DiagnoseCommand, HasAllNumbersInJson) {
