@@ -15,6 +15,9 @@
 namespace cdot {
 namespace {
 
+// Share of a rate. Cubics err by less than that.
+constexpr double slow = 0.25;
+
 // The way of a row's C within a step, as the cubic with its values and rates at both ends.
 template <class T>
 struct Way {
@@ -28,6 +31,12 @@ struct Way {
   T rate_at(T share) const { return rate_from + share * (rate_to - rate_from - T(3) * bend() * (T(1) - share)); }
   // Where that rate turns back.
   T turn() const { return T(0.5) + (rate_from - rate_to) / (T(6) * bend()); }
+  bool turns_back() const { return rate_from * rate_to < 0; }
+  // Both ends go the same way, and less than `slow` of that rate is left between them.
+  bool may_turn_twice() const {
+    const T share = turn();
+    return share > 0 && share < 1 && rate_at(share) * rate_from < T(slow) * rate_from * rate_from;
+  }
 };
 
 // A bound that rises and falls is seen at this many points of the way. More than `unseen` of its largest value, up and
@@ -85,10 +94,10 @@ double threshold(const Flow<S>& flow, size_t k) {
   return std::min(double(flow.margins_chosen[k]), 0.0) + passed;
 }
 
-// Only a way that turns back comes back from an end, or from the place of another event.
+// Only a way that turns back, or twice, comes back from an end, or from the place of another event.
 template <class S>
 bool may_come_back(const Batch<S>& batch, int i, const Way<typename S::Scalar>& way) {
-  return (batch.mode[i] == Mode::off || batch.law->distance) && way.rate_from * way.rate_to < 0;
+  return (batch.mode[i] == Mode::off || batch.law->distance) && (way.turns_back() || way.may_turn_twice());
 }
 
 // A row that slips comes to rest within the step and slips on in its end. Between them it may have stuck.

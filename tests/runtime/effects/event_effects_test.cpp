@@ -222,6 +222,24 @@ TEST(EventEffects, AWayThatTurnsBackWithinAStepMeetsItsEnd) {
   });
 }
 
+// F = 84 - 192 t moves a block of 1 kg along x = 42 t^2 - 32 t^3 - 9 t, which has its largest value, 3.375, at t = 3/4:
+// it turns twice within a step that begins and ends on the way back. The stop at 1 is met before t = 7/16, when F = 0;
+// then x = 1 - 32 (t - 7/16)^3.
+TEST(EventEffects, AWayThatTurnsTwiceWithinAStepMeetsItsEnd) {
+  each_adaptive([&](const Settings& settings, const auto& name) {
+    World<double> world(settings);
+    const int block = world.add_body({.vx = -9, .mass = 1, .fixed_rotation = true});
+    world.add_joint({"end_stops",
+                     {block, world.ground()},
+                     {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {1, 0}}, {"lower", {-9}}, {"upper", {1}}},
+                     {}});
+    const Profile falls = Profile::table({.times = {0, 1}, .values = {84, -108}});
+    world.add_joint({"push", {block}, {{"pa", {0, 0}}, in_time("F", {falls, 0.0})}, {}});
+    ASSERT_TRUE(world.step(1)) << name;
+    EXPECT_NEAR(world.pose(block).x, 1 - 32 * std::pow(9.0 / 16, 3), 1e-6) << name;
+  });
+}
+
 // Friction of 1 N slows a block of 1 kg that F = 12 t - 4 pushes: v = 6 t^2 - 5 t + 1 until t = 1/3. There it sticks
 // until F = 1, at t = 5/12, and slips on with v = 6 (t - 5/12)^2. A step over all of it follows the first v exactly.
 TEST(EventEffects, ABlockThatComesToRestWithinAStepSticks) {
