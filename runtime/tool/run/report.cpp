@@ -39,15 +39,19 @@ std::string joint_in_words(const Scene& scene, int joint) {
 // [m] or [rad]; methods pass an end by the error of their events.
 constexpr double shown_end = 1e-6;
 
-// The advice that was tried; without one, what usually helps.
-std::string fix_of(const RunResult& result, const std::string& usual) {
-  return result.advice ? in_words(*result.advice) : "Likely fix: " + usual;
-}
-
 std::string fix_of_accuracy(const Choice& choice) {
   if (choice.rescued > 0) return "Likely fix: a method and a step of your own";
   if (!(choice.holds_until > 0)) return "Likely fix: a larger error";
   return fmt::format("Likely fix: --until {:.6g}", choice.holds_until);
+}
+
+// The advice that was tried; without one, what usually helps. Steps are not what a search lacked.
+std::string fix_of(const RunResult& result, const std::string& usual) {
+  if (result.advice) return in_words(*result.advice);
+  if (!result.choice) return "Likely fix: " + usual;
+  if (result.choice->rescued == 0 && result.choice->holds_until > 0) return fix_of_accuracy(*result.choice);
+  return "Likely fix: an earlier end (--until), or joints that can follow: `cdot-run diagnose` names those that "
+         "contradict each other";
 }
 
 std::string failed_step_text(const Scene& scene, const RunResult& result, const StepResult& step) {

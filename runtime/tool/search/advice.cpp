@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include <cdot/methods.hpp>
 
@@ -84,12 +85,14 @@ std::vector<Candidate> candidates_for(const Scene& scene, bool fails) {
   return all;
 }
 
-std::vector<Candidate> finer_accuracies(const Scene& scene) {
+// `reached`: the accuracy so far. A search that did not reach it has tried finer ones.
+std::vector<Candidate> finer_accuracies(const Scene& scene, bool reached) {
   std::vector<Candidate> all;
   const double asked = scene.accuracy > 0 ? scene.accuracy : default_accuracy;
-  for (const double share : {1e-1, 1e-3})
-    all.push_back({fmt::format("--accuracy {:.0e}", share * asked),
-                   [=](Scene& changed) { changed.accuracy = std::stod(fmt::format("{:.0e}", share * asked)); }});
+  if (reached)
+    for (const double share : {1e-1, 1e-3})
+      all.push_back({fmt::format("--accuracy {:.0e}", share * asked),
+                     [=](Scene& changed) { changed.accuracy = std::stod(fmt::format("{:.0e}", share * asked)); }});
   if (!scene.project && !scene.joints.empty()) all.push_back(project());
   return all;
 }
@@ -158,7 +161,10 @@ std::string named_with(const Scene& scene, const Candidate& candidate) {
 
 }  // namespace
 
-TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunResult& result) {
+std::optional<TriedFix> find_advice(const Scene& scene, const RunOptions& options, const RunResult& result) {
+  const std::vector<Candidate> candidates = result.choice ? finer_accuracies(scene, result.choice->reached)
+                                                          : candidates_for(scene, result.failed_step.has_value());
+  if (candidates.empty()) return {};
   TriedFix advice;
   const double own_work = work_of(scene, result);
   const double share = own_work > own_work_of_a_trial ? own_work_of_a_trial / own_work : 1;
@@ -174,8 +180,7 @@ TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunRes
   }
   const bool off = !trajectory_warning(scene, result).empty() || !trajectory_failure(scene, result).empty();
   double left = most_work;
-  for (const Candidate& candidate :
-       chooses_method(scene) ? finer_accuracies(scene) : candidates_for(scene, result.failed_step.has_value())) {
+  for (const Candidate& candidate : candidates) {
     Scene changed = scene;
     candidate.change(changed);
     if (mistake_in_methods(changed.settings)) continue;

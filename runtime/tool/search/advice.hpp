@@ -12,6 +12,6 @@ bool needs_advice(const Scene& scene, const RunResult& result);
 // Searches the candidates in a fixed order for the first whose run over the same time passes without a failure and
 // without such a warning. The trials have a bounded work (work.hpp); a candidate that does not end within
 // it is none.
-TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunResult& result);
+std::optional<TriedFix> find_advice(const Scene& scene, const RunOptions& options, const RunResult& result);
 
 }  // namespace cdot

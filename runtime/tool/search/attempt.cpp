@@ -13,6 +13,22 @@ constexpr double far = 1;            // a size or a radian: larger distances say
 // its angle is.
 constexpr double witness = 1e-5;
 
+// --- Claims.
+constexpr double least_sure = 1e-12;  // below it, smaller steps gain nothing for sure
+// Between two looks the error may be so many local errors. Beyond this share of the accuracy they still count in a
+// claim, but refuse no run.
+constexpr double local_errors = 10, unseen = 0.1;
+// Up to the accuracy asked for, a claim is so many times the error that seems sure.
+constexpr double margin = 1.5;
+constexpr double unlike = 2;  // the error in units of the distance of two methods of different kind
+// The distances of runs by fixed steps must fall by this: a first one says nothing about that, as long steps may have
+// no order yet.
+constexpr double least_fall = 1.5;
+constexpr double surely = 1e-3;  // or be below this share of the accuracy
+
+// Events are located to about this share of what they depend on (events/guarded.hpp), whatever the local error is.
+constexpr double noise_of_events = 1e-9;
+
 // Errors grow at least with time. From this share of the run on, the distance of two runs is taken to grow by the power
 // of time with which it grew over the second half up to then. The run that comes next expects a little more.
 constexpr double tells = 0.25, most_growth = 2, further_growth = 0.5;
@@ -37,9 +53,50 @@ Distance distance(const Yardstick& yardstick, const Attempt& coarse, const Attem
 double sure_gain(const Attempt& coarse, const Attempt& fine, double apart) {
   if (fine.knob.adaptive() && apart > far) return 1;
   const bool rescued = coarse.result.counts.rescued > 0 || fine.result.counts.rescued > 0;
+  const bool events = coarse.result.counts.events > 0 || fine.result.counts.events > 0;
+  const double noise = events ? noise_of_events : strictest_local_error;
   const bool tells_of_energy = coarse.energy_share >= witness * apart;
   const double of_energy = tells_of_energy ? coarse.energy_share / std::max(round_off, fine.energy_share) : 1;
-  return sure_gain(fine.knob.row(), gain(coarse.knob, fine.knob, rescued), of_energy);
+  return sure_gain(fine.knob.row(), gain(coarse.knob, fine.knob, rescued, noise), of_energy);
+}
+
+bool same_steps(const Attempt& a, const Attempt& b) {
+  const StepCounts &of_a = a.result.counts, &of_b = b.result.counts;
+  return of_a.taken > 0 && of_a.taken == of_b.taken && of_a.shortest == of_b.shortest && of_a.longest == of_b.longest;
+}
+
+bool balanced(const Scene& scene, const Attempt& attempt) {
+  return attempt.result.balance.energy.share() <= scene.energy_tolerance;
+}
+
+bool converges(const Attempt& coarse, const Attempt& fine) { return fine.achieved * least_fall < coarse.achieved; }
+
+void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse, Attempt& fine) {
+  const auto [apart, agree_until] = distance(yardstick, coarse, fine);
+  fine.apart = apart, fine.holds_until = agree_until;
+  const double gained = sure_gain(coarse, fine, apart);
+  const double between_looks = local_errors * fine.knob.local_error;
+  fine.achieved =
+      std::max({std::min(apart, least_sure), apart / gained, std::min(between_looks, unseen * yardstick.asked())});
+  const bool known = fine.knob.parts > coarse.knob.parts || !fine.knob.adaptive() ||
+                     (fine.result.counts.rescued == 0 && !same_steps(coarse, fine));
+  const bool seems_to_converge = fine.knob.adaptive() || fine.achieved < surely * yardstick.asked() ||
+                                 (std::isfinite(coarse.achieved) && converges(coarse, fine));
+  // Two runs may agree by chance on steps that were left to another method: no gain is sure there.
+  const bool rescued = fine.result.counts.rescued > 0;
+  fine.reached = known && seems_to_converge && balanced(scene, fine) &&
+                 std::max(fine.achieved, rescued ? apart : 0) <= yardstick.asked();
+  if (fine.reached) fine.holds_until = scene.duration;
+  const double claim = rescued ? std::max(apart, coarse.apart) : std::max(margin * fine.achieved, between_looks);
+  fine.claimed = std::max(fine.achieved, std::min(claim, yardstick.asked()));
+}
+
+void judge_unlike(const Scene& scene, const Yardstick& yardstick, const Attempt& other, Attempt& now) {
+  const auto [apart, agree_until] = distance(yardstick, other, now);
+  now.achieved = std::max(least_sure, unlike * apart), now.holds_until = agree_until;
+  now.claimed = std::max(now.achieved, local_errors * now.knob.local_error);
+  now.reached = balanced(scene, now) && now.achieved <= yardstick.asked();
+  if (now.reached) now.holds_until = scene.duration;
 }
 
 double foreseen_distance(const Yardstick& yardstick, double duration, const Attempt& coarse, const Attempt& fine) {

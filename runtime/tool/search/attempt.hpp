@@ -40,6 +40,15 @@ Distance distance(const Yardstick& yardstick, const Attempt& coarse, const Attem
                   std::size_t ends = std::numeric_limits<std::size_t>::max());
 // The factor by which the error of the fine run is surely smaller, if they are so far apart.
 double sure_gain(const Attempt& coarse, const Attempt& fine, double apart);
+// Two runs by the same steps agree, whatever their error; of bodies that never move there are no steps and no error.
+bool same_steps(const Attempt& a, const Attempt& b);
+// The energy's error is within the scene's tolerance.
+bool balanced(const Scene& scene, const Attempt& attempt);
+// The distance of a run from a coarser one has fallen well below the one before.
+bool converges(const Attempt& coarse, const Attempt& fine);
+// Measures a run by a coarser one, or by one of another method.
+void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse, Attempt& fine);
+void judge_unlike(const Scene& scene, const Yardstick& yardstick, const Attempt& other, Attempt& now);
 // The distance at the end, foreseen from that up to now, if it shows that the two runs will not agree; else 0.
 double foreseen_distance(const Yardstick& yardstick, double duration, const Attempt& coarse, const Attempt& fine);
 

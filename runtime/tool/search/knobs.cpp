@@ -65,10 +65,10 @@ double gain_for(const IntegratorRow& row, double sure) {
   return is_eighth_order(row) && sure * sure > large_gain ? std::max(large_gain, large) : sure * sure;
 }
 
-double gain(const Try& coarse, const Try& fine, bool rescued) {
+double gain(const Try& coarse, const Try& fine, bool rescued, double noise) {
   const double shorter = static_cast<double>(fine.steps()) / coarse.steps();
   if (!fine.adaptive()) return std::pow(shorter, fine.row().order);
-  const double smaller = (coarse.local_error + strictest_local_error) / (fine.local_error + strictest_local_error);
+  const double smaller = (coarse.local_error + noise) / (fine.local_error + noise);
   return rescued ? std::min(smaller, shorter) : smaller;  // a method that took over may have order 1
 }
 

@@ -37,8 +37,8 @@ double stricter_for(const IntegratorRow& row);
 double second_share(const Try& first, double accuracy);
 
 // The factor by which the error should be smaller than that of a coarser knob; `rescued`: where another method took
-// over.
-double gain(const Try& coarse, const Try& fine, bool rescued);
+// over. `noise`: local errors that remain.
+double gain(const Try& coarse, const Try& fine, bool rescued, double noise);
 // The factor by which it is surely smaller, measured over all scenes, if the error of the energy is `of_energy` times
 // smaller.
 double sure_gain(const IntegratorRow& row, double gain, double of_energy);

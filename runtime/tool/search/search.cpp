@@ -20,12 +20,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-constexpr double least_sure = 1e-12;  // below it, smaller steps gain nothing for sure
-// Between two looks the error may be so many local errors. Beyond this share of the accuracy they still count in a
-// claim, but refuse no run.
-constexpr double local_errors = 10, unseen = 0.1;
-// Up to the accuracy asked for, a claim is so many times the error that seems sure.
-constexpr double margin = 1.5;
 constexpr double aim = 0.5;  // share of the accuracy that a further run aims at
 constexpr int shorter_for_rescued = 4, shorter_for_others = 2;
 constexpr double long_step = 0.4;  // of the duration
@@ -41,13 +35,8 @@ constexpr double least_jump = 10;
 // --- Even motions: steps have grown without bound, in so few evaluations. They get explicit steps of equal length if
 // stable ones cost at most `slow`.
 constexpr double even = 150, slow = 150;
-constexpr double unlike = 2;  // the error in units of the distance of two methods of different kind
 
-// --- Fixed steps.
-// The distances of runs must fall by this: a first one says nothing about that, as long steps may have no order yet.
-constexpr double converges = 1.5;
-constexpr double surely = 1e-3;  // or be below this share of the accuracy
-constexpr int most_idle = 3;     // refinements in a row without that
+constexpr int most_idle = 3;  // refinements in a row by fixed steps that do not converge, or runs that do not end
 
 // --- Prices, in evaluations of an island's accelerations. All runs of a search together may take
 // RunOptions::search_work, or so many times the price of steps of a millisecond, if
@@ -55,15 +44,13 @@ constexpr double most_millisecond_runs = 20;
 // that is more than so many times the price of the first run that has ended with steps of its own: 1e-12 of its local
 // error costs 32 times as much.
 constexpr double most_first_runs = 50;
+// If nobody asked for the accuracy, they take less: so much work, some seconds, or if it is more, so many times that
+// price. After two that did not end, or left steps to another method, few of the next ones get any further.
+constexpr double unasked_work = 2e7, unasked_work_of_others = 5e6, most_unasked_runs = 4;
 // A scene is surely stiff if an oscillation of tensions and springs at the start makes explicit steps `dear`. It may be
 // if a run has taken `suspicious` evaluations, is on the way to `dear`, and the fastest oscillation explains a share of
 // that price. Then methods for stiff scenes get such a share to be cheaper.
 constexpr double suspicious = 600, dear = 4000, share_of_stiff = 0.33, share_of_surely_stiff = 0.5;
-
-// Two runs by the same steps agree, whatever their error; of bodies that never move there are no steps and no error.
-bool same_steps(const StepCounts& a, const StepCounts& b) {
-  return a.taken > 0 && a.taken == b.taken && a.shortest == b.shortest && a.longest == b.longest;
-}
 
 class Search {
  public:
@@ -88,12 +75,10 @@ class Search {
   int shorter_after(const Attempt& now) const;
   std::optional<Try> after_early_end(const Attempt& last, const Attempt& now) const;
   Attempt attempt(const Try& knob, double most, const Attempt& last, bool judged);
-  void judge(const Attempt& coarse, Attempt& fine) const;
   void judge_by_another_method(Attempt& now, double most);
   void keep(Attempt&& attempt);
-  bool balanced(const Attempt& attempt) const {
-    return attempt.result.balance.energy.share() <= scene_.energy_tolerance;
-  }
+  void bound_budget(const Attempt& now);
+  bool balanced(const Attempt& attempt) const { return cdot::balanced(scene_, attempt); }
   bool out_of_budget() const { return left_ <= 0; }
   // RunOptions::most_evaluations are those of all runs.
   double left_for_all() const { return options_.most_evaluations - price_; }
@@ -106,8 +91,9 @@ class Search {
   const RunOptions& options_;
   std::string& warnings_;
   Yardstick yardstick_;
-  double left_;        // of the budget
-  double least_left_;  // for all other candidates, when the first has a price
+  double left_;                // of the budget
+  double unasked_ = infinity;  // for all runs, if nobody asked for the accuracy
+  double least_left_;          // for all other candidates, when the first has a price
   Attempt best_;
   // The last candidate, which may go on with a larger budget.
   struct {
@@ -119,9 +105,9 @@ class Search {
   double first_price_ = 0;  // foreseen, of explicit steps that became dear; while stiff candidates run
   double stiff_price_ = 0;  // the part of it that stiffness explains
   bool may_be_dear_ = true, stopped_ = false, given_up_ = false;
-  bool sensitive_ = false;  // refined in vain: the motion itself forbids more
-  int runs_ = 0;
-  double price_ = 0, cpu_ = 0;  // of all runs
+  bool sensitive_ = false;        // refined in vain: the motion itself forbids more
+  int runs_ = 0, of_others_ = 0;  // of these, some did not end or left steps to another method
+  double price_ = 0, cpu_ = 0;    // of all runs
 };
 
 // Follows the pace of the `last` run. If it is judged by that run, it ends early, by Attempt::foreseen, where the two
@@ -174,27 +160,6 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool 
   return attempt;
 }
 
-// Measures a run by a coarser one.
-void Search::judge(const Attempt& coarse, Attempt& fine) const {
-  const auto [apart, agree_until] = distance(yardstick_, coarse, fine);
-  fine.apart = apart, fine.holds_until = agree_until;
-  const double gained = sure_gain(coarse, fine, apart);
-  const double between_looks = local_errors * fine.knob.local_error;
-  fine.achieved =
-      std::max({std::min(apart, least_sure), apart / gained, std::min(between_looks, unseen * yardstick_.asked())});
-  const bool known = fine.knob.parts > coarse.knob.parts || !fine.knob.adaptive() ||
-                     (fine.result.counts.rescued == 0 && !same_steps(coarse.result.counts, fine.result.counts));
-  const bool seems_to_converge = fine.knob.adaptive() || fine.achieved < surely * yardstick_.asked() ||
-                                 (std::isfinite(coarse.achieved) && fine.achieved * converges < coarse.achieved);
-  // Two runs may agree by chance on steps that were left to another method: no gain is sure there.
-  const bool rescued = fine.result.counts.rescued > 0;
-  fine.reached = known && seems_to_converge && balanced(fine) &&
-                 std::max(fine.achieved, rescued ? apart : 0) <= yardstick_.asked();
-  if (fine.reached) fine.holds_until = scene_.duration;
-  const double claim = rescued ? std::max(apart, coarse.apart) : std::max(margin * fine.achieved, between_looks);
-  fine.claimed = std::max(fine.achieved, std::min(claim, yardstick_.asked()));
-}
-
 // Steps that end where numbers in time have kinks may be the same at every local error. Two runs by them agree,
 // whatever their error; one of another order does not.
 void Search::judge_by_another_method(Attempt& now, double most) {
@@ -202,11 +167,7 @@ void Search::judge_by_another_method(Attempt& now, double most) {
   other.integrator = now.knob.integrator == Integrator::dop853 ? Integrator::rk4 : Integrator::dop853;
   const Attempt check = attempt(other, most, {}, false);
   if (!check.whole || check.result.counts.rescued > 0) return;
-  const auto [apart, agree_until] = distance(yardstick_, check, now);
-  now.achieved = std::max(least_sure, unlike * apart), now.holds_until = agree_until;
-  now.claimed = std::max(now.achieved, local_errors * now.knob.local_error);
-  now.reached = balanced(now) && now.achieved <= yardstick_.asked();
-  if (now.reached) now.holds_until = scene_.duration;
+  judge_unlike(scene_, yardstick_, check, now);
 }
 
 // The better of two: a run that reached the accuracy, then one that holds it longer, then any that has ended.
@@ -225,7 +186,7 @@ std::optional<double> Search::next_share(const Attempt& last, const Attempt& now
   // Smaller local errors get no further.
   if (now.knob.adaptive() && !now.whole && failed_before && now.result.time <= last.result.time) return {};
   const double least = stricter_for(now.knob.row());
-  if (!now.whole) return least;
+  if (!now.whole) return ++idle <= most_idle ? std::optional(least) : std::nullopt;
   if (!last.whole && !now.knob.adaptive()) return 0.5;
   if (!last.whole) return second_share(now.knob, yardstick_.asked());
   // Two runs agree on a motion whose energy balance fails: finer ones would agree with them. They may do better without
@@ -233,7 +194,7 @@ std::optional<double> Search::next_share(const Attempt& last, const Attempt& now
   const bool own_steps = now.knob.adaptive() && now.result.counts.rescued == 0;
   if (own_steps && now.achieved <= yardstick_.asked() && !balanced(now) && !balanced(last)) sensitive_ = true;
   sensitive_ |= now.knob.strictest() && now.result.counts.rescued == 0;
-  idle = now.achieved * converges < last.achieved ? 0 : idle + 1;
+  idle = converges(last, now) ? 0 : idle + 1;
   if (!now.knob.adaptive() && idle > most_idle) return {};
   // Where the motion magnifies every difference, runs agree no more at all: then the time counts.
   return std::max(least, aim * yardstick_.asked() / now.achieved);
@@ -267,13 +228,20 @@ std::optional<Try> Search::after_early_end(const Attempt& last, const Attempt& n
 void Search::try_even_steps(const Attempt& even) {
   const bool is_slow = stiff_at_start_ <= slow * yardstick_.mechanisms();
   Attempt now = attempt({is_slow ? Integrator::rattle : Integrator::implicit}, infinity, {}, false);
-  if (now.whole && now.result.counts.rescued == 0) {
-    const auto [apart, agree_until] = distance(yardstick_, even, now);
-    now.achieved = now.claimed = std::max(least_sure, unlike * apart), now.holds_until = agree_until;
-    now.reached = balanced(now) && now.achieved <= yardstick_.asked();
-    if (now.reached) now.holds_until = scene_.duration;
-  }
+  if (now.whole && now.result.counts.rescued == 0) judge_unlike(scene_, yardstick_, even, now);
   keep(std::move(now));
+}
+
+// A stiff candidate has a bound of its own.
+void Search::bound_budget(const Attempt& now) {
+  if (!now.knob.adaptive() || first_price_ > 0) return;
+  if (now.whole) left_ = std::min(left_, std::max(most_first_runs * now.price, least_left_));
+  if (!yardstick_.of_size()) return;
+  const bool own_steps = now.result.counts.rescued == 0 && (now.whole || now.foreseen > 0);
+  if (!own_steps) ++of_others_;
+  unasked_ = (of_others_ > 1 ? unasked_work_of_others : unasked_work) / work_of_evaluation(scene_);
+  const bool seems_good = now.whole && of_others_ <= 1;
+  left_ = std::min(left_, seems_good ? std::max(unasked_, most_unasked_runs * now.price) : unasked_);
 }
 
 void Search::try_candidate(Integrator integrator, double most) {
@@ -291,20 +259,21 @@ void Search::try_candidate(Integrator integrator, double most) {
     given_up_ = !knob->adaptive() && price_of(*knob) > left_for_all();
     if (given_up_) break;
     const bool judged = may_end_early && last.whole && last.result.counts.rescued == 0;
-    Attempt now = attempt(*knob, most - spent, last, judged);
+    // A last run may go beyond the budget; unless the accuracy was asked for, not beyond that work.
+    const double most_of_run = yardstick_.of_size() ? std::max(left_, unasked_ - price_) : infinity;
+    Attempt now = attempt(*knob, std::min(most - spent, most_of_run), last, judged);
     spent += now.price;
     if (now.foreseen > 0) {
       may_end_early = false;
       knob = after_early_end(last, now);
       continue;
     }
+    bound_budget(now);
     if (now.whole) {
       yardstick_.see(now.frames);
-      // A stiff candidate has a bound of its own.
-      if (adaptive && !(first_price_ > 0)) left_ = std::min(left_, std::max(most_first_runs * now.price, least_left_));
-      if (last.whole) judge(last, now);
+      if (last.whole) judge(scene_, yardstick_, last, now);
       if (last.whole && adaptive && !now.reached && now.result.counts.rescued == 0 &&
-          now.knob.parts == last.knob.parts && same_steps(last.result.counts, now.result.counts))
+          now.knob.parts == last.knob.parts && same_steps(last, now))
         judge_by_another_method(now, most - spent);
       else if (runs_ == 1 && has_long_steps(now) && now.price <= even * yardstick_.mechanisms()) try_even_steps(now);
     }

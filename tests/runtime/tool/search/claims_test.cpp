@@ -9,6 +9,7 @@
 
 #include "runtime/text/files.hpp"
 #include "runtime/tool/run/trajectory.hpp"
+#include "runtime/tool/search/attempt.hpp"
 #include "tests/runtime/tool/support.hpp"
 
 namespace cdot::test::claims_test {
@@ -112,6 +113,15 @@ TEST(Claims, HoldWhereImpactsNeverEnd) {
   scene = ropes("spatial");
   scene.accuracy = 3.16e-4;
   expect_claims(scene, delivered(scene).rows, {1e-2, 1.78e-3});
+}
+
+// Local errors of 1e-6 and of 1e-12 promise errors of 1e6 : 1. Where events are located to 1e-9, 1e3 : 1 is left.
+TEST(Claims, CountWhatLocatedEventsLeave) {
+  Attempt coarse, fine;
+  coarse.knob = {Integrator::rk4, 1e-6}, fine.knob = {Integrator::rk4, 1e-12};
+  EXPECT_NEAR(sure_gain(coarse, fine, 1e-5), std::sqrt(1e6), 0.01 * std::sqrt(1e6));
+  fine.result.counts.events = 1;
+  EXPECT_NEAR(sure_gain(coarse, fine, 1e-5), std::sqrt(1e3), 0.01 * std::sqrt(1e3));
 }
 
 }  // namespace
