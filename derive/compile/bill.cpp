@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <functional>
+#include <map>
 #include <optional>
 
 #include "derive/compile/measure.hpp"
@@ -19,6 +20,7 @@ Mechanism bare(Mechanism mechanism) {
   mechanism.joints.clear();
   mechanism.effects.clear();
   mechanism.bounded.clear();
+  mechanism.bonds.clear();
   mechanism.angles = 0;
   for (Body& b : mechanism.bodies) {
     std::ranges::fill(b.acceleration, 0);
@@ -33,8 +35,37 @@ void count_angles(Mechanism& mechanism) {
   for (Joint& joint : mechanism.joints)
     for (CountedTurns& turns : joint.turns) turns.angle = mechanism.angles++;
   for (auto* list : {&mechanism.effects, &mechanism.bounded})
-    for (Effect& effect : *list)
+    for (Effect& effect : *list) {
+      for (CountedTurns& turns : effect.turns) turns.angle = mechanism.angles++;
       if (effect.angle >= 0) effect.angle = mechanism.angles++;
+    }
+}
+
+// The place in a part's list of the one at that place in the list of the whole; -1: it is not there.
+template <class List>
+int place_in(const List& part, const List& whole, int place) {
+  if (place < 0) return -1;
+  const auto found = std::ranges::find(part, whole[static_cast<std::size_t>(place)].name, &List::value_type::name);
+  return found == part.end() ? -1 : static_cast<int>(found - part.begin());
+}
+
+// The bonds of the joints and effects that are left, which are numbered anew.
+void keep_bonds(const Mechanism& whole, Mechanism& part) {
+  std::map<int, int> numbers;
+  part.bonds.clear();
+  for (Bond bond : whole.bonds) {
+    bond.joint = place_in(part.joints, whole.joints, bond.joint);
+    bond.effect = place_in(part.effects, whole.effects, bond.effect);
+    bond.bounded = place_in(part.bounded, whole.bounded, bond.bounded);
+    if (bond.joint < 0 && bond.effect < 0 && bond.bounded < 0) continue;
+    bond.holds = numbers.try_emplace(bond.holds, static_cast<int>(numbers.size())).first->second;
+    part.bonds.push_back(std::move(bond));
+  }
+  const auto renumber = [&](auto& list) {
+    for (auto& one : list)
+      if (one.holds >= 0) one.holds = numbers.contains(one.holds) ? numbers.at(one.holds) : -1;
+  };
+  renumber(part.joints), renumber(part.effects), renumber(part.bounded);
 }
 
 class Parts {
@@ -72,6 +103,7 @@ class Parts {
     (part.without.*list).erase((part.without.*list).begin() + static_cast<std::ptrdiff_t>(number));
     (part.alone.*list).push_back((all_.*list)[number]);
     count_angles(part.without), count_angles(part.alone);
+    keep_bonds(all_, part.without), keep_bonds(all_, part.alone);
     parts_.push_back(std::move(part));
   }
 

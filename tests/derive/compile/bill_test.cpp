@@ -134,4 +134,17 @@ TEST(Bill, OfAnglesInSpaceNumbersThoseThatAreLeft) {
   EXPECT_EQ(line_of(bill.text, "effect axle.angle.load")[3], 2 * long{sizeof(double)});
 }
 
+// So do its bonds: of a spring it holds, its load and its force.
+TEST(Bill, OfJointsThatBreakNumbersThoseThatAreLeft) {
+  const auto bill = [](const std::string& scene, const char* method) {
+    const cdot::ShellResult result =
+        cdot::compile("--bill tests/derive/compile/" + scene + ".toml --integrator " + method, "CXX=no_compiler");
+    EXPECT_EQ(result.status, 0) << result.text;
+    return result.text;
+  };
+  EXPECT_EQ(line_of(bill("bonds/soft", "euler"), "effect coil")[3], 3 * long{sizeof(double)});
+  EXPECT_EQ(line_of(bill("scenes/soft_gear", "euler"), "effect teeth")[3], 4 * long{sizeof(double)});
+  bill("bonds/redundant", "implicit");
+}
+
 }  // namespace
