@@ -29,22 +29,23 @@ void work_of_springs(const WorldData<S>& world, Batch<S>& batch, int slot, const
                      const typename S::Scalar* lambda, typename S::Scalar time, double h, Work& work) {
   using T = typename S::Scalar;
   const int rows = batch.ops->rows;
-  T drift[most_rows] = {}, rate[most_rows], force[most_rows];
-  if (batch.explicit_time()) find_drift(world, batch, slot, time, drift);
-  for (int r = 0; r < rows; ++r) rate[r] = acted[r] + drift[r];
-  const bool of_effect = batch.law->is_of_effect(), by_impulse = of_effect && !batch.law->energy;
-  if (of_effect) batch.law->unstored(batch, slot, rate, force);
-  else find_damping(batch, slot, rate, force);
+  const bool drifts = batch.explicit_time(), of_effect = batch.law->is_of_effect();
+  const bool by_impulse = of_effect && !batch.law->energy;
+  T drift[most_rows], rate[most_rows] = {}, force[most_rows];
+  if (drifts) find_drift(world, batch, slot, time, drift);
+  for (int r = 0; r < rows; ++r) rate[r] = drifts ? acted[r] + drift[r] : acted[r];
+  if (!of_effect) find_damping(batch, slot, rate, force);
+  else if (!by_impulse) batch.law->unstored(batch, slot, rate, force);
   double done = 0;
   for (int r = 0; r < rows; ++r) {
     const int i = slot * rows + r;
     const double impulse = by_impulse ? double(lambda[i]) : h * double(force[r]);
-    const double of_row = impulse * double(batch.rate[i] + drift[r]);
+    const double of_row = impulse * double(drifts ? batch.rate[i] + drift[r] : batch.rate[i]);
     if (of_effect) done += of_row;
     else work.take(batch.source, of_row);
-    work.put(batch.source, -double(lambda[i]) * double(drift[r]));
+    if (drifts) work.put(batch.source, -double(lambda[i]) * double(drift[r]));
   }
-  work.give(batch.source, done);
+  if (of_effect) work.give(batch.source, done);
 }
 
 // Whether a step exerts the impulses of rows in one kick or in two. Work that is only taken is that of both.
@@ -98,6 +99,20 @@ bool any_by_mass(const Segment<S>& segment) {
   return false;
 }
 
+// True if an energy stores all work of forces that act whole, as that of a gas spring.
+template <class S>
+bool stores_all(const Batch<S>& batch) {
+  const Law<S>& law = *batch.law;
+  return !batch.explicit_time() && (law.is_of_effect() ? law.energy && !law.stores_part : !law.spring);
+}
+
+// True if no row of a segment has an impulse.
+template <class S>
+bool idle(const Segment<S>& segment, const typename S::Scalar* lambda) {
+  const int rows = segment.batch->ops->rows;
+  return std::all_of(lambda + segment.begin * rows, lambda + segment.end * rows, [](auto x) { return x == 0; });
+}
+
 // Rows that may do work, given J v of mean velocities by batch.ops->velocity(..., mean). `impulses` gives those of a
 // batch; `acted` finds J v at which whole springs acted, into Batch::impulse. Returns true if a spring is given by its
 // frequency.
@@ -117,10 +132,9 @@ bool work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S
       continue;
     }
     const auto* const lambda = impulses(batch);
-    const auto idle = [](auto impulse) { return impulse == 0; };
-    if (kick == Kick::only && std::all_of(lambda + begin * rows, lambda + end * rows, idle)) {
-      if (!batch.law || batch.law->guard) continue;
-    }
+    const bool of_force = batch.law && batch.law->force;
+    if (of_force ? springs == Springs::whole && stores_all(batch) : kick == Kick::only && idle(segment, lambda))
+      continue;
     batch.ops->velocity(batch, begin, end, mean, batch.rate.data());
     if (!batch.law) {
       for (int i = begin * rows; i < end * rows; ++i) work.put(batch.source, double(lambda[i]) * double(batch.rate[i]));
