@@ -61,6 +61,28 @@ TEST(WorkBySource, AServoDoesWhatItsWheelGains) {
   }
 }
 
+// A spring with a damper between points, of which an energy stores the elastic part alone: the oscillation by the
+// closed form u = u0 e^(-a t) (cos b t + a/b sin b t) loses its energy to the damper.
+TEST(WorkBySource, ADamperTakesWhatItsSpringDoesNotStore) {
+  constexpr double k = 9, d = 0.8, m = 2, u0 = 0.5, duration = 1;
+  const double a = d / (2 * m), b = std::sqrt(k / m - a * a), decay = u0 * std::exp(-a * duration);
+  const double u = decay * (std::cos(b * duration) + a / b * std::sin(b * duration)),
+               v = -decay * k / (m * b) * std::sin(b * duration);
+  const double lost = k / 2 * (u0 * u0 - u * u) - m / 2 * v * v;
+  ASSERT_GT(lost, 0.1);
+  for (const Method& method : methods()) {
+    World<double> world(method.settings());
+    const int mass = world.add_body({.x = 1 + u0, .mass = m, .inertia = 1});
+    world.add_joint({"spring",
+                     {world.ground(), mass},
+                     {{"pa", {0, 0}}, {"pb", {0, 0}}, {"k", {k}}, {"rest", {1}}, {"d", {d}}},
+                     {}});
+    for (int i = 0; i < 1000; ++i) ASSERT_TRUE(world.step(duration / 1000)) << method.name();
+    EXPECT_NEAR(work_of(world, "spring"), -lost, allowed_of(method)) << method.name();
+    EXPECT_LE(std::abs(world.balance().method()), allowed_of(method)) << method.name();
+  }
+}
+
 // A crank, driven at w, takes a wheel along by a damper: wheel I u' = c (w - u). The drive puts in I w u, the damper
 // takes I w^2 (1 - exp(-2 c t / I)) / 2. The drive's share in the kick of a damper is large, as the crank is light.
 TEST(WorkBySource, ADriveFeedsADamper) {
