@@ -120,7 +120,7 @@ bool System<S>::revise_active_set(bool one_by_one) {
 
 namespace {
 
-// The largest error of a row within its bounds, as a share of the largest b.
+// The largest error of a row within its bounds, as a share of the largest b, at poses on C = 0.
 template <class Real>
 constexpr double missed = by_precision<Real>(1e-9);
 // Share of the diagonal that makes a redundant row independent.
@@ -168,10 +168,9 @@ void System<S>::solve() {
 template <class S>
 bool System<S>::part_contradicting_rows() {
   const auto bounded = [&](int r) { return std::isfinite(lower[r]) || std::isfinite(upper[r]); };
-  const Real scale = largest_b(Of::free_rows);
+  const Real scale = largest_b(Of::free_rows), most = std::max(Real(missed<Real>), forgiven_share_) * scale + forgiven_;
   bool any = false;
-  for (int r = 0; r < rows_; ++r)
-    any |= bounded(r) && !fixed[r] && !broken[r] && std::abs(excess(r)) > missed<Real> * scale;
+  for (int r = 0; r < rows_; ++r) any |= bounded(r) && !fixed[r] && !broken[r] && std::abs(excess(r)) > most;
   share_contradictions();
   if (hold_motors(*this, slight(scale))) return yields_ = true;
   for (int r = 0; any && r < rows_; ++r)

@@ -47,6 +47,9 @@ class System {
   // now on such rows are redundant; light bodies leave pivots of that size as well, but smaller ones are rare.
   void blur(double angle) { ldlt_.blur(std::min(angle * angle, most_blur)); }
 
+  // Bounded rows that are redundant may miss this share of the largest b and so much more: it is no contradiction.
+  void forgive(T share, T more) { forgiven_share_ = share, forgiven_ = more; }
+
   // True if there are rows with softness or bounds.
   bool lawful() const { return lawful_; }
   // From now on solve() shares forces among redundant rows: among equal motions the least sum of squares.
@@ -206,7 +209,8 @@ class System {
   void expand(const std::vector<Real>& y, std::vector<Real>& to);
 
   bool built_ = false, shares_loads_ = false, lawful_ = false, taut_ = false, any_out_ = false, contradicted_ = false;
-  bool multiplies_own_ = false;          // blocks of K on its diagonal, rather than take those of the kernels
+  bool multiplies_own_ = false;  // blocks of K on its diagonal, rather than take those of the kernels
+  Real forgiven_share_ = 0, forgiven_ = 0;
   bool yields_ = false, eased_ = false;  // within solve_bounded(): part_and_settle()
   Softened softened_ = Softened::no;
   int rows_ = 0, dependent_ = 0;

@@ -1,6 +1,7 @@
 // Solves the island's whole K at once: exact to round-off for every mass ratio and chain length.
 #include "runtime/solve/direct.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include <cdot/spaces.hpp>
@@ -32,6 +33,11 @@ template <class S>
 bool has_error(const Batch<S>& batch, int i) {
   const bool acts = !is_held(batch, i) && batch.law->error && batch.correction[i] != 0;
   return is_held(batch, i) || (batch.mode[i] == Mode::bounded && (batch.error[i] != 0 || acts));
+}
+
+template <class S>
+bool rolls(const Island<S>& island) {
+  return std::ranges::any_of(island.segments, [](const Segment<S>& s) { return has_velocity_rows(*s.batch); });
 }
 
 template <class S>
@@ -249,6 +255,8 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   system.give([](const Batch<S>&, int) { return 0.0; });
   // Without laws and at acceleration level the last solve left the right factor.
   const bool other_rows = system.lawful() && !island.acceleration_level;
+  // There a correction that is to roll moves bodies far as well, to one side before the pose and to the other after it.
+  const bool slips = island.flow.projects_stages && rolls(island);
   for (int round = 0;; ++round) {
     const T worst = find_errors(world, island, time);
     if (round == 0 && stays_misfit(world, island, worst, time - T(world.time))) return;
@@ -269,7 +277,8 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
       system.assemble(world.bodies);
       renewed |= slow;
     }
-    if (round == 0 && (fresh || other_rows)) factor_rows_with_errors(system, Rates::kept);
+    if (round == 0 && (fresh || other_rows || slips))
+      factor_rows_with_errors(system, slips ? Rates::free : Rates::kept);
     else if (more || slow) system.factor();
     if (fresh && !island.acceleration_level) drop_rows_that_move_far(world, island, system, worst);
     before = worst;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <cdot/spaces.hpp>
 
@@ -59,29 +60,53 @@ void add_wanted_rates(const Island<S>& island, typename S::Scalar share) {
   }
 }
 
-// f(first row of the segment in Batch, number of rows, first row in Island::left)
+// f(segment, its first row in Island::left)
 template <class SomeIsland, class F>
 void each_run_of_errors(SomeIsland& island, F f) {
   auto* left = island.left.data();
-  for (const auto& [batch, begin, end, whole] : island.segments) {
-    const int rows = batch->ops->rows;
-    f(batch->error.data() + begin * rows, (end - begin) * rows, left);
-    left += (whole - begin) * rows;
+  for (const auto& segment : island.segments) {
+    f(segment, left);
+    left += (segment.whole_end - segment.begin) * segment.batch->ops->rows;
   }
 }
 
-// The largest change of a row's error since the last projection, at present of at most `error`. A row without an error
-// asks for no correction, as that of an end that no longer holds.
+// From poses and from arms as long as `farthest`.
 template <class S>
-typename S::Scalar change_of_errors(const Island<S>& island, typename S::Scalar error) {
+typename S::Scalar round_off_of_poses(const WorldData<S>& world, std::span<const int> bodies,
+                                      typename S::Scalar farthest) {
   using T = typename S::Scalar;
-  if (island.left.empty() || !std::isfinite(T(island.residual))) return std::abs(error - island.residual);
-  T most = 0;
-  each_run_of_errors(island, [&](const T* now, int count, const T* left) {
-    for (int i = 0; i < count; ++i)
-      if (now[i] != T(0)) most = std::max(most, std::abs(now[i] - left[i]));
+  T numbers[S::pose_numbers];
+  for (int i : bodies) {
+    S::write(world.bodies.pose[i], numbers);
+    for (T number : numbers) farthest = std::max(farthest, std::abs(number));
+  }
+  return T(64) * std::numeric_limits<T>::epsilon() * farthest;
+}
+
+// True if no row's error, at present of at most `error`, has changed by more than `allowed` since the last projection,
+// or by more than a share of the round-off of its own bodies' poses: a body far away blurs no other joint. A row
+// without an error asks for no correction, as that of an end that no longer holds.
+template <class S>
+bool errors_stay(const WorldData<S>& world, const Island<S>& island, typename S::Scalar error,
+                 typename S::Scalar allowed, typename S::Scalar of_round_off) {
+  using T = typename S::Scalar;
+  if (island.left.empty() || !std::isfinite(T(island.residual)))
+    return std::abs(error - island.residual) <= std::max(allowed, of_round_off * round_off_of(world, island));
+  bool stay = true;
+  each_run_of_errors(island, [&](const Segment<S>& segment, const T* left) {
+    const Batch<S>& batch = *segment.batch;
+    const int rows = batch.ops->rows, bodies = batch.ops->bodies;
+    for (int slot = segment.begin; stay && slot < segment.end; ++slot, left += rows) {
+      const T* const now = batch.error.data() + slot * rows;
+      T change = 0;
+      for (int r = 0; r < rows; ++r)
+        if (now[r] != T(0)) change = std::max(change, std::abs(now[r] - left[r]));
+      if (change <= allowed) continue;
+      const std::span own(batch.body.data() + slot * bodies, static_cast<size_t>(bodies));
+      stay = change <= of_round_off * round_off_of_poses(world, own, T(island.size));
+    }
   });
-  return most;
+  return stay;
 }
 
 // Doubles correct all but misfits; floats leave round-off at rest as well.
@@ -104,18 +129,15 @@ template <class S>
 void note_errors(Island<S>& island) {
   using T = typename S::Scalar;
   if (island.left.empty() || never_stays(island)) return;
-  each_run_of_errors(island, [](const T* now, int count, T* left) { std::copy_n(now, count, left); });
+  each_run_of_errors(island, [](const Segment<S>& segment, T* left) {
+    const int rows = segment.batch->ops->rows;
+    std::copy_n(segment.batch->error.data() + segment.begin * rows, (segment.end - segment.begin) * rows, left);
+  });
 }
 
 template <class S>
 typename S::Scalar round_off_of(const WorldData<S>& world, const Island<S>& island) {
-  using T = typename S::Scalar;
-  T farthest = 0, numbers[S::pose_numbers];
-  for (int i : island.bodies) {
-    S::write(world.bodies.pose[i], numbers);
-    for (T number : numbers) farthest = std::max(farthest, std::abs(number));
-  }
-  return T(64) * std::numeric_limits<T>::epsilon() * farthest;
+  return round_off_of_poses<S>(world, island.bodies, 0);
 }
 
 template <class S>
@@ -131,11 +153,12 @@ bool stays_misfit(const WorldData<S>& world, const Island<S>& island, typename S
   // round-off moves bodies by a thousand times as much, and they would wander for ever.
   constexpr T unchanged = T(1e-9), of_round_off = T(1) / 16, at_rest = T(1) / 4;
   if (never_stays(island)) return false;
-  const T left = island.residual, round_off = round_off_of(world, island), change = change_of_errors(island, error);
-  if (std::is_same_v<T, float> && change <= at_rest * round_off && stands(world, island, h)) return true;
+  if (std::is_same_v<T, float> && stands(world, island, h) && errors_stay(world, island, error, T(0), at_rest))
+    return true;
+  const T left = island.residual;
   const T above_round_off = T(island.redundant_rows > 0 ? by_precision<T>(0.25, 0) : by_precision<T>(4, 0));
-  if (!(left > converged<T> * island.scale)) return false;
-  return left > above_round_off * round_off && change <= std::max(unchanged * error, of_round_off * round_off);
+  if (!(left > converged<T> * island.scale) || !(left > above_round_off * round_off_of(world, island))) return false;
+  return errors_stay(world, island, error, unchanged * error, of_round_off);
 }
 
 template <class S>
@@ -214,9 +237,7 @@ template <class S>
 bool may_contradict(const Island<S>& island, typename S::Scalar at_start) {
   const auto prescribes = [](const Segment<S>& segment) {
     const Batch<S>& batch = *segment.batch;
-    if (batch.law) return !batch.law->force;
-    return batch.explicit_time() ||
-           std::find(batch.kinds.begin(), batch.kinds.end(), RowKind::velocity) != batch.kinds.end();
+    return batch.law ? !batch.law->force : batch.explicit_time() || has_velocity_rows(batch);
   };
   return !(at_start <= foreign<typename S::Scalar> * island.scale) ||
          std::any_of(island.segments.begin(), island.segments.end(), prescribes);

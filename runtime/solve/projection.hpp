@@ -2,6 +2,8 @@
 // and the integrators at acceleration level share these functions.
 #pragma once
 
+#include <algorithm>
+
 #include "runtime/state/world_data.hpp"
 
 namespace cdot {
@@ -14,6 +16,12 @@ inline constexpr T converged = T(by_precision<T>(1e-6, 1e-13));
 // must not change velocities. Times Island::scale.
 template <class T>
 inline constexpr T foreign = T(by_precision<T>(1e-4, 1e-8));
+
+// True for a joint that rolls, slides on a knife edge, or is else written by velocities.
+template <class S>
+bool has_velocity_rows(const Batch<S>& batch) {
+  return !batch.law && std::ranges::count(batch.kinds, RowKind::velocity) > 0;
+}
 
 // An estimate of the largest round-off in C from the size of the poses.
 template <class S>

@@ -14,10 +14,6 @@
 namespace cdot {
 namespace {
 
-template <class S>
-bool has_velocity_rows(const Batch<S>& batch) {
-  return !batch.law && std::find(batch.kinds.begin(), batch.kinds.end(), RowKind::velocity) != batch.kinds.end();
-}
 // Motors and friction.
 template <class S>
 bool acts_by_force(const Batch<S>& batch) {

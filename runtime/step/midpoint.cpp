@@ -61,6 +61,7 @@ void drag(WorldData<S>& world, const Island<S>& island, typename S::Scalar h) {
 template <class S>
 void leave_middle(WorldData<S>& world, Island<S>& island) {
   restore_masses(world, island);
+  island.at_work().forgive(0, 0);
   island.at_work().slacken();
   island.factored = false;
 }
@@ -171,14 +172,16 @@ struct WorkAtEnd {
 
 // The velocities at the end: J v = -dC/dt.
 template <class S>
-WorkAtEnd solve_end_of_part(WorldData<S>& world, Island<S>& island) {
+WorkAtEnd solve_end_of_part(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   auto* const v = world.bodies.velocity.data();
   for (const auto& [batch, begin, end, whole] : island.segments) {
     batch->ops->velocity(*batch, begin, end, v, batch->rate.data());
     each_row(*batch, begin, end, [of = batch](int i) { of->error[i] = of->rate[i] + of->bias[i]; });
   }
+  island.at_work().forgive(0, std::max<T>(island.residual, round_off_of(world, island)) / h);
   island.corrections_in_cones = 1, island.solver->velocities(world, island, v, T(1)), island.corrections_in_cones = 0;
+  island.at_work().forgive(0, 0);
   double loss = 0, given = 0;
   bool hit = false;
   each_row(island, [&](const Batch<S>& batch, int i) {
@@ -276,7 +279,7 @@ bool take_part(WorldData<S>& world, Island<S>& island, typename S::Scalar h, boo
   bound_end(world, island, h);
   const double energy = moved_energy(world, island);
   begin_kick(world, island);
-  const WorkAtEnd joints = solve_end_of_part(world, island);
+  const WorkAtEnd joints = solve_end_of_part(world, island, h);
   forget_dampers(world, island);
   if (!last && joints.taken > slight_work<T> * energy && !hardly_moves(world, island, h)) return give_up();
   book_kick(world, island, Impulses::end, h);
