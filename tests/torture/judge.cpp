@@ -29,7 +29,7 @@ bool may_be_the_step(const Verdict& v) {
 // the round-off of their poses.
 template <class S>
 bool unresolved_now(BasicWorld<S>& world, double step) {
-  constexpr double rounded = 1e-13;
+  constexpr double rounded = by_precision<typename S::Scalar>(1e-6, 1e-13);
   const Motion motion = motion_of(world);
   double farthest = 0;
   for (const BodyMotion& body : motion.bodies) farthest = std::max(farthest, norm(body.x));
