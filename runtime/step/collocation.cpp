@@ -6,6 +6,7 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/events/guarded.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
@@ -33,11 +34,15 @@ size_t numbers_of_bodies(const Flow<S>& flow) {
   return flow.now.size() - flow.work.size();
 }
 
-// Newton's goal in units of the numbers.
+// Newton's goal in units of the numbers. Rows with events take what it leaves for a way: in a step behind an impact, a
+// body would pass an end that it leaves.
 template <class S>
-double goal_of(const WorldData<S>& world) {
+double goal_of(const WorldData<S>& world, const Island<S>& island) {
+  using T = typename S::Scalar;
   const double allowed = world.settings.local_error;
-  return std::max(allowed * std::min(tightest, std::sqrt(allowed)), settled<typename S::Scalar>);
+  double goal = allowed * std::min(tightest, std::sqrt(allowed));
+  if (island.flow.guarded > 0) goal = std::min(goal, double(slight<T>) * std::min(1.0, double(island.size)));
+  return std::max(goal, settled<T>);
 }
 
 // The unit of number k; a goal below its last bits is none.
@@ -48,7 +53,7 @@ double unit_of(const WorldData<S>& world, const Island<S>& island, size_t k) {
   const int number = static_cast<int>(k % numbers_per_body<S>), of_velocity = number - S::pose_numbers;
   const bool velocity = of_velocity >= 0, length = (velocity ? of_velocity : number) < S::lengths;
   const double unit = world.settings.local_error > 0 || !length ? 1.0 : double(island.size);
-  return std::max(velocity ? unit + size : unit, last_bits / goal_of(world) * size);
+  return std::max(velocity ? unit + size : unit, last_bits / goal_of(world, island) * size);
 }
 
 // z_i = h_old int_1^(1 + c_i h / h_old) k of the last step's polynomial; otherwise 0.
@@ -198,7 +203,7 @@ template <class S>
 bool find_increments(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                      typename S::Scalar h) {
   const int most = world.settings.local_error > 0 ? most_rounds : most_exact_rounds;
-  const double goal = goal_of(world), near = nearly * settled<typename S::Scalar>;
+  const double goal = goal_of(world, island), near = nearly * settled<typename S::Scalar>;
   double before = 0;
   for (int round = 0; round < most; ++round) {
     evaluate_stages(world, island, method, time, h);

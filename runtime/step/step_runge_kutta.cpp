@@ -24,8 +24,9 @@
 namespace cdot {
 namespace {
 
-// Limits on events in one step(h) and on consecutive slivers. More of them mean chatter or jamming; fall_back() then
-// finishes the step.
+// Limits on events in one step(h), beside one for each row that has events, and on consecutive slivers. More of them
+// mean chatter or jamming; fall_back() then finishes the step. A hand of fifteen joints at their limits settles on
+// these one after the other.
 constexpr int most_events = 32, most_slivers = 1000;
 // The same for steps of one step(h). An error below round-off, or a force too stiff for explicit steps, asks for more.
 // After a step(h) that took them all, the next one may take an eighth, so that a run of such steps ends.
@@ -37,6 +38,9 @@ constexpr int most_rejections = 30;  // in a row
 // are hundreds of times shorter fail too, the length is not the cause but contradicting velocities, as of a motor and a
 // bar.
 constexpr int most_astray = 5;
+// Of the longest step: a shorter one is not looked at for events that it leaps over. In such a step behind an impact,
+// ways are round-off and what Newton leaves.
+constexpr double shortest_leap = 1e-3;
 // In units of Island::size and [rad]: a step with a larger estimated error is meaningless, for example if tension makes
 // a chain too stiff for the step.
 constexpr double absurd = 0.3;
@@ -151,10 +155,12 @@ T after_step(T next, T h, T proposed, int attempt, bool noisy) {
 template <class S>
 double try_adaptive_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                          typename S::Scalar h, double allowed, double safety) {
+  using T = typename S::Scalar;
   const double error =
       try_step(world, island, method, time, h, [&] { return error_of_step(island, method, h, allowed); });
-  return error <= 1 && leaps(world, island, method, time, h) ? std::max(2.0, std::pow(2 * safety, method.error_order))
-                                                             : error;
+  const bool looks = error <= 1 && h >= T(shortest_leap) * island.flow.longest;
+  return looks && leaps(world, island, method, time, h) ? std::max(2.0, std::pow(2 * safety, method.error_order))
+                                                        : error;
 }
 
 // True if the attempt with this error needs another one, of a length h and with this noise: near a loss of rank, or in
@@ -162,7 +168,9 @@ double try_adaptive_step(WorldData<S>& world, Island<S>& island, const RungeKutt
 template <class S>
 bool tries_again(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar reach,
                  double error, Doubt<typename S::Scalar>& doubt, int& attempt, typename S::Scalar& h, double& noise) {
-  if (tries_with_care(world, island, method, reach, h, noise)) {
+  // Where Newton failed, stages tell nothing about the rank.
+  const bool failed = method.implicit && std::isnan(error);
+  if (!failed && tries_with_care(world, island, method, reach, h, noise)) {
     --attempt;  // its length says nothing about the error
     return true;
   }
@@ -327,13 +335,13 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
                               typename S::Scalar done, typename S::Scalar h) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
-  const int most = most_steps_after(flow.exhausted);
+  const int most = most_steps_after(flow.exhausted), most_now = most_events + flow.guarded;
   int steps = 0;
   for (int events = 0; done < h; ++steps) {
     const T time = T(world.time) + done;
     const Way<T> way = way_from(world, island, done, h);
     const bool spent = static_cast<double>(world.counts->evaluations) > world.most_evaluations;
-    const bool chatters = spent || events > most_events || flow.slivers > most_slivers || steps >= most;
+    const bool chatters = spent || events > most_now || flow.slivers > most_slivers || steps >= most;
     if (chatters) fall_back(world, island, time, way.left, false);
     if (chatters || !take_step(world, island, method, time, way, h)) {
       done = way.end;
@@ -344,7 +352,7 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
     if (passed_event(flow)) {
       flow.length = go_to_event(world, island, method, time, flow.length);
       ++world.counts->events;
-      events = flow.length > T(0) ? events + 1 : most_events + 1;
+      events = flow.length > T(0) ? events + 1 : most_now + 1;
       flow.known = false;
     }
     if (flow.length > T(0)) count_step<S>(world.counts, flow.length);
