@@ -146,27 +146,50 @@ TEST(Balance, AJammingRodThatSlidesBySweepsIsTold) {
   EXPECT_TRUE(follow(file, options));
 }
 
-// A rod shrinks to nothing at 0.5 s, from a start that does not shrink yet. The search for an accuracy takes more than
-// a trial may, so no trial would reach the step that fails.
+// A rod shrinks to nothing, from a start that does not shrink yet. By steps of 2 ms until 500 s it takes more than a
+// trial may. A bob beside it that turns by 0.3 rad in each step could be cured, but no trial would reach the step that
+// fails.
 TEST(Balance, ATrialThatEndsBeforeTheStepThatFailedIsNoAdvice) {
   const TemporaryFolder folder;
-  const std::string file = written(folder, R"(
-duration = 1
+  const auto run = [&](const char* method, double shrinks, const char* more) {
+    return cdot_run("simulate '" +
+                    written(folder, fmt::format(R"(
+duration = {}
+gravity = [0, -9.81]
+{}
 [[body]]
 name = "rod"
 mass = 1
-shape = { rod = 1 }
+shape = {{ rod = 1 }}
 [[joint]]
 type = "distance"
 bodies = ["world", "rod"]
 pa = [0, 1]
 pb = [0, 0]
-l = "1 [m] - 2 [m/s] * time"
+l = "1 [m] - {} [m/s] * time"
+{})",
+                                                2 / shrinks, method, shrinks, more)) +
+                    "'");
+  };
+  const CommandResult quick = run("", 2, ""), steps = run("integrator = \"euler\"\nstep = 0.002", 0.002, R"(
+[[body]]
+name = "bob"
+mass = 1
+inertia = 0.0001
+position = [5.02, 0]
+velocity = [0, 3]
+spin = 150
+[[joint]]
+type = "revolute"
+bodies = ["world", "bob"]
+at = [5, 0]
 )");
-  const CommandResult run = cdot_run("simulate '" + file + "'");
-  EXPECT_EQ(run.status, 1);
-  EXPECT_NE(run.out.find("at t = 0.5 s failed"), std::string::npos) << run.out;
-  EXPECT_EQ(run.out.find("Tried"), std::string::npos) << run.out;
+  EXPECT_EQ(quick.status, 1);
+  EXPECT_NE(quick.out.find("at t = 0.5 s failed"), std::string::npos) << quick.out;
+  EXPECT_EQ(quick.out.find("Tried: "), std::string::npos) << quick.out;
+  EXPECT_EQ(steps.status, 1);
+  EXPECT_NE(steps.out.find("at t = 500 s failed"), std::string::npos) << steps.out;
+  EXPECT_EQ(steps.out.find("Tried"), std::string::npos) << steps.out;
 }
 
 // Two pendulums: one hardly moves, the other turns by half a radian in a step of Euler's method.
