@@ -25,8 +25,10 @@ namespace cdot {
 namespace {
 
 constexpr int most_rounds = 200;
-constexpr double settled = 1e-3;      // relative change of the eigenvalue in ten rounds
-constexpr double small_speed = 1e-6;  // [sizes/s] of which forces are taken as linear
+constexpr double settled = 1e-3;  // relative change of the eigenvalue in ten rounds
+// [sizes/s] Forces are taken as linear in it; round-off of the forces shows in rates less than it does.
+template <class T>
+constexpr T small_speed = T(by_precision<T>(1e-2, 1e-6));
 
 template <class S>
 class Motion {
@@ -78,7 +80,7 @@ class Motion {
 
   // P M^-1 D w by central differences.
   Velocities slowed(const Velocities& w) {
-    const T e = T(small_speed) * island_.size / std::max(T(largest(w)), T(1e-30));
+    const T e = small_speed<T> * island_.size / std::max(T(largest(w)), T(1e-30));
     const Velocities faster = rates_by_velocity(w, e), slower = rates_by_velocity(w, -e);
     Velocities change(w.size());
     for (size_t k = 0; k < w.size(); ++k) change[k] = S::sum(S::sum({}, slower[k], T(0.5) / e), faster[k], T(-0.5) / e);

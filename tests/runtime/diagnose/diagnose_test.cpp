@@ -131,6 +131,18 @@ TEST(Diagnose, FastestDecay) {
   }
 }
 
+// Round-off of a spring's 1e4 N is 1e-3 N there.
+TEST(Diagnose, FastestDecayInFloats) {
+  Settings s = settings(Solver::direct);
+  s.integrator = Integrator::rattle;
+  for (const double damping : {0.0, 70.0}) {
+    World<float> world(s);
+    const int a = world.add_body({.mass = 3, .inertia = 1}), b = world.add_body({.x = 2, .mass = 0.5, .inertia = 1});
+    world.add_spring({.body_a = a, .body_b = b, .stiffness = 1e4, .rest_length = 1, .damping = damping});
+    EXPECT_NEAR(diagnose(world, h).islands.at(0).fastest_decay.rate, damping * (1 / 3.0 + 1 / 0.5), 1);
+  }
+}
+
 TEST(Diagnose, NothingDecaysWithoutDampers) {
   World<double> world(settings(Solver::direct, Drift::projection, -9.81));
   add_chain(world, 3, 0);
