@@ -54,8 +54,10 @@ class MjcfReader : MjcfElements {
     if (model_.links.size() == 1) fail(root.GetLineNum(), "the model has no <body> in its <worldbody>");
     add_counted(left_out_, model_.left_out);
     if (rows_of_joints_ > 0)
-      model_.changed.push_back(fmt::format(
-          "{} bodies have several joints: bodies of {} of their mass stand between these", rows_of_joints_, light));
+      model_.changed.push_back(
+          fmt::format("{} several joints: bodies of {} of {} mass stand between these",
+                      rows_of_joints_ == 1 ? "a body has" : fmt::format("{} bodies have", rows_of_joints_), light,
+                      rows_of_joints_ == 1 ? "its" : "their"));
     return std::move(model_);
   }
 

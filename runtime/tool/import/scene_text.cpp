@@ -95,6 +95,7 @@ class Writer {
 
  private:
   [[noreturn]] void fail(int line, const std::string& what) const {
+    if (line == 0) throw Error(fmt::format("{}, in a file that it includes: {}", model_.file, what));
     throw Error(fmt::format("{}:{}: {}", model_.file, line, what));
   }
   // A scene's names have letters, digits, _ and -; each once.

@@ -343,6 +343,10 @@ TEST(Mjcf, FilesAreIncluded) {
   write("shape.xml", "<mujocoinclude><geom type=\"box\" size=\"1\"/></mujocoinclude>");
   EXPECT_NE(mistake("<include file=\"arm.xml\"/>").find("model.xml, in a file that it includes: a box needs"),
             std::string::npos);
+  write("shape.xml", "<mujocoinclude/>");
+  EXPECT_NE(
+      mistake("<include file=\"arm.xml\"/>").find("model.xml, in a file that it includes: body \"arm\" moves and"),
+      std::string::npos);
   write("endless.xml", "<mujocoinclude><include file=\"endless.xml\"/></mujocoinclude>");
   EXPECT_NE(mistake("<include file=\"endless.xml\"/>").find("endless.xml is included twice"), std::string::npos);
 }
