@@ -1,7 +1,5 @@
 // The time of a step of chains by Dormand-Prince 8, compiled and by hand in minimal coordinates, by turns; medians.
-#include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <fmt/format.h>
 #include <vector>
 
@@ -12,25 +10,18 @@
 #include "chain_by_dop853_3.hpp"
 #include "chain_by_dop853_4.hpp"
 #include "tests/bench/compile/chain_by_hand.hpp"
+#include "tests/bench/compile/clock.hpp"
 #include "tests/bench/peers/geometry.hpp"
 
 namespace {
+
+using cdot::bench::cpu_now;
+using cdot::bench::median;
 
 using namespace cdot::scenes;
 
 constexpr int turns = 201;
 constexpr double until = 2, rates[] = {16, 32, 64};  // [s], steps in a second
-
-double cpu_now() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
-
-double median(std::vector<double> numbers) {
-  std::sort(numbers.begin(), numbers.end());
-  return numbers[numbers.size() / 2];
-}
 
 // The chain as the scene has it at its start: uniform rods of 1 m and 1 kg (chain.toml.in).
 template <class Scene>

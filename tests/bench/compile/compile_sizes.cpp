@@ -1,6 +1,4 @@
 // The time of a step of chains of 10 to 160 links by Runge-Kutta 4, compiled and in the World, by turns; medians.
-#include <algorithm>
-#include <ctime>
 #include <fmt/format.h>
 #include <vector>
 
@@ -12,22 +10,15 @@
 #include "chain_of_40.hpp"
 #include "chain_of_80.hpp"
 #include "runtime/tool/scene/scene.hpp"
+#include "tests/bench/compile/clock.hpp"
 
 namespace {
 
+using cdot::bench::cpu_now;
+using cdot::bench::median;
+
 constexpr int turns = 21, steps = 40;
 constexpr double step = 1e-4;  // [s]
-
-double cpu_now() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
-
-double median(std::vector<double> numbers) {
-  std::sort(numbers.begin(), numbers.end());
-  return numbers[numbers.size() / 2];
-}
 
 template <class Chain>
 void compare(int links) {

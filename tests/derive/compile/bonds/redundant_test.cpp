@@ -13,25 +13,13 @@
 #include "redundant_radau5.hpp"
 #include "redundant_rattle.hpp"
 #include "redundant_rk4.hpp"
-#include "tests/derive/compile/beside_world.hpp"
+#include "tests/derive/compile/bonds/breaks.hpp"
 
 namespace {
 
+using cdot::breaks_as_in_the_world;
 using cdot::Integrator;
 using namespace cdot::scenes;
-
-template <class Scene>
-void breaks_as_in_the_world(const std::string& name, Integrator integrator, std::vector<int> broken, double until,
-                            double step = 0.001) {
-  const std::string file = "tests/derive/compile/bonds/" + name + ".toml";
-  SCOPED_TRACE(file + ", step " + std::to_string(step));
-  cdot::runs_as_the_world<Scene>(file, integrator, 1e-9, until, step);
-  typename Scene::State state;
-  Scene::reset(state);
-  while (state.time < until - step / 2) Scene::step(state, step);
-  for (int k = 0; k < Scene::joints; ++k)
-    EXPECT_EQ(state.bonds.holds[k], std::ranges::count(broken, k) > 0 ? 0 : 1) << "joint " << k;
-}
 
 TEST(CompiledBonds, BreakBesideRedundantOnesAsInTheWorld) {
   const std::vector<int> broken = {0, 1, 2, 3, 4};
