@@ -94,12 +94,14 @@ void decide_by_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar
   decide_about_cones(island);
 }
 
-// The margin of one row from its own bounds; infinite if no event is possible.
+// The margin of one row from its own bounds; infinite if no event is possible, or if the row shares its bound with
+// others of a cone.
 template <class S>
 typename S::Scalar margin_within(const Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard,
                                  const Resolution<typename S::Scalar>& resolution, typename S::Scalar rate) {
   using T = typename S::Scalar;
   const T force = batch.lambda[i];
+  if (batch.law->cone_rows > 0) return infinite<T>;
   switch (batch.mode[i]) {
     case Mode::off: return guard.gap() / resolution.C;
     case Mode::held:

@@ -4,8 +4,6 @@
 
 #include <cdot/spaces.hpp>
 
-#include "runtime/solve/solver.hpp"
-
 namespace cdot {
 namespace {
 
@@ -71,12 +69,6 @@ bool latch_by_lambda(Island<S>& island, typename S::Scalar over) {
 }
 
 template <class S>
-bool locates_events(const Island<S>& island) {
-  const auto waits = [](const Segment<S>& segment) { return has_events(segment) && segment.batch->law->cone_rows > 0; };
-  return island.solver->exact && std::none_of(island.segments.begin(), island.segments.end(), waits);
-}
-
-template <class S>
 void watch_events(WorldData<S>& world) {
   const auto has_some = [](const auto& batch) { return batch->law && batch->law->distance; };
   auto& hooks = world.after_substep;
@@ -96,7 +88,6 @@ void watch_events(WorldData<S>& world) {
 #define CDOT_INSTANTIATE(S)                               \
   template bool latch_by_impulses(Island<S>&, S::Scalar); \
   template bool latch_by_lambda(Island<S>&, S::Scalar);   \
-  template bool locates_events(const Island<S>&);         \
   template void watch_events(WorldData<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

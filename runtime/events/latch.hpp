@@ -18,11 +18,6 @@ bool latch_by_impulses(Island<S>& island, typename S::Scalar h);
 template <class S>
 bool latch_by_lambda(Island<S>& island, typename S::Scalar over);
 
-// True if a Runge-Kutta method locates all events of the island in time. Events of cones wait for the step's end; so do
-// loads that sweeps have not shared among redundant joints.
-template <class S>
-bool locates_events(const Island<S>& island);
-
 // Lets the World look for events after every substep, if any row has some.
 template <class S>
 void watch_events(WorldData<S>& world);

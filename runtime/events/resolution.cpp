@@ -7,6 +7,7 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/events/guarded.hpp"
+#include "runtime/solve/reach.hpp"
 
 namespace cdot {
 namespace {
@@ -55,11 +56,11 @@ void find_resolution(WorldData<S>& world, const Island<S>& island, Batch<S>& bat
       const int body = batch.body[slot * bodies + k];
       if (all.immovable(body)) continue;
       T v[S::freedom], dv[S::freedom], linear = 0;
+      c = std::max(c, slopes_of<S>(J + r * width + S::freedom * k).motion(T(island.size)));
       S::write(all.velocity[body], v), S::write(all.velocity_rate[body], dv);
       for (int i = 0; i < S::freedom; ++i) {
         const T j = T(std::abs(J[r * width + S::freedom * k + i]));
         if (i < S::lengths) linear = std::max(linear, std::abs(dv[i]));
-        c = std::max(c, i < S::lengths ? j * island.size : j);
         rate += j * std::abs(v[i]);
         acceleration += j * (i < S::lengths ? std::abs(dv[i]) : std::max(std::abs(dv[i]), linear / island.size));
       }

@@ -171,7 +171,10 @@ void measure_margins_of_cones(Island<S>& island) {
       along *= inverse(s);
       margin = std::min(along - T(least_slip) * s, T(1 / least_slip) * s - along) / resolution.rate;
     }
-    for (const LoadedRow<S>& row : cone) island.flow.margins[place_among_guarded(island, row)] = margin;
+    for (const LoadedRow<S>& row : cone) {
+      T& of_row = island.flow.margins[place_among_guarded(island, row)];
+      of_row = std::min(of_row, margin);
+    }
   });
 }
 

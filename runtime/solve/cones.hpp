@@ -25,7 +25,8 @@ bool offer_bounds_to_cones(Island<S>& island);
 template <class S>
 void decide_about_cones(Island<S>& island);
 
-// Flow::margins of their rows: held, the force from its bound; pushed, the speed that is left before it is noted anew.
+// Lowers Flow::margins of their rows, which are those of events of specs: held, to the force from its bound; pushed, to
+// the speed that is left before it is noted anew.
 template <class S>
 void measure_margins_of_cones(Island<S>& island);
 

@@ -8,6 +8,7 @@
 
 #include "runtime/solve/loads.hpp"
 #include "runtime/solve/longest_move.hpp"
+#include "runtime/solve/misfits.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solver.hpp"
 
@@ -247,7 +248,8 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   using T = typename S::Scalar;
   System<S>& system = island.at_work();
   T before = std::numeric_limits<T>::infinity();
-  bool renewed = false, fitted = is_round_off(world, island, T(island.residual));
+  if (fresh && may_stay(island)) evaluate_anew(world, island, time);
+  bool renewed = false, fitted = left_round_off(world, island);
   // Near a loss of rank the error is magnified, so nothing but round-off may stay.
   const T tolerance = island.flow.projects_stages ? std::numeric_limits<T>::epsilon() : converged<T>;
   system.blur(0);

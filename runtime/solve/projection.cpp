@@ -5,20 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 
 #include <cdot/spaces.hpp>
 
 #include "runtime/balance/balance.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/longest_move.hpp"
+#include "runtime/solve/misfits.hpp"
 #include "runtime/solve/solver.hpp"
 
 namespace cdot {
 namespace {
-
-// The largest error that contradicting joints may share, in units of the island's size.
-constexpr double most_shared = 0.05;
 
 // The error of a row under a law. At acceleration level only held rows must be at their end.
 template <class S>
@@ -32,17 +29,6 @@ void error_of_law(const Island<S>& island, const Batch<S>& batch, int slot, type
   batch.law->guard(batch, slot, guards);
   for (int r = 0; r < rows; ++r)
     if (batch.mode[slot * rows + r] == Mode::held) error[r] = guards[r].off_by;
-}
-
-// True if a step of h moves no body by a bit: floats are too coarse for its velocity.
-template <class S>
-bool stands(const WorldData<S>& world, const Island<S>& island, typename S::Scalar h) {
-  const Bodies<S>& all = world.bodies;
-  return std::all_of(island.bodies.begin(), island.bodies.end(), [&](int i) {
-    typename S::Scalar before[S::pose_numbers], after[S::pose_numbers];
-    S::write(all.pose[i], before), S::write(S::moved(all.pose[i], S::sum({}, all.velocity[i], h)), after);
-    return std::equal(before, before + S::pose_numbers, after);
-  });
 }
 
 // Adds `share` of the prescribed rates of held rows to the bias.
@@ -60,106 +46,7 @@ void add_wanted_rates(const Island<S>& island, typename S::Scalar share) {
   }
 }
 
-// f(segment, its first row in Island::left)
-template <class SomeIsland, class F>
-void each_run_of_errors(SomeIsland& island, F f) {
-  auto* left = island.left.data();
-  for (const auto& segment : island.segments) {
-    f(segment, left);
-    left += (segment.whole_end - segment.begin) * segment.batch->ops->rows;
-  }
-}
-
-// From poses and from arms as long as `farthest`.
-template <class S>
-typename S::Scalar round_off_of_poses(const WorldData<S>& world, std::span<const int> bodies,
-                                      typename S::Scalar farthest) {
-  using T = typename S::Scalar;
-  T numbers[S::pose_numbers];
-  for (int i : bodies) {
-    S::write(world.bodies.pose[i], numbers);
-    for (T number : numbers) farthest = std::max(farthest, std::abs(number));
-  }
-  return T(64) * std::numeric_limits<T>::epsilon() * farthest;
-}
-
-// True if no row's error, at present of at most `error`, has changed by more than `allowed` since the last projection,
-// or by more than a share of the round-off of its own bodies' poses: a body far away blurs no other joint. A row
-// without an error asks for no correction, as that of an end that no longer holds.
-template <class S>
-bool errors_stay(const WorldData<S>& world, const Island<S>& island, typename S::Scalar error,
-                 typename S::Scalar allowed, typename S::Scalar of_round_off) {
-  using T = typename S::Scalar;
-  if (island.left.empty() || !std::isfinite(T(island.residual)))
-    return std::abs(error - island.residual) <= std::max(allowed, of_round_off * round_off_of(world, island));
-  bool stay = true;
-  each_run_of_errors(island, [&](const Segment<S>& segment, const T* left) {
-    const Batch<S>& batch = *segment.batch;
-    const int rows = batch.ops->rows, bodies = batch.ops->bodies;
-    for (int slot = segment.begin; stay && slot < segment.end; ++slot, left += rows) {
-      const T* const now = batch.error.data() + slot * rows;
-      T change = 0;
-      for (int r = 0; r < rows; ++r)
-        if (now[r] != T(0)) change = std::max(change, std::abs(now[r] - left[r]));
-      if (change <= allowed) continue;
-      const std::span own(batch.body.data() + slot * bodies, static_cast<size_t>(bodies));
-      stay = change <= of_round_off * round_off_of_poses(world, own, T(island.size));
-    }
-  });
-  return stay;
-}
-
-// Doubles correct all but misfits; floats leave round-off at rest as well.
-template <class S>
-bool never_stays(const Island<S>& island) {
-  using T = typename S::Scalar;
-  return !std::is_same_v<T, float> && !(island.residual > converged<T> * island.scale);
-}
-
 }  // namespace
-
-template <class S>
-void reserve_errors(Island<S>& island) {
-  int rows = 0;
-  for (const Segment<S>& s : island.segments) rows += (s.whole_end - s.begin) * s.batch->ops->rows;
-  island.left.assign(static_cast<size_t>(rows), typename S::Scalar(0));
-}
-
-template <class S>
-void note_errors(Island<S>& island) {
-  using T = typename S::Scalar;
-  if (island.left.empty() || never_stays(island)) return;
-  each_run_of_errors(island, [](const Segment<S>& segment, T* left) {
-    const int rows = segment.batch->ops->rows;
-    std::copy_n(segment.batch->error.data() + segment.begin * rows, (segment.end - segment.begin) * rows, left);
-  });
-}
-
-template <class S>
-typename S::Scalar round_off_of(const WorldData<S>& world, const Island<S>& island) {
-  return round_off_of_poses<S>(world, island.bodies, 0);
-}
-
-template <class S>
-bool is_round_off(const WorldData<S>& world, const Island<S>& island, typename S::Scalar error) {
-  return error <= converged<typename S::Scalar> * island.scale || error <= round_off_of(world, island);
-}
-
-template <class S>
-bool stays_misfit(const WorldData<S>& world, const Island<S>& island, typename S::Scalar error, typename S::Scalar h) {
-  using T = typename S::Scalar;
-  // Round-off of floats leaves errors that are to be corrected, or a slack bridge sags: larger ones are misfits. Where
-  // rows are redundant, so are those of its own size. Where no body moves, all are: near a loss of rank a correction of
-  // round-off moves bodies by a thousand times as much, and they would wander for ever.
-  constexpr T unchanged = T(1e-9), of_round_off = T(1) / 16, at_rest = T(1) / 4;
-  if (never_stays(island)) return false;
-  if (std::is_same_v<T, float> && stands(world, island, h) && errors_stay(world, island, error, T(0), at_rest))
-    return true;
-  const T left = island.residual;
-  const T above_round_off = T(island.redundant_rows > 0 ? by_precision<T>(0.25, 0) : by_precision<T>(4, 0));
-  if (!(left > converged<T> * island.scale) || !(left > above_round_off * round_off_of(world, island))) return false;
-  return errors_stay(world, island, error, unchanged * error, of_round_off);
-}
 
 template <class S>
 void clear_correction(WorldData<S>& world, Island<S>& island) {
@@ -231,33 +118,6 @@ void add_corrections(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.velocity[i] = S::sum(all.velocity[i], all.displacement[i], per_time);
   scale_corrections(island, per_time);
-}
-
-template <class S>
-bool may_contradict(const Island<S>& island, typename S::Scalar at_start) {
-  const auto prescribes = [](const Segment<S>& segment) {
-    const Batch<S>& batch = *segment.batch;
-    return batch.law ? !batch.law->force : batch.explicit_time() || has_velocity_rows(batch);
-  };
-  return !(at_start <= foreign<typename S::Scalar> * island.scale) ||
-         std::any_of(island.segments.begin(), island.segments.end(), prescribes);
-}
-
-template <class S>
-bool left_the_joints(const WorldData<S>& world, const Island<S>& island, typename S::Scalar at_start) {
-  using T = typename S::Scalar;
-  const bool meant_to_close = world.settings.drift == Drift::projection && island.solver->exact;
-  if (!meant_to_close || island.segments.empty() || island.residual <= T(2) * at_start) return false;
-  const T length = std::max(island.size, island.scale);
-  // A Newton that diverges leaves a large share as well.
-  const bool shares = island.misfit <= most_shared * double(length) && may_contradict(island, at_start);
-  const T shared = shares ? T(island.misfit) : T(0);
-  return !(island.residual <= T(2) * std::max({foreign<T> * length, round_off_of(world, island), shared}));
-}
-
-template <class S>
-void fail_if_open(const WorldData<S>& world, Island<S>& island, typename S::Scalar at_start) {
-  if (left_the_joints(world, island, at_start)) island.trouble = StepProblem::joints_apart;
 }
 
 template <class S>
@@ -350,27 +210,19 @@ void project_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
   island.factored &= !island.at_work().lawful();
 }
 
-#define CDOT_INSTANTIATE(S)                                                                \
-  template bool stays_misfit(const WorldData<S>&, const Island<S>&, S::Scalar, S::Scalar); \
-  template S::Scalar round_off_of(const WorldData<S>&, const Island<S>&);                  \
-  template bool is_round_off(const WorldData<S>&, const Island<S>&, S::Scalar);            \
-  template void note_errors(Island<S>&);                                                   \
-  template void reserve_errors(Island<S>&);                                                \
-  template void clear_correction(WorldData<S>&, Island<S>&);                               \
-  template S::Scalar find_errors(WorldData<S>&, Island<S>&, S::Scalar);                    \
-  template void fill_lambda(const Island<S>&, S::Scalar);                                  \
-  template void scale_corrections(const Island<S>&, S::Scalar);                            \
-  template void add_corrections(WorldData<S>&, Island<S>&, S::Scalar);                     \
-  template void restore_drift(WorldData<S>&, const Island<S>&, const Segment<S>&);         \
-  template void evaluate_anew(WorldData<S>&, Island<S>&, S::Scalar);                       \
-  template bool may_contradict(const Island<S>&, S::Scalar);                               \
-  template bool left_the_joints(const WorldData<S>&, const Island<S>&, S::Scalar);         \
-  template void fail_if_open(const WorldData<S>&, Island<S>&, S::Scalar);                  \
-  template void fail_if_moved_far(const WorldData<S>&, Island<S>&, double, double);        \
-  template bool correction_is_small(const WorldData<S>&, const Island<S>&, double);        \
-  template void project_velocities(WorldData<S>&, Island<S>&);                             \
-  template void project_velocities_at_start(WorldData<S>&, Island<S>&);                    \
-  template void project_start(WorldData<S>&, Island<S>&);                                  \
+#define CDOT_INSTANTIATE(S)                                                         \
+  template void clear_correction(WorldData<S>&, Island<S>&);                        \
+  template S::Scalar find_errors(WorldData<S>&, Island<S>&, S::Scalar);             \
+  template void fill_lambda(const Island<S>&, S::Scalar);                           \
+  template void scale_corrections(const Island<S>&, S::Scalar);                     \
+  template void add_corrections(WorldData<S>&, Island<S>&, S::Scalar);              \
+  template void restore_drift(WorldData<S>&, const Island<S>&, const Segment<S>&);  \
+  template void evaluate_anew(WorldData<S>&, Island<S>&, S::Scalar);                \
+  template void fail_if_moved_far(const WorldData<S>&, Island<S>&, double, double); \
+  template bool correction_is_small(const WorldData<S>&, const Island<S>&, double); \
+  template void project_velocities(WorldData<S>&, Island<S>&);                      \
+  template void project_velocities_at_start(WorldData<S>&, Island<S>&);             \
+  template void project_start(WorldData<S>&, Island<S>&);                           \
   template void project_step(WorldData<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

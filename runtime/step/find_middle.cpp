@@ -14,6 +14,7 @@
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/direct.hpp"
 #include "runtime/solve/loads.hpp"
+#include "runtime/solve/misfits.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/step/dampers.hpp"
@@ -271,7 +272,7 @@ bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   const T at_start = island.residual, still_small = nearly<T>(island.bodies.size());
   T before = std::numeric_limits<T>::infinity();
   T turn = 0;
-  bool renew = true, fitted = is_round_off(world, island, at_start);
+  bool renew = true, fitted = left_round_off(world, island);
   for (int round = 0; round < most_newton_rounds; ++round) {
     look_at_middle(world, island, h, round);
     if (renew) turn = turn_of_rows(island), stiffen_masses(world, island, h / 4);

@@ -17,6 +17,7 @@
 #include "runtime/motion/momentum.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/motion/vectors.hpp"
+#include "runtime/solve/misfits.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
@@ -324,8 +325,7 @@ template <class S>
 void step_midpoint(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   begin_kick_drift(world, island, h);
-  const T apart = std::max(foreign<T> * std::max<T>(island.size, island.scale), round_off_of(world, island));
-  if (std::isfinite(double(island.residual)) && island.residual > apart) return step_rattle(world, island, h);
+  if (left_misfits(world, island)) return step_rattle(world, island, h);
   const double start = world.time, before = world.last_step;
   // Whole numbers: a sum of parts may miss h by round-off, and one part too many would follow.
   int done = 0, parts = 1;

@@ -12,6 +12,7 @@
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/direct.hpp"
 #include "runtime/solve/longest_move.hpp"
+#include "runtime/solve/misfits.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"

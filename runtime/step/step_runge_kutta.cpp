@@ -8,7 +8,7 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/events/events.hpp"
-#include "runtime/events/latch.hpp"
+#include "runtime/solve/misfits.hpp"
 #include "runtime/solve/pieces.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
@@ -374,8 +374,8 @@ void step_runge_kutta(WorldData<S>& world, Island<S>& island, const RungeKuttaOf
   }
   if (world.last_step > 0) scale_forces(island, T(1 / world.last_step));
   clear_correction(world, island);
-  flow.projects_stages = false;  // of the last call
-  flow.locates = locates_events(island);
+  flow.projects_stages = false;         // of the last call
+  flow.locates = island.solver->exact;  // sweeps have not shared loads among redundant joints
   flow.fixed_step = world.settings.local_error > 0 ? T(0) : h;
   T end = flow.ahead;
   if (end > T(0) && end <= h) go_to_end(world, island, method, T(world.time) + end);

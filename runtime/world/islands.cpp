@@ -12,7 +12,7 @@
 #include "runtime/balance/balance.hpp"
 #include "runtime/events/latch.hpp"
 #include "runtime/solve/loads.hpp"
-#include "runtime/solve/projection.hpp"
+#include "runtime/solve/misfits.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/solve/sweep_order.hpp"
 #include "runtime/solve/tension.hpp"

@@ -4,10 +4,10 @@
 #include <thread>
 
 #include <cdot/balance.hpp>
-#include <cdot/diagnose.hpp>
 
 #include "runtime/tool/run/frame.hpp"
 #include "tests/torture/draw/scene_text.hpp"
+#include "tests/torture/ends.hpp"
 #include "tests/torture/excuses.hpp"
 #include "tests/torture/observer.hpp"
 #include "tests/torture/pushes.hpp"
@@ -43,6 +43,7 @@ class Trial {
  private:
   using T = typename S::Scalar;
   BasicWorld<S> started() const;
+  BasicWorld<S> before_step() const;
   void push(BasicWorld<S>& world, int k) const;
   StepResult step(BasicWorld<S>& world, int k) const;
   double length_of_step(int k) const { return asked_->varying ? share_of_step(k) * scene_->step : scene_->step; }
@@ -166,15 +167,16 @@ Gap Trial<S>::gap_now(BasicWorld<S>& world) const {
   return gap_of(world, *scene_, sizes, slack);
 }
 
-// How far coordinates have passed an end, as a share of the mechanism's length or of 1 rad. The World resolves events
-// by the arms of its effects as well.
 template <class S>
 double Trial<S>::passed_share(BasicWorld<S>& world) const {
-  const double by = world.worst_passed_end().by;
-  double size = std::max(1.0, sizes_.length);
-  if (by > held_tolerance<T> * size)
-    for (const Diagnosis::Island& island : diagnose(world, scene_->step).islands) size = std::max(size, island.size);
-  return by / size;
+  return torture::passed_share(world, sizes_.length, scene_->step, held_tolerance<T>);
+}
+
+template <class S>
+BasicWorld<S> Trial<S>::before_step() const {
+  BasicWorld<S> before = build_world_in<S>(*scene_);
+  for (std::size_t k = 0; k < places_.size(); ++k) before.set_pose(static_cast<int>(k), places_[k]);
+  return before;
 }
 
 template <class S>
@@ -189,8 +191,7 @@ const char* Trial<S>::excuse(BasicWorld<S>& world) const {
   const SystemMatrix now = system_matrix(world);
   if (independence(now, 8 * std::numeric_limits<T>::epsilon()) < nearly_lost * independence_)
     return "near a pose where the joints lose a row";
-  BasicWorld<S> before = build_world_in<S>(*scene_);
-  for (std::size_t k = 0; k < places_.size(); ++k) before.set_pose(static_cast<int>(k), places_[k]);
+  BasicWorld<S> before = before_step();
   if (turned(system_matrix(before), now, sizes_.length) > turns_round)
     return "a joint's directions turn round within a step";
   return nullptr;
@@ -206,6 +207,10 @@ std::optional<Verdict> Trial<S>::look_at_joints(BasicWorld<S>& world, const Gap&
   const double bound = may_pass ? just_passed<T> : held;
   if (share <= bound) return {};
   const char* why = excuse(world);
+  if (!why && !apart) {
+    BasicWorld<S> before = before_step();
+    if (passed_ends_turned(before, world, sizes_.length) > turns_round) why = "the direction of an end turns in a step";
+  }
   const std::string of(!apart          ? world.worst_passed_end().effect
                        : gap.joint < 0 ? ""
                                        : scene_->joints[static_cast<std::size_t>(gap.joint)].definition.type);

@@ -201,19 +201,6 @@ TEST(Torture, PolesMetByStepsBySweepsAreLimits) {
   EXPECT_EQ(verdict.what, "steps by sweeps: no step resolves the force of an effect");
 }
 
-// Springs do work on the round-off of poses. In floats that is more than these slow bodies have; in doubles it is not.
-TEST(Torture, SpringsAtTheRoundOffOfFloatsAreLimits) {
-  Asked asked;
-  asked.swept = 0x16658b400;
-  Wish wish{.steps = 30};
-  wish.integrator = Integrator::implicit;
-  Scene scene = generate(*asked.swept, wish).scene;
-  EXPECT_TRUE(scene.single);
-  EXPECT_EQ(judge(scene, asked).what, "steps by sweeps: no step resolves the force of an effect");
-  scene.single = false;
-  EXPECT_EQ(judge(scene, asked).outcome, Outcome::held);
-}
-
 TEST(Torture, FoundMisfitsStay) {
   each_scene_in(CDOT_FOUND "/misfit", [](const std::string& file, const Scene& scene) {
     for (const Integrator integrator :

@@ -159,6 +159,27 @@ TEST(MovingEnds, AStopPushesABlockAndLetsItGo) {
     }
 }
 
+// From 0.46 to 1.1 s the ends have crossed. They hold the block at the lower one, which moves up, while the other one
+// moves down.
+template <class S>
+void expect_held_at_lower_end(Integrator integrator) {
+  Track<S> track(integrator, 2);
+  const int rail = track.rail();
+  add_effect(track.world, rail, "slide",
+             SpecEffect{"limit", {in_time("lower", {sine(0, 0.2, 4)}), in_time("upper", {rise(-0.4, 2)})}});
+  track.run(0.3, 1. / 1000);
+  EXPECT_NEAR(track.world.coordinate(rail, "slide"), 0.2 * std::sin(1.2), 1e-11) << name_of(integrators, integrator);
+  EXPECT_NEAR(track.world.coordinate_rate(rail, "slide"), 0.8 * std::cos(1.2), 2e-3)
+      << name_of(integrators, integrator);
+}
+
+TEST(MovingEnds, EndsThatCrossMoveAsTheLowerOne) {
+  for (const IntegratorRow& row : integrator_rows) {
+    expect_held_at_lower_end<Planar<double>>(row.integrator);
+    expect_held_at_lower_end<Spatial<double>>(row.integrator);
+  }
+}
+
 // A racket that moves at v meets a block at rest without a bounce: the block leaves with v, which the racket puts in.
 TEST(MovingEnds, ARacketHitsABlock) {
   constexpr double m = 2, v = 3, way = 0.3, t = 0.5;

@@ -70,23 +70,25 @@ TEST(OwnCones, ABeltTakesABlockAlong) {
   }
 }
 
-// It does nothing before that.
+// It does nothing before that, be it the end of a step or a time within one.
 TEST(OwnCones, FrictionBeginsAtATime) {
   constexpr double mu = 0.25, g = 9.81;
-  const std::string late = own_effect("own_late_friction", std::string(plane) + ", after time >= 0.2 [s]");
-  for (const IntegratorRow& row : integrator_rows) {
-    const Vector<double> start = {1, -2, 0};
-    OneBody run(row.integrator, g, start, {});
-    run.world.add_joint({late,
-                         {run.body, run.world.ground()},
-                         {{"pb", {0, 0, 0}}, {"f", {0, 0, 1}}, {"mu", {mu}}, {"speed", {0}}},
-                         {}});
-    run.take(19);
-    EXPECT_LT(norm(run.velocity() - start), 1e-9) << row.name;
-    run.take(31);
-    const double lost = mu * g * 0.3 / norm(start), by_step = mu * g * 0.011;  // others begin within a step
-    EXPECT_LT(norm(run.velocity() - (1 - lost) * start), row.order > 2 ? 1e-7 : by_step) << row.name;
-  }
+  const std::string late =
+      own_effect("own_late_friction", "  scalar begin [s]\n" + std::string(plane) + ", after time >= begin");
+  for (const IntegratorRow& row : integrator_rows)
+    for (const double begin : {0.2, 0.2043}) {
+      const Vector<double> start = {1, -2, 0};
+      OneBody run(row.integrator, g, start, {});
+      run.world.add_joint({late,
+                           {run.body, run.world.ground()},
+                           {{"pb", {0, 0, 0}}, {"f", {0, 0, 1}}, {"mu", {mu}}, {"speed", {0}}, {"begin", {begin}}},
+                           {}});
+      run.take(19);
+      EXPECT_LT(norm(run.velocity() - start), 1e-9) << row.name;
+      run.take(31);
+      const double lost = mu * g * (0.5 - begin) / norm(start), by_step = mu * g * 0.011;  // others begin within a step
+      EXPECT_LT(norm(run.velocity() - (1 - lost) * start), row.order > 2 ? 1e-7 : by_step) << row.name;
+    }
 }
 
 // A torque of at most `most` in any direction: a ball of equal inertias keeps the axis of its spin.

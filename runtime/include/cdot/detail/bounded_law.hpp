@@ -29,9 +29,10 @@ T unilateral_bias(T C, T h, const Settings& settings) {
   return select(C > T(0), C, share * C) / h;
 }
 
+// True if a row serves the lower end. Ends that cross in time hold the coordinate at the lower one.
 template <class T>
 bool nearer_to_lower(T C, const RowBounds<T>& ends) {
-  return C - ends.lower < ends.upper - C;
+  return C - ends.lower < ends.upper - C || !(ends.upper > ends.lower);
 }
 
 template <class S, class Effect, class Row, ParametersAt where>
@@ -61,7 +62,7 @@ struct BoundedLaw {
   static Jet<T> motion_of_end(const Batch<S>& batch, int slot) {
     if (!is_driven(batch, slot)) return T(0);
     const RowBounds<Jet<T>> B = bounds_in_time(batch, slot);
-    return batch.C[slot] - B.lower.value < B.upper.value - batch.C[slot] ? B.lower : B.upper;
+    return nearer_to_lower<T>(batch.C[slot], {B.lower.value, B.upper.value}) ? B.lower : B.upper;
   }
 
   static constexpr bool may_wait = requires { &Row::template after<T>; };
@@ -144,7 +145,7 @@ struct BoundedLaw {
       const RowBounds<T> B = bounds(batch, i);
       const bool held = B.lower == B.upper, low = nearer_to_lower(batch.C[i], B);
       batch.lower[i] = low && !held ? T(0) : T(-unbounded);
-      batch.upper[i] = low || held ? T(unbounded) : T(0);
+      batch.upper[i] = low ? T(unbounded) : T(0);
       if (held) {
         const T share = settings.drift == Drift::baumgarte ? T(settings.baumgarte) / h : T(0);
         batch.bias[i] += share * (batch.C[i] - B.lower);
