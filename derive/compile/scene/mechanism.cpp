@@ -12,7 +12,7 @@
 #include "derive/compile/scene/bonds.hpp"
 #include "derive/compile/scene/effects.hpp"
 #include "runtime/own/own.hpp"
-#include "runtime/solve/projection.hpp"
+#include "runtime/solve/misfits.hpp"
 #include "runtime/state/world_data.hpp"
 #include "runtime/tool/scene/extent.hpp"
 #include "runtime/tool/scene/scene.hpp"
