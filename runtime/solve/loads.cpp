@@ -105,14 +105,27 @@ void begin_loads(WorldData<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void bound_by_loads(Island<S>& island) {
+void bound_by_loads(Island<S>& island, typename S::Scalar share) {
   for (LoadedRow<S>& row : island.loads) {
     const int i = row.place();
     row.batch->load[i] = row.load;
     const auto most = std::abs(row.corner);
-    row.batch->lower[i] = row.turns ? -most - row.before : row.lower + row.by_lower * row.load;
-    row.batch->upper[i] = row.turns ? most - row.before : row.upper + row.by_upper * row.load;
+    row.batch->lower[i] = row.turns ? -most - row.before : row.lower + share * row.by_lower * row.load;
+    row.batch->upper[i] = row.turns ? most - row.before : row.upper + share * row.by_upper * row.load;
   }
+}
+
+template <class S>
+bool run_away(Island<S>& island, bool first) {
+  using T = typename S::Scalar;
+  constexpr T same = T(by_precision<T>(1e-3, 1e-8));  // of the loads
+  T way = 0, along = 0, whole = 0;
+  for (LoadedRow<S>& row : island.loads) {
+    const T change = row.load - row.corner;
+    way += change * change, along += change * (row.found - row.corner_found), whole += row.load * row.load;
+    row.corner = row.load, row.corner_found = row.found;
+  }
+  return !first && way > same * same * whole && along > way;
 }
 
 template <class S>
@@ -228,7 +241,8 @@ bool move_on(Island<S>& island) {
 #define CDOT_INSTANTIATE(S)                                      \
   template void list_loads(const WorldData<S>&, Island<S>&);     \
   template void begin_loads(WorldData<S>&, Island<S>&);          \
-  template void bound_by_loads(Island<S>&);                      \
+  template void bound_by_loads(Island<S>&, S::Scalar);           \
+  template bool run_away(Island<S>&, bool);                      \
   template void unload(Island<S>&);                              \
   template void turn_corner(std::span<LoadedRow<S>>, S::Scalar); \
   template void begin_corners(Island<S>&);                       \

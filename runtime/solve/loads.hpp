@@ -26,9 +26,9 @@ void list_loads(const WorldData<S>& world, Island<S>& island);
 // the present poses.
 template <class S>
 void begin_loads(WorldData<S>& world, Island<S>& island);
-// Writes Batch::lower and upper for LoadedRow::load, and without a load.
+// Writes Batch::lower and upper for this share of LoadedRow::load, and without a load.
 template <class S>
-void bound_by_loads(Island<S>& island);
+void bound_by_loads(Island<S>& island, typename S::Scalar share = 1);
 template <class S>
 void unload(Island<S>& island);
 
@@ -120,13 +120,24 @@ bool move_on(Island<S>& island);
 template <class S>
 typename S::Scalar find_load_changes(Island<S>& island);
 
-// Repeats solve(), which reads the bounds, until the loads and the corners are those that it yields: Broyden's method
-// on both. Where a load would become negative, friction grows faster than the load that it needs: then the load grows
-// until the row no longer slips. So does a corner that would turn round. Cones of bodies with several contacts stick
-// and slip by turns, which misleads Broyden's method: after some rounds they take each solution as it is. False if that
-// does not end.
+// True if the loads found have changed by more than those from which they follow, since the last call in this search.
+// Rows that do not turn keep both in their corners.
+template <class S>
+bool run_away(Island<S>& island, bool first);
+
+enum class Settled : char {
+  no,
+  yes,
+  beyond  // loads from which a little more makes friction that adds more than that
+};
+
+// Repeats solve(), which reads the bounds, until the loads and the corners are those that it yields, where friction
+// takes this share of its loads: Broyden's method on both. Where a load would become negative, friction grows faster
+// than the load that it needs: then the load grows until the row no longer slips. So does a corner that would turn
+// round. Cones of bodies with several contacts stick and slip by turns, which misleads Broyden's method: after some
+// rounds they take each solution as it is.
 template <class S, class Solve, class Lambda, class Solution>
-bool settle_loads(Island<S>& island, Solve solve, Lambda lambda, Solution solution) {
+Settled settle_share(Island<S>& island, typename S::Scalar share, Solve solve, Lambda lambda, Solution solution) {
   using T = typename S::Scalar;
   constexpr int rounds = 80, careful_rounds = 20;
   constexpr T enough = T(by_precision<T>(1e-6, 1e-13)), by_round_off = T(by_precision<T>(1e-3, 1e-9));
@@ -136,16 +147,17 @@ bool settle_loads(Island<S>& island, Solve solve, Lambda lambda, Solution soluti
   };
   const auto restart = [&] { island.load_search.begin([](size_t) { return T(1); }); };
   restart();
-  start_loads(island, lambda);
   const bool turns = turns_cones(island);
+  bool beyond = false;
   for (int round = 0; round < (turns ? 3 : 1) * rounds; ++round) {
-    bound_by_loads(island);
+    bound_by_loads(island, share);
     solve();
     for (LoadedRow<S>& row : island.loads) row.found = carried(island, row, lambda);
     find_corners(island, solution);
+    if (!turns) beyond |= run_away(island, round == 0);
     if (!(find_load_changes(island) > tolerance(round))) {
       take_corners(island);
-      return true;
+      return beyond ? Settled::beyond : Settled::yes;
     }
     const bool plain = turns && round >= 2 * careful_rounds;
     if (plain && round >= rounds)
@@ -153,7 +165,23 @@ bool settle_loads(Island<S>& island, Solve solve, Lambda lambda, Solution soluti
     const bool found = plain || island.load_search.next(island.load_changes.data());
     if (!move_on(island) || !found) restart();
   }
-  return false;
+  return Settled::no;
+}
+
+// The same for whole loads; false if that does not end. Where friction changes its own load by more than it is, more
+// than one load is possible. The right one is the least, to which the load tends as friction grows from none: no
+// bearing that gives way by a hair would keep the next one, beyond which loads run away.
+template <class S, class Solve, class Lambda, class Solution>
+bool settle_loads(Island<S>& island, Solve solve, Lambda lambda, Solution solution) {
+  using T = typename S::Scalar;
+  constexpr int parts = 16;
+  start_loads(island, lambda);
+  const auto settle = [&](T share) { return settle_share(island, share, solve, lambda, solution); };
+  const Settled settled = settle(T(1));
+  if (settled != Settled::beyond) return settled == Settled::yes;
+  for (LoadedRow<S>& row : island.loads) row.load = 0;
+  for (int part = 1; part < parts && settle(T(part) / T(parts)) == Settled::yes;) ++part;
+  return settle(T(1)) != Settled::no;
 }
 
 }  // namespace cdot

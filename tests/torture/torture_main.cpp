@@ -26,7 +26,7 @@ struct Options {
   double seconds = 0;
   std::optional<std::uint64_t> swept;
   Wish wish;
-  std::string method, keep, scene;
+  std::string method, keep, save, scene;
   int dimension = 0;
   bool no_bits = false, no_shrink = false, print = false, varying = false, changes = false, forces = false,
        misfit = false, advice = false, hurry = false;
@@ -65,9 +65,11 @@ Verdict judged(const Options& options, const Scene& scene, const Asked& asked) {
   return options.misfit ? judge_misfit(scene) : judge(scene, asked);
 }
 
-void keep(const Options& options, const std::string& name, const std::string& text) {
-  std::filesystem::create_directories(options.keep);
-  std::ofstream(options.keep + "/" + name) << text;
+// The scene and its tables, as files of a folder.
+void write(const std::string& folder, const std::string& name, const Scene& scene) {
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder + "/" + name) << text_of(scene);
+  for (const auto& [table, rows] : tables_of(scene)) std::ofstream(folder + "/" + table) << rows;
 }
 
 // Prints the broken invariant, the shrunk scene and the command that repeats it.
@@ -92,15 +94,25 @@ void report(const Options& options, std::uint64_t seed, const Scene& scene, cons
       "{}\n\n{}\n",
       seed, options.wish.steps, name, how, name, text);
   for (const auto& [table, rows] : tables_of(small.scene)) fmt::print("{}\n{}\n", table, rows);
-  if (options.keep.empty()) return;
-  keep(options, name, text);
-  for (const auto& [table, rows] : tables_of(small.scene)) keep(options, table, rows);
+  if (!options.keep.empty()) write(options.keep, name, small.scene);
 }
 
 void say(const Verdict& verdict) {
   const char* words[] = {"held", "refused", "limited", "BROKEN"};
   const std::string why = verdict.what.empty() ? "" : ": " + told(verdict);
   fmt::print("{}{}\n", words[static_cast<int>(verdict.outcome)], why);
+}
+
+Mechanism drawn(const Options& options, std::uint64_t seed) {
+  return options.misfit ? nearly_misfitting(seed, options.wish) : generate(seed, options.wish);
+}
+
+int save(const Options& options) {
+  for (int k = 0; k < options.count; ++k) {
+    const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(k);
+    write(options.save, fmt::format("{:016x}.toml", seed), drawn(options, seed).scene);
+  }
+  return 0;
 }
 
 int judge_file(const Options& options) {
@@ -116,7 +128,7 @@ int torture(const Options& options) {
   Tally tally;
   for (int k = 0; options.seconds > 0 ? passed() < options.seconds : k < options.count; ++k) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(k);
-    const Mechanism mechanism = options.misfit ? nearly_misfitting(seed, options.wish) : generate(seed, options.wish);
+    const Mechanism mechanism = drawn(options, seed);
     if (options.print) fmt::print("{}\n", text_of(mechanism.scene));
     const std::clock_t began = std::clock();
     Asked asked = options.asked();
@@ -161,6 +173,7 @@ int main(int count, char** arguments) {
   app.add_option("--method", options.method,
                  "solver, integrator, drift correction, precision: any of them, as in \"direct float\"");
   app.add_option("--keep", options.keep, "a folder for the scenes in which something breaks");
+  app.add_option("--save", options.save, "write all scenes to this folder; judge nothing");
   app.add_option("--scene", options.scene, "judge this scene and no other");
   app.add_option("--sweeps", options.swept,
                  "judge steps by sweeps alone, drawn by this seed; each run has one beside the rest");
@@ -186,6 +199,7 @@ int main(int count, char** arguments) {
       if (!planar && !spatial) throw cdot::Error("--joint: no joint is called " + options.wish.joint);
       if (planar != spatial) options.wish.dimension = planar ? cdot::Dimension::planar : cdot::Dimension::spatial;
     }
+    if (!options.save.empty()) return save(options);
     return options.scene.empty() ? torture(options) : judge_file(options);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());

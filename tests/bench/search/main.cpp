@@ -9,6 +9,7 @@ namespace cdot::search_bench {
 void study_claims(const std::vector<Scene>& scenes);    // claims.cpp
 void study_price(const std::vector<Scene>& scenes);     // price.cpp
 void study_estimate(const std::vector<Scene>& scenes);  // estimate.cpp
+void study_survey(const std::vector<Scene>& scenes);    // survey.cpp
 }  // namespace cdot::search_bench
 
 int main(int count, char** arguments) {
@@ -18,11 +19,11 @@ int main(int count, char** arguments) {
   std::string study, only;
   std::vector<std::string> folders;
   const std::map<std::string, void (*)(const std::vector<Scene>&)> studies = {
-      {"claims", study_claims}, {"price", study_price}, {"estimate", study_estimate}};
+      {"claims", study_claims}, {"price", study_price}, {"estimate", study_estimate}, {"survey", study_survey}};
   app.add_option(
          "study", study,
          "claims: claimed against true errors; price: against the cheapest named method; estimate: of runs with "
-         "fixed steps, against true errors")
+         "fixed steps, against true errors; survey: claimed against the distance from unlike methods")
       ->required()
       ->check(CLI::IsMember(studies));
   app.add_option("folders", folders, "with scenes")->required()->check(CLI::ExistingDirectory);

@@ -17,6 +17,15 @@ bool jams_at_start(const Run& run, double interval) {
   return run.result.counts.rescued > 0 && run.result.first_rescue < 1.5 * interval;
 }
 
+Run run_with(RunOptions options, const Scene& scene, const std::vector<double>& times, std::string& warnings) {
+  Run run;
+  options.row_times = times;
+  options.row = [&](const Frame& frame) { run.rows.push_back(frame); };
+  run.result = simulate(scene, options, warnings);
+  run.whole = !run.result.stopped && failure(scene, run.result).empty() && run.rows.size() == times.size();
+  return run;
+}
+
 Scene named(const Scene& scene, Integrator integrator, double local_error, double step) {
   Choice choice;
   choice.integrator = integrator, choice.local_error = local_error, choice.step = step;
@@ -50,16 +59,17 @@ std::string short_name(const Scene& scene) {
 }
 
 Run run_of(const Scene& scene, const std::vector<double>& times, double most) {
-  Run run;
   RunOptions options;
-  options.row_times = times;
-  options.row = [&](const Frame& frame) { run.rows.push_back(frame); };
   const double began = cpu_now();
   if (!chooses_method(scene)) options.look = [&](const Frame&, const RunResult&) { return cpu_now() - began < most; };
   std::string warnings;
-  run.result = simulate(scene, options, warnings);
-  run.whole = !run.result.stopped && failure(scene, run.result).empty() && run.rows.size() == times.size();
-  return run;
+  return run_with(options, scene, times, warnings);
+}
+
+Run search_of(const Scene& scene, const std::vector<double>& times, double most_evaluations, std::string& warnings) {
+  RunOptions options;
+  options.most_evaluations = most_evaluations;
+  return run_with(options, scene, times, warnings);
 }
 
 Run run_of(const Scene& scene, Integrator integrator, double local_error, double step, const std::vector<double>& times,

@@ -24,6 +24,8 @@ struct Run {
 
 // Ends early after `most` seconds of CPU time.
 Run run_of(const Scene& scene, const std::vector<double>& times, double most);
+// By a search that takes at most so many evaluations; `warnings` as those of simulate().
+Run search_of(const Scene& scene, const std::vector<double>& times, double most_evaluations, std::string& warnings);
 // By a named method.
 Run run_of(const Scene& scene, Integrator integrator, double local_error, double step, const std::vector<double>& times,
            double most);

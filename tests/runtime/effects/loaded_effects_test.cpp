@@ -153,6 +153,44 @@ TEST(LoadedEffects, ARodOnARoughPinSwingsAsIntegratedByHand) {
   }
 }
 
+// With friction large beside the rod's inertia, b = m l mu radius / (I + m l^2) > 1, two loads of the pin solve
+//   N^2 = radial^2 + (across - b N)^2,
+// where it swings against its weight. The smaller one is that of friction that has grown from none.
+TEST(LoadedEffects, ARodOnAVeryRoughPinHasTheSmallerOfTwoLoads) {
+  constexpr double torque = 3, m = 2, l = 0.5, I = 0.1, about_pin = I + m * l * l, b = m * l * torque / about_pin;
+  static_assert(b > 1);
+  constexpr double start = 1.56, w0 = 0.3, duration = 0.01;
+  Swing s{start, w0};
+  constexpr int steps = 40000;
+  for (int n = 0; n < steps; ++n) {
+    const double radial = m * (l * s.rate * s.rate + weight * std::cos(s.angle)),
+                 across = m * weight * std::sin(s.angle) * I / about_pin;
+    const double N =
+        (across * across + radial * radial) / (across * b + std::sqrt(across * across - (b * b - 1) * radial * radial));
+    s.rate -= duration / steps * (m * weight * l * std::sin(s.angle) + torque * N) / about_pin;
+    s.angle += duration / steps * s.rate;
+  }
+  ASSERT_GT(s.rate, 0.1);
+  for (const IntegratorRow& row : integrator_rows) {
+    // The midpoint rule adds friction for each correction of its last projection, which then jams.
+    if (row.integrator == Integrator::implicit) continue;
+    World<double> world(with(row.integrator, -weight));
+    const double x = std::sin(start), y = -std::cos(start);
+    const int rod = world.add_body({.x = l * x,
+                                    .y = l * y,
+                                    .angle = start,
+                                    .vx = -l * y * w0,
+                                    .vy = l * x * w0,
+                                    .w = w0,
+                                    .mass = m,
+                                    .inertia = I});
+    const int pin = world.add_joint({"revolute", {world.ground(), rod}, {{"pa", {0, 0}}, {"pb", {0, l}}}, {}});
+    add_effect(world, pin, "angle", SpecEffect{"pin_friction", {{"mu", {torque}}, {"radius", {1}}}});
+    advance(world, duration, 1e-4);
+    EXPECT_NEAR(world.velocity(rod).w, s.rate, row.order > 2 ? 1e-7 : 1e-5) << row.name;
+  }
+}
+
 TEST(LoadedEffects, TheirBalanceCloses) {
   for (const IntegratorRow& row : integrator_rows) {
     World<double> world(with(row.integrator, -weight));
