@@ -34,7 +34,8 @@ std::set<std::string> taken_names() {
       "solve_shifted differentiate slopes_of largest_change find_increments collocate end re im shift by_pose "
       "cone_of in_cone size_in_cone most_in_cone may_go instead begin_corners find_corners aim_cones share turns "
       "turned drift_of_ends moves of_ends "
-      "by_velocity body_of begins ends widest begin_of end_of set_difference take_difference");
+      "by_velocity body_of begins ends widest begin_of end_of set_difference take_difference side_at_start off "
+      "side_at_end");
   std::set<std::string> names;
   for (std::string word; words >> word;) names.insert(word);
   return names;

@@ -15,6 +15,8 @@
 #include <cdot/planar/damper.hpp>
 #include <cdot/planar/dc_motor.hpp>
 #include <cdot/planar/detent.hpp>
+#include <cdot/planar/disc_in_ring.hpp>
+#include <cdot/planar/disc_on_disc.hpp>
 #include <cdot/planar/disc_on_line.hpp>
 #include <cdot/planar/distance.hpp>
 #include <cdot/planar/drag.hpp>
@@ -36,6 +38,7 @@
 #include <cdot/planar/linear_actuator.hpp>
 #include <cdot/planar/magnetic_field.hpp>
 #include <cdot/planar/max_distance.hpp>
+#include <cdot/planar/membrane.hpp>
 #include <cdot/planar/motor.hpp>
 #include <cdot/planar/position_drive.hpp>
 #include <cdot/planar/press_fit.hpp>
@@ -105,6 +108,8 @@ using Effects = std::tuple<
     damper,
     dc_motor,
     detent,
+    disc_in_ring,
+    disc_on_disc,
     disc_on_line,
     drag,
     duffing_spring,
@@ -117,6 +122,7 @@ using Effects = std::tuple<
     lift,
     linear_actuator,
     magnetic_field,
+    membrane,
     position_drive,
     press_fit,
     push,

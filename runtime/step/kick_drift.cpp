@@ -135,6 +135,11 @@ void drift_and(WorldData<S>& world, Island<S>& island, typename S::Scalar h, F f
 }  // namespace
 
 template <class S>
+bool repeats_impulses(const Island<S>& island) {
+  return has_rows(island, has_velocity_rows<S>) || has_rows(island, acts_by_force<S>);
+}
+
+template <class S>
 typename S::Scalar begin_kick_drift(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   const T share = world.last_step > 0 ? h / T(world.last_step) : T(0);
@@ -146,7 +151,7 @@ typename S::Scalar begin_kick_drift(WorldData<S>& world, Island<S>& island, type
   project_velocities_at_start(world, island);
   fill_lambda(island, T(0));
   island.evaluated = true;
-  if (has_rows(island, has_velocity_rows<S>) || has_rows(island, acts_by_force<S>)) exert_at_start(world, island, h);
+  if (repeats_impulses(island)) exert_at_start(world, island, h);
   return T(1);
 }
 
@@ -172,23 +177,24 @@ void drift_with_rates(WorldData<S>& world, Island<S>& island, typename S::Scalar
 }
 
 template <class S>
-void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h, bool struck) {
   factorize_rows(world, island);
   bound_rows(world, island, h);
   island.factored = false;
   // Loads are those of the whole step. The other half of what they bound acts at the start of the next one.
-  island.corrections_in_loads = 1, island.loads_in_kick = typename S::Scalar(0.5);
+  island.corrections_in_loads = 1, island.loads_in_kick = typename S::Scalar(struck ? 1 : 0.5);
   island.solver->velocities(world, island, world.bodies.velocity.data(), typename S::Scalar(1));
   island.corrections_in_loads = 0, island.loads_in_kick = 1;
   forget_dampers(world, island);
 }
 
 #define CDOT_INSTANTIATE(S)                                                  \
+  template bool repeats_impulses(const Island<S>&);                          \
   template S::Scalar begin_kick_drift(WorldData<S>&, Island<S>&, S::Scalar); \
   template void note_start(const WorldData<S>&, Island<S>&);                 \
   template void drift(WorldData<S>&, Island<S>&, S::Scalar);                 \
   template void drift_with_rates(WorldData<S>&, Island<S>&, S::Scalar);      \
-  template void solve_end(WorldData<S>&, Island<S>&, S::Scalar);
+  template void solve_end(WorldData<S>&, Island<S>&, S::Scalar, bool);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -16,6 +16,11 @@ void each_row(const Island<S>& island, F f) {
     each_row(*segment.batch, segment.begin, segment.end, [&](int i) { f(*segment.batch, i); });
 }
 
+// True if it has velocity rows, motors or friction, whose impulses of the end act once more at the start of the next
+// step.
+template <class S>
+bool repeats_impulses(const Island<S>& island);
+
 // Prepares the start of a step of h. A state that is not the end of a step is projected, and its exact rows are
 // factored. Returns the factor that scales the present impulses to this step: h / last step, for sweeps at most 1.
 template <class S>
@@ -35,8 +40,9 @@ void drift_with_rates(WorldData<S>& world, Island<S>& island, typename S::Scalar
 
 // The velocities at the end of a step of h, after an evaluation of C and J: J v = -dC/dt. Motors, limits and friction
 // act with half of their impulse; the other half acts at the start of the next step. Springs have acted as forces.
+// Where an end was struck, friction takes its whole share of the impact here.
 template <class S>
-void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
+void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h, bool struck);
 
 // True if the row repeats its impulse at the start of the next step. A clutch that drives one way does not: it could
 // not take back what was too much.

@@ -280,6 +280,37 @@ bool any_force(const Island<S>& island, F f) {
                      [&](const Segment<S>& s) { return is_force(*s.batch) && f(*s.batch); });
 }
 
+// f(batch, i, guard) for the ends of rows.
+template <class S, class F>
+void each_end(const Island<S>& island, F f) {
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    if (!batch.law || !batch.law->error || !batch.law->guard) continue;
+    each_row(batch, segment.begin, segment.end, [&](int i) {
+      const auto guard = guard_of(batch, i);
+      if (guard.one_sided()) f(batch, i, guard);
+    });
+  }
+}
+
+// Into Batch::rate of ends: their gaps at the start.
+template <class S>
+void note_gaps(const Island<S>& island) {
+  each_end(island, [](Batch<S>& batch, int i, const auto& guard) { batch.rate[i] = guard.gap(); });
+}
+
+// True if a body meets an end: its gap was open at the start, and the drift closed half of it or more. The rest follows
+// in the next step, but the end already slows the body.
+template <class S>
+bool is_struck(const Island<S>& island) {
+  using T = typename S::Scalar;
+  bool struck = false;
+  each_end(island, [&](const Batch<S>& batch, int i, const auto& guard) {
+    struck |= batch.rate[i] > foreign<T> * island.scale && T(2) * guard.gap() <= batch.rate[i];
+  });
+  return struck;
+}
+
 // Books the first half: at the poses of its start, to which J belongs, where the books evaluate anything. Dampers act
 // before the other impulses, but joints work against them: only along the mean of the whole half kick do joints do no
 // work.
@@ -305,6 +336,8 @@ template <class S>
 void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   const T share = begin_kick_drift(world, island, h), at_start = island.residual;
+  const bool repeats = repeats_impulses(island);
+  if (repeats) note_gaps(island);
   weigh_springs(world, island);
   begin_kick(world, island);
   push_dampers(world, island, h);
@@ -321,6 +354,7 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     }
     drift_with_renewed_directions(world, island, h, at_start, share);
   }
+  const bool struck = repeats && is_struck(island);
   book_start(world, island, h / 2);
   note_impulses_of_forces(island, h / 2, true);
   restore_turns(island);
@@ -331,9 +365,9 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   begin_kick(world, island);
   kick(world, island, h / 2);
   note_impulses_of_forces(island, h / 2, false);
-  solve_end(world, island, h);
+  solve_end(world, island, h, struck);
   book_kick(world, island, Impulses::rattle_end, h / 2);  // the mirror image of the start
-  island.evaluated = true;
+  island.evaluated = !struck;                             // the next step does not repeat friction's share of an impact
 }
 
 template <class S>

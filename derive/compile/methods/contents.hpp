@@ -40,6 +40,7 @@ struct Contents {
   std::size_t collocated = 0;  // by Radau IIA: components of velocities
   bool strides() const { return modes || snaps; }                        // steps end strides at events
   bool projects() const { return (rows || modes) && !open; }             // velocities
+  bool strikes() const { return exerts && ends; }                        // impacts end what the next step repeats
   bool repeats() const { return weighs && exerts && bounded; }           // forces of rows that prescribe a rate
   bool corrects_loads() const { return loads && (weighs || midpoint); }  // by impulses beside those found
   bool carries_over() const { return loads && weighs && !rattle; }       // impulses of the last corrections

@@ -23,6 +23,24 @@ constexpr const char* dampens = R"(    dampen($ss.q, s.time, s.v, h, before);
     for (int i = 0; i < bodies; ++i) s.v[i] = before[i];
 )";
 
+// Gaps of ends at the start, and whether a body met one of its mechanism until the drift ended: there friction takes
+// its share of the impact at once, and the next step does not repeat it.
+constexpr const char* notes_gaps = R"(    T gap[bounded], side_at_start[bounded];
+    nearest($ss.q, s.time, gap, side_at_start);
+    for (int i = 0; i < bounded; ++i) gap[i] = side_at_start[i] * gap[i];
+)";
+constexpr const char* strikes = R"(    Mask struck[groups];
+    for (Mask& of_group : struck) of_group = T(1) < T(0);
+    T off[bounded], side_at_end[bounded];
+    nearest($ss.q, s.time, off, side_at_end);
+    for (int i = 0; i < bounded; ++i) {{
+      const auto meets = gap[i] > T((single ? 1e9 : 1e5) * {}) && T(2) * side_at_end[i] * off[i] <= gap[i];
+      struck[group_of_bound[i]] = struck[group_of_bound[i]] || meets;
+    }}
+)";
+constexpr const char* begins_where_struck =
+    "    for (int i = 0; i < groups; ++i) s.begins[i] = select(struck[i], T(1), s.begins[i]);\n";
+
 constexpr const char* notes_velocities = "    for (int i = 0; i < bodies; ++i) before[i] = s.v[i];\n";
 
 constexpr const char* first_kick = R"(    fall($ss.q, s.time, s.v, a);
@@ -348,12 +366,14 @@ std::string start_of(const Contents& has) {
 std::string rattle(double tolerance, const Contents& has) {
   std::string text = fmt::format(begins, has.exerts ? "    start(s, h);\n" : "");
   text += bears_at_start(has);
+  if (has.strikes()) text += notes_gaps;
   text += has.dampens ? dampens : notes_velocities;
   if (has.carries) text += notes_start;
   if (has.foresees) text += guesses;
   text += weighs_first_half(has);
   text += fmt::format(first_kick, has.foresees ? "(a[i] + pull[i])" : has.pulls() ? "(a[i] + s.pull[i])" : "a[i]");
   text += has.closes() ? closing(tolerance, has) : drifts(has, "s") + "    s.time = s.time + h;\n";
+  if (has.strikes()) text += fmt::format(strikes, tolerance);
   if (has.gyroscopes) text += follows;
   text += "$C";
   if (has.rows) text += evaluates;
@@ -363,6 +383,7 @@ std::string rattle(double tolerance, const Contents& has) {
   text += bears_at_end(has, "end");
   text += shares(has, "s.lambda");
   text += rattle_weighs(has);
+  if (has.strikes()) text += begins_where_struck;
   if (has.events) text += "    latch(s);\n";
   return text + fmt::format("    return {};\n  }}\n", has.closes() ? "s.residual" : "T(0)");
 }

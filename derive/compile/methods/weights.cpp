@@ -88,7 +88,8 @@ constexpr const char* settles_euler_joints = R"(    T drawn[rows];
 constexpr const char* settles_rattle = R"(    T of_first[bounded], load[bounded];
     for (int i = 0; i < bounded; ++i) {{
       of_first[i] = {0}half * s.repeats[i], load[i] = h * magnitude(s.force[i]);
-      B.by_low[i] = T(0.5) * B.by_low[i], B.by_high[i] = T(0.5) * B.by_high[i];
+      const T in_kick = {5};
+      B.by_low[i] = in_kick * B.by_low[i], B.by_high[i] = in_kick * B.by_high[i];
     }}
 {1}{3}    settle_loads($ss.q, s.time, {2}of_first, {4}B, mu, load, [&](T (&now)[bounded]) {{ settle(B, s.hold, now); }});
 )";
@@ -177,7 +178,8 @@ std::string rattle_weighs(const Contents& has) {
 
 std::string settles_end_with_loads(const Contents& has) {
   return fmt::format(settles_rattle, has.ends ? "total[i] + " : "", has.rows ? settles_rattle_joints : "",
-                     has.rows ? "s.J, s.lambda, drawn, " : "", turns_alone(has), corners(has));
+                     has.rows ? "s.J, s.lambda, drawn, " : "", turns_alone(has), corners(has),
+                     has.strikes() ? "select(struck[group_of_bound[i]], T(1), T(0.5))" : "T(0.5)");
 }
 
 std::string settles_start_with_loads(const Contents& has) {

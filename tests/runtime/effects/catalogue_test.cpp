@@ -39,14 +39,15 @@ std::vector<NamedValue> numbers_of(const Scene& scene, const JointType& type) {
   return numbers;
 }
 
-// Two bodies, or one, that move freely.
+// As many bodies as the effect has, up to three, that move freely.
 template <class S>
 struct BetweenBodies {
   static void build(BasicWorld<S>& world, const Scene& scene) {
     const JointType& type = *find_joint_type(S::dimension, scene.name);
     std::vector<int> bodies = {add_body(world, scene.a, 2, 0.5)};
-    if (type.bodies == 2)
+    if (type.bodies >= 2)
       bodies.push_back(scene.grounded ? world.ground() : add_body(world, {0, 0, -0.2, 0.1, -0.5}, 3, 0.8));
+    if (type.bodies >= 3) bodies.push_back(add_body(world, {0.2, -0.8, 0.1, 0.3, 0.7}, 1.5, 0.4));
     world.add_joint({scene.name, bodies, numbers_of(scene, type), {}});
   }
 };

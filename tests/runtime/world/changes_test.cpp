@@ -231,8 +231,8 @@ std::vector<int> add_bodies(BasicWorld<S>& world, const JointType& type) {
   for (int i = 0; i < type.bodies; ++i) {
     if constexpr (S::dimension == Dimension::planar)
       bodies.push_back(
-          world.add_body({.x = 0.8 * i, .y = 0.3 * i, .angle = 0.1 * i, .mass = 1, .inertia = 0.1 + 0.1 * i}));
-    else bodies.push_back(world.add_body(brick(0.8 * i, 0.3 * i, -0.2 * i, 1 + 0.5 * i)));
+          world.add_body({.x = 0.8 * i, .y = 0.3 * i * i, .angle = 0.1 * i, .mass = 1, .inertia = 0.1 + 0.1 * i}));
+    else bodies.push_back(world.add_body(brick(0.8 * i, 0.3 * i * i, -0.2 * i, 1 + 0.5 * i)));
   }
   return bodies;
 }
