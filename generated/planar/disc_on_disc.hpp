@@ -45,7 +45,7 @@ struct disc_on_disc {
       {"pa", ParameterKind::point, 0, "m", 0, 2, true},
       {"pb", ParameterKind::point, 1, "m", 2, 2, true},
       {"radius_a", ParameterKind::scalar, -1, "m", 4, 1, false, 0, unbounded, true, false},
-      {"radius_b", ParameterKind::scalar, -1, "m", 5, 1, true, 0, unbounded, true, false},
+      {"radius_b", ParameterKind::scalar, -1, "m", 5, 1, false, 0, unbounded, true, false},
       {"mu", ParameterKind::scalar, -1, "1", 6, 1, true, 0, unbounded, true, false},
   }};
 
@@ -56,7 +56,7 @@ struct disc_on_disc {
 
   // The default of parameter `index`, from the initial pose and the parameters before it.
   template <class T>
-  static void default_value(int index, const Pose<T> (&q)[2], Parameters<T>& p, T) {
+  static void default_value(int index, const Pose<T> (&)[2], Parameters<T>& p, T) {
     switch (index) {
       case 0: {  // pa = x_a
         p.pa_x = T(0);
@@ -66,20 +66,6 @@ struct disc_on_disc {
       case 1: {  // pb = x_b
         p.pb_x = T(0);
         p.pb_y = T(0);
-        break;
-      }
-      case 3: {  // radius_b = norm(u) - radius_a
-        using std::sqrt;
-        const Pose<T>& a = q[0];
-        const Pose<T>& b = q[1];
-        const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-        const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-        const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-        const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-        const T u_x = a.x - b.x + ra_x - rb_x;
-        const T u_y = a.y - b.y + ra_y - rb_y;
-        const T u_len = sqrt(u_x * u_x + u_y * u_y);
-        p.radius_b = u_len - p.radius_a;
         break;
       }
       case 4: {  // mu = 0

@@ -62,7 +62,7 @@ struct ball_on_ball {
       {"pb", ParameterKind::point, 1, "m", 3, 3, true},
       {"f", ParameterKind::frame, -1, "1", 6, 9, false},
       {"radius_a", ParameterKind::scalar, -1, "m", 15, 1, false, 0, unbounded, true, false},
-      {"radius_b", ParameterKind::scalar, -1, "m", 16, 1, true, 0, unbounded, true, false},
+      {"radius_b", ParameterKind::scalar, -1, "m", 16, 1, false, 0, unbounded, true, false},
       {"mu", ParameterKind::scalar, -1, "1", 17, 1, true, 0, unbounded, true, false},
   }};
 
@@ -73,7 +73,7 @@ struct ball_on_ball {
 
   // The default of parameter `index`, from the initial pose and the parameters before it.
   template <class T>
-  static void default_value(int index, const Pose<T> (&q)[2], Parameters<T>& p, T) {
+  static void default_value(int index, const Pose<T> (&)[2], Parameters<T>& p, T) {
     switch (index) {
       case 0: {  // pa = x_a
         p.pa_x = T(0);
@@ -85,23 +85,6 @@ struct ball_on_ball {
         p.pb_x = T(0);
         p.pb_y = T(0);
         p.pb_z = T(0);
-        break;
-      }
-      case 4: {  // radius_b = norm(u) - radius_a
-        using std::sqrt;
-        const Pose<T>& a = q[0];
-        const Pose<T>& b = q[1];
-        const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-        const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-        const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
-        const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-        const T u_x = a.x - b.x + ra_x - rb_x;
-        const T u_y = a.y - b.y + ra_y - rb_y;
-        const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-        const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-        const T u_z = a.z - b.z + ra_z - rb_z;
-        const T u_len = sqrt(u_x * u_x + u_y * u_y + u_z * u_z);
-        p.radius_b = u_len - p.radius_a;
         break;
       }
       case 5: {  // mu = 0

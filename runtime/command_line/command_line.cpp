@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <utility>
 
 #include "runtime/command_line/completion.hpp"
 #include "runtime/text/spelling.hpp"
@@ -125,6 +126,20 @@ std::string unknown_command(const CLI::App& app, int argc, const char* const* ar
   return fmt::format("no command is called `{}`{}", word, near.empty() ? ": " + all : near);
 }
 
+// Options by which other programs call those of a command.
+constexpr std::pair<std::string_view, std::string_view> options_elsewhere[] = {
+    {"--method", "--integrator"},  {"--scheme", "--integrator"}, {"--dt", "--step"},
+    {"--timestep", "--step"},      {"--duration", "--until"},    {"--time", "--until"},
+    {"--tolerance", "--accuracy"},
+};
+
+std::string option_meant(const std::string& name, std::span<const std::string> known) {
+  for (const auto& [elsewhere, here] : options_elsewhere)
+    if (name == elsewhere && std::ranges::find(known, here) != known.end())
+      return fmt::format("; did you mean `{}`?", here);
+  return text::did_you_mean(name, known);
+}
+
 // The first option that the command does not have; else empty.
 std::string unknown_option(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands()) {
@@ -134,7 +149,7 @@ std::string unknown_option(const CLI::App& app) {
     for (const std::string& word : app.remaining(true)) {
       if (word.size() < 2 || word[0] != '-') continue;
       const std::string name = word.substr(0, word.find('='));
-      return fmt::format("{} has no option `{}`{}", command->get_name(), name, text::did_you_mean(name, known));
+      return fmt::format("{} has no option `{}`{}", command->get_name(), name, option_meant(name, known));
     }
   }
   return {};

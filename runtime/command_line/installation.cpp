@@ -1,5 +1,8 @@
 #include "runtime/command_line/installation.hpp"
 
+#include <fstream>
+#include <string>
+
 namespace cdot::command_line {
 
 namespace fs = std::filesystem;
@@ -11,6 +14,17 @@ fs::path& share() {
   return folder;
 }
 
+// The checkout of which the program's folder is a build, by the CMake cache above it; empty if it is none.
+fs::path checkout() {
+  constexpr std::string_view entry = "cdot_SOURCE_DIR:STATIC=";
+  for (fs::path folder = own_folder(); folder.has_relative_path(); folder = folder.parent_path()) {
+    std::ifstream cache(folder / "CMakeCache.txt");
+    for (std::string line; std::getline(cache, line);)
+      if (line.starts_with(entry)) return line.substr(entry.size());
+  }
+  return {};
+}
+
 }  // namespace
 
 fs::path own_folder() {
@@ -20,8 +34,11 @@ fs::path own_folder() {
 
 fs::path installed(const fs::path& part) {
   std::error_code none;
-  const fs::path path = share() / part;
-  return fs::exists(path, none) ? path : fs::path();
+  if (const fs::path path = share() / part; fs::exists(path, none)) return path;
+  if (part.empty()) return {};
+  static const fs::path sources = checkout();
+  const fs::path path = sources / part;
+  return !sources.empty() && fs::exists(path, none) ? path : fs::path();
 }
 
 void install_in(const fs::path& folder) { share() = folder; }

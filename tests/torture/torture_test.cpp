@@ -194,9 +194,7 @@ TEST(Torture, StartsWithGapsAreNotJudgedBySweeps) {
 TEST(Torture, PolesMetByStepsBySweepsAreLimits) {
   Asked asked;
   asked.swept = 0x12aeb55ba;
-  Wish wish{.effects = true, .steps = 30};
-  wish.integrator = Integrator::rattle;
-  const Verdict verdict = judge(generate(*asked.swept, wish).scene, asked);
+  const Verdict verdict = judge(read_scene(CDOT_FOUND "/limited/pole_met_by_sweeps.toml"), asked);
   EXPECT_EQ(verdict.outcome, Outcome::limited) << verdict.detail << verdict.value;
   EXPECT_EQ(verdict.what, "steps by sweeps: no step resolves the force of an effect");
 }
@@ -220,7 +218,7 @@ TEST(Torture, FoundMisfitsStay) {
 TEST(Torture, ForcesHideNoRowsThatFloatsLose) {
   Asked asked;
   asked.bits = false;
-  const Scene scene = generate(0x12a33ebf2, {.effects = true, .steps = 30}).scene;
+  const Scene scene = read_scene(CDOT_FOUND "/limited/rows_hidden_by_forces.toml");
   EXPECT_EQ(judge(scene, asked).what, "rows that light bodies or long arms hide");
 }
 

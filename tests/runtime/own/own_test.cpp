@@ -48,7 +48,7 @@ std::vector<double> run_of(const std::string& type, const JointType& info, const
   std::vector<int> bodies;
   for (int k = 0; k < info.bodies; ++k) {
     typename S::BodyDefinition d;
-    d.x = 0.7 * k, d.y = 0.3 - 0.2 * k, d.mass = 1 + k, d.vx = 0.2 - 0.1 * k;
+    d.x = 0.7 * k, d.y = 0.3 - 0.2 * k + 0.1 * k * k, d.mass = 1 + k, d.vx = 0.2 - 0.1 * k;
     place(static_cast<typename S::InDoubles::Pose*>(nullptr), d, k);
     bodies.push_back(grounded && k + 1 == info.bodies && k > 0 ? world.ground() : world.add_body(d));
   }

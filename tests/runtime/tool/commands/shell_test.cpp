@@ -27,6 +27,7 @@ TEST(Shell, MisspeltWordsAreUnderstood) {
       {"simulate x.toml --stepp 3", "cdot-run: simulate has no option `--stepp`; did you mean `--step`?\n"},
       {"simulate x.toml --integrater=rk4",
        "cdot-run: simulate has no option `--integrater`; did you mean `--integrator`?\n"},
+      {"simulate x.toml --method rk4", "cdot-run: simulate has no option `--method`; did you mean `--integrator`?\n"},
       {"list --qqq", "cdot-run: list has no option `--qqq`\nRun `cdot-run list --help` for more.\n"},
   };
   for (const auto& [typed, said] : cases) {
@@ -34,6 +35,13 @@ TEST(Shell, MisspeltWordsAreUnderstood) {
     EXPECT_EQ(result.status, 2) << typed;
     EXPECT_EQ(result.err.substr(0, std::string_view(said).size()), said) << typed;
   }
+}
+
+// A program in a build folder knows the scenes and specs of its checkout from any folder.
+TEST(Shell, FindsItsCheckoutFromAnyFolder) {
+  const CommandResult result = run_command("cd / && '" CDOT_RUN "' simulate double_pendulum --until 0.01 -o /dev/null");
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("balance"), std::string::npos) << result.out;
 }
 
 // The words that bash offers after `line`, the last of which is being typed.
