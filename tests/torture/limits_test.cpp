@@ -1,6 +1,7 @@
 // Mechanisms that floats or steps do not resolve: limits, and told as such.
 #include <gtest/gtest.h>
 
+#include "runtime/tool/scene/scene.hpp"
 #include "tests/torture/draw/generate.hpp"
 #include "tests/torture/invariants.hpp"
 
@@ -22,8 +23,7 @@ TEST(Torture, SpringsAtTheRoundOffOfFloatsAreLimits) {
 
 // A coordinate has no direction at its pole, and about it the World resolves an end by as much as it turns.
 TEST(Torture, AnEndThatPassesItsPoleIsALimit) {
-  const std::uint64_t seed = 0x165ceb841;
-  const Scene scene = generate(seed, {.effects = true, .steps = 30}).scene;
+  const Scene scene = read_scene(CDOT_FOUND "/limited/end_that_passes_its_pole.toml");
   EXPECT_TRUE(scene.single);
   Asked asked;
   asked.bits = false;

@@ -83,9 +83,12 @@ TEST(CompiledFriction, SlipsByRattleAsInTheWorld) {
   runs_by_rattle<sledge_rattle<double>>(scenes + "sledge.toml");
 }
 
-// The hook leaves the rail, and then has no friction.
+// The hook leaves the rail, and then has no friction; it lands at 0.05 s. Where it sticks at last, from 0.44 s on, the
+// friction of one half of a step undoes that of the other, so round-off alternates and grows by 4 % a step.
 TEST(CompiledFriction, LosesContactByRattleAsInTheWorld) {
-  runs_by_rattle<hanger_rattle<double>>("tests/derive/compile/bonds/hanger.toml");
+  const std::string hanger = "tests/derive/compile/bonds/hanger.toml";
+  cdot::runs_as_the_world<hanger_rattle<double>>(hanger, Integrator::rattle, 1e-11, 0.55, 0.001);
+  runs<hanger_rattle<double>>(hanger, 1.0 / 60, Integrator::rattle);
   runs_by_rattle<jamming_rod_rattle<double>>("tests/hard_cases/jamming_rod/planar.toml");
 }
 
