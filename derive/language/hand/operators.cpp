@@ -1,6 +1,7 @@
 // The operators of hand derivations: masses, inertias, rotation matrices, skew matrices, Euler parameters.
 #include "derive/language/operators.hpp"
 
+#include "derive/expression/functions.hpp"
 #include "derive/expression/symbols.hpp"
 
 namespace cdot::derive {
@@ -37,6 +38,8 @@ Value build_inverse(Pool&, Arguments a) {
   v.inverted = false;
   return v;
 }
+
+Value build_sign(Pool&, Arguments a) { return scalar(call(Fn::sign, a[0].e)); }
 
 // Columns are the body's axes.
 Value build_rotation(Pool& pool, Arguments a) {
@@ -82,6 +85,7 @@ std::vector<Operator> operators_of_hand_derivations() {
     {"skew", "skew(r)", {vector_}, kept, build_skew, "the matrix with skew(r) w = w x r", hand},
     {"S", "S(r)", {vector_}, kept, build_skew, "the same as skew(r)", hand},
     {"inverse", "inverse(M)", {matrix_}, to_number, build_inverse, "the inverse of a square matrix", hand},
+    {"sign", "sign(s)", {number_}, to_number, build_sign, "the slope of abs(s): 1, -1, or 0 at 0", hand},
     {"R", "R(a)", {body_}, to_number, build_rotation, "the rotation matrix of a body", hand},
     {"e", "e(a)", {body_}, to_number, build_euler_parameters, "the Euler parameters of a body, a column of four", hand,
      Space::spatial},
