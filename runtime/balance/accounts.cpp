@@ -8,12 +8,17 @@
 namespace cdot {
 namespace {
 
+// Finds segments that may do work: those of exact rows do not, nor of constant forces, which an energy stores.
 template <class S>
-bool rows_may_work(const Island<S>& island) {
-  if (!island.drags.empty()) return true;
-  for (const Segment<S>& segment : island.segments)
-    if (segment.batch->law || segment.batch->explicit_time()) return true;
-  return false;
+void list_working(Island<S>& island) {
+  island.working.clear();
+  island.by_mass = false;
+  for (size_t k = 0; k < island.segments.size(); ++k) {
+    const Batch<S>& batch = *island.segments[k].batch;
+    const bool constant = batch.law && batch.law->force && !batch.law->spring && !batch.law->is_of_effect();
+    if (batch.explicit_time() || (batch.law && !constant)) island.working.push_back(k);
+    island.by_mass |= batch.law && batch.law->by_mass;
+  }
 }
 
 template <class S>
@@ -41,7 +46,8 @@ void prepare_accounts(WorldData<S>& world) {
   bool works = false;
   Bodies<S> at = world.bodies;
   for (Island<S>& island : world.islands) {
-    island.rows_work = rows_may_work(island);
+    list_working(island);
+    island.rows_work = !island.working.empty() || !island.drags.empty();
     island.works = island.rows_work || S::has_gyroscopes;
     island.driven = is_driven(island);
     island.flow.first_kick.assign(rows_with_bounds(island), 0);
@@ -49,7 +55,7 @@ void prepare_accounts(WorldData<S>& world) {
     find_free_motions(world, island, at);
     if (island.floats) island.momentum.assign(7, -1.0);
     if (works_on_accelerations(world.settings.integrator) && island.works)
-      island.flow.work.assign(2 + world.sources.size(), 0);
+      island.flow.work.assign(work_of_bodies + island.working.size(), 0);
   }
   world.accounts.by_source.append(world.sources.size() - world.accounts.by_source.size(), 0.0);
   world.work_by_source.resize(world.sources.size()), world.kept_by_source.resize(world.sources.size());
@@ -128,7 +134,7 @@ void book_work(WorldData<S>& world, Island<S>& island) {
   if (island.flow.work.empty()) return;
   world.accounts.put_in += double(island.flow.work[0]);
   world.accounts.taken += double(island.flow.work[1]);
-  for (size_t k = 2; k < island.flow.work.size(); ++k) world.accounts.by_source[k - 2] += double(island.flow.work[k]);
+  each_work(island, [&](size_t source, double work) { world.accounts.by_source[source] += work; });
   std::fill(island.flow.work.begin(), island.flow.work.end(), T(0));
 }
 

@@ -80,6 +80,18 @@ void take(WorldData<S>& world, Source source, double work);
 // Call before a change from outside.
 template <class S>
 void note_change(WorldData<S>& world);
+// FlowState::work, and its rates: put in, taken, then by source: damping, torque, and each of IslandWorkspace::working.
+inline constexpr size_t sums_of_work = 2, work_of_bodies = sums_of_work + 2;
+// f(source, work) of each of them.
+template <class S, class F>
+void each_work(const Island<S>& island, F f) {
+  const auto& work = island.flow.work;
+  if (work.empty()) return;
+  f(static_cast<size_t>(Source::damping), double(work[sums_of_work]));
+  f(static_cast<size_t>(Source::torque), double(work[sums_of_work + 1]));
+  for (size_t k = 0; k < island.working.size(); ++k)
+    f(island.segments[island.working[k]].batch->source, double(work[work_of_bodies + k]));
+}
 // Adds the work of the Runge-Kutta steps so far to the accounts.
 template <class S>
 void book_work(WorldData<S>& world, Island<S>& island);
@@ -114,8 +126,8 @@ void book_stiffness(WorldData<S>& world, Island<S>& island);
 
 // --- acceleration level ---
 
-// The power of forces without a potential, put in and taken. The rows' lambda are forces, C and J those of the present
-// poses.
+// The power of forces without a potential, laid out like FlowState::work. The rows' lambda are forces, C and J those of
+// the present poses.
 template <class S>
 void find_power(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar* power);
 

@@ -99,9 +99,9 @@ void add_drifts(const WorldData<S>& world, const Segment<S>& segment, typename S
 
 // Rows that RATTLE exerts as forces: Batch::at_rest over h, and in Batch::lambda the impulses of what rates change.
 // Most need no rates: an energy stores the whole force at rest, and nothing damps.
-template <class S>
-void work_of_forces(const WorldData<S>& world, const Segment<S>& segment, const typename S::Velocity* mean,
-                    typename S::Scalar time, double h, Work& work) {
+template <class S, class Rates>
+void work_of_forces(const WorldData<S>& world, const Segment<S>& segment, Rates rates, typename S::Scalar time,
+                    double h, Work& work) {
   Batch<S>& batch = *segment.batch;
   const Law<S>& law = *batch.law;
   const int rows = batch.ops->rows, begin = segment.begin * rows, end = segment.end * rows;
@@ -109,10 +109,9 @@ void work_of_forces(const WorldData<S>& world, const Segment<S>& segment, const 
   const bool drifts = batch.explicit_time();
   const auto* const lambda = batch.lambda.data();
   if (!drifts && !unstored && std::all_of(lambda + begin, lambda + end, [](auto x) { return x == 0; })) return;
-  batch.ops->velocity(batch, segment.begin, segment.end, mean, batch.rate.data());
+  const auto* const rate = rates(segment);
   if (drifts) add_drifts(world, segment, time, h, work);
   if (!law.spring) return;
-  const auto* const rate = batch.rate.data();
   if (!of_effect) {
     for (int i = begin; i < end; ++i) work.take(batch.source, double(lambda[i]) * double(rate[i]));
     return;

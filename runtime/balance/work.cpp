@@ -2,51 +2,16 @@
 // on time.
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <type_traits>
 
 #include <cdot/spaces.hpp>
 
 #include "runtime/balance/balance.hpp"
 #include "runtime/balance/parted.hpp"
+#include "runtime/balance/whole.hpp"
 
 namespace cdot {
 namespace {
-
-// The force of dampers among the rows of a slot: that of the law at this rate, less that at rest.
-template <class S>
-void find_damping(const Batch<S>& batch, int slot, const typename S::Scalar* rate, typename S::Scalar* force) {
-  typename S::Scalar none[most_rows];
-  batch.law->force(batch, slot, at_rest<typename S::Scalar>, none);
-  batch.law->force(batch, slot, rate, force);
-  for (int r = 0; r < batch.ops->rows; ++r) force[r] -= none[r];
-}
-
-// Rows that are springs, given J v of the rate at which they acted and, in Batch::rate, of the mean velocity. Of an
-// effect without energy the impulse itself does the work: a stiff servo acts implicitly, so its force is not that of C.
-template <class S>
-void work_of_springs(const WorldData<S>& world, Batch<S>& batch, int slot, const typename S::Scalar* acted,
-                     const typename S::Scalar* lambda, typename S::Scalar time, double h, Work& work) {
-  using T = typename S::Scalar;
-  const int rows = batch.ops->rows;
-  const bool drifts = batch.explicit_time(), of_effect = batch.law->is_of_effect();
-  const bool by_impulse = of_effect && !batch.law->energy;
-  T drift[most_rows], rate[most_rows] = {}, force[most_rows];
-  if (drifts) find_drift(world, batch, slot, time, drift);
-  for (int r = 0; r < rows; ++r) rate[r] = drifts ? acted[r] + drift[r] : acted[r];
-  if (!of_effect) find_damping(batch, slot, rate, force);
-  else if (!by_impulse) batch.law->unstored(batch, slot, rate, force);
-  double done = 0;
-  for (int r = 0; r < rows; ++r) {
-    const int i = slot * rows + r;
-    const double impulse = by_impulse ? double(lambda[i]) : h * double(force[r]);
-    const double of_row = impulse * double(drifts ? batch.rate[i] + drift[r] : batch.rate[i]);
-    if (of_effect) done += of_row;
-    else work.take(batch.source, of_row);
-    if (drifts) work.put(batch.source, -double(lambda[i]) * double(drift[r]));
-  }
-  if (of_effect) work.give(batch.source, done);
-}
 
 // Whether a step exerts the impulses of rows in one kick or in two. Work that is only taken is that of both.
 enum class Kick : char { only, first, second };
@@ -91,21 +56,6 @@ void work_of_bounded(const Batch<S>& batch, int slot, const typename S::Scalar* 
   }
 }
 
-// True if an energy of these rows, whose law has by_mass, changes with K.
-template <class S>
-bool any_by_mass(const Segment<S>& segment) {
-  for (int slot = segment.begin; slot < segment.end; ++slot)
-    if (segment.batch->law->by_mass(*segment.batch, slot)) return true;
-  return false;
-}
-
-// True if an energy stores all work of forces that act whole, as that of a gas spring.
-template <class S>
-bool stores_all(const Batch<S>& batch) {
-  const Law<S>& law = *batch.law;
-  return !batch.explicit_time() && (law.is_of_effect() ? law.energy && !law.stores_part : !law.spring);
-}
-
 // True if no row of a segment has an impulse.
 template <class S>
 bool idle(const Segment<S>& segment, const typename S::Scalar* lambda) {
@@ -113,47 +63,70 @@ bool idle(const Segment<S>& segment, const typename S::Scalar* lambda) {
   return std::all_of(lambda + segment.begin * rows, lambda + segment.end * rows, [](auto x) { return x == 0; });
 }
 
-// Rows that may do work, given J v of mean velocities by batch.ops->velocity(..., mean). `impulses` gives those of a
-// batch; `acted` finds J v at which whole springs acted, into Batch::impulse. Returns true if a spring is given by its
-// frequency.
-template <class S, class Array, class Acted>
-bool work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S::Velocity* mean, Array impulses,
-                  Acted acted, Springs springs, Rows which, Kick kick, typename S::Scalar time, double h, Work& work) {
-  bool by_mass = false;
-  for (const Segment<S>& segment : island.segments) {
-    Batch<S>& batch = *segment.batch;
-    const int begin = segment.begin, end = segment.end, rows = batch.ops->rows;
-    if (!batch.law && !batch.explicit_time()) continue;
-    if (which != Rows::all && (batch.law && batch.law->spring) != (which == Rows::springs)) continue;
-    if (springs == Springs::none && batch.law && (batch.law->spring || batch.law->force)) continue;
-    by_mass = by_mass || (batch.law && batch.law->by_mass && any_by_mass(segment));
-    if (springs == Springs::as_forces && batch.law && batch.law->force) {
-      work_of_forces(world, segment, mean, time, h, work);
-      continue;
-    }
-    const auto* const lambda = impulses(batch);
-    const bool of_force = batch.law && batch.law->force;
-    if (of_force ? springs == Springs::whole && stores_all(batch) : kick == Kick::only && idle(segment, lambda))
-      continue;
-    batch.ops->velocity(batch, begin, end, mean, batch.rate.data());
-    if (!batch.law) {
-      for (int i = begin * rows; i < end * rows; ++i) work.put(batch.source, double(lambda[i]) * double(batch.rate[i]));
-    } else if (batch.law->spring && springs != Springs::whole) {
-      for (int slot = begin; slot < end; ++slot) {
-        if (batch.law->is_of_effect()) work_of_parted_effect(world, batch, slot, lambda, springs, time, h, work);
-        else work_of_parted_springs(world, batch, slot, lambda, springs, time, work);
-      }
-    } else if (batch.law->force) {
-      const auto* const rates = acted(batch, begin, end);
-      for (int slot = begin; slot < end; ++slot)
-        work_of_springs(world, batch, slot, rates + slot * rows, lambda, time, h, work);
-    } else if (batch.law->guard) {
-      for (int slot = begin; slot < end; ++slot)  // coordinates have one row
-        rows == 1 ? work_of_bounded<1>(batch, slot, lambda, kick, work)
-                  : work_of_bounded<most_rows>(batch, slot, lambda, kick, work);
-    }
+// Rows that no force law gives: exact ones in time, and those with bounds.
+template <class S, class Rates>
+void work_of_held_rows(const Segment<S>& segment, const typename S::Scalar* lambda, Rates rates, Kick kick,
+                       Work& work) {
+  if (kick == Kick::only && idle(segment, lambda)) return;
+  Batch<S>& batch = *segment.batch;
+  const auto* const rate = rates(segment);
+  const int rows = batch.ops->rows;
+  if (!batch.law) {
+    for (int i = segment.begin * rows; i < segment.end * rows; ++i)
+      work.put(batch.source, double(lambda[i]) * double(rate[i]));
+  } else if (batch.law->guard) {
+    for (int slot = segment.begin; slot < segment.end; ++slot)  // coordinates have one row
+      rows == 1 ? work_of_bounded<1>(batch, slot, lambda, kick, work)
+                : work_of_bounded<most_rows>(batch, slot, lambda, kick, work);
   }
-  return by_mass;
+}
+
+// f(segment) of those whose rows may do work.
+template <class S, class F>
+void each_working(const Island<S>& island, F f) {
+  for (const size_t k : island.working) f(island.segments[k]);
+}
+
+// How the impulses of a kick count.
+struct Counted {
+  Springs springs;
+  Rows rows;
+  Kick kick;
+};
+
+// Rows that may do work. `impulses` gives those of a batch, `rates` J v of the mean velocities, and `acted` that at
+// which whole springs acted.
+template <class S, class Array, class Rates, class Acted>
+void work_of_rows(WorldData<S>& world, const Island<S>& island, Array impulses, Rates rates, Acted acted,
+                  const Counted& counted, typename S::Scalar time, double h, Work& work) {
+  each_working(island,
+               [&, springs = counted.springs, which = counted.rows, kick = counted.kick](const Segment<S>& segment) {
+                 Batch<S>& batch = *segment.batch;
+                 const bool of_force = batch.law && batch.law->force, of_spring = batch.law && batch.law->spring;
+                 if (which != Rows::all && of_spring != (which == Rows::springs)) return;
+                 if (springs == Springs::none && of_force) return;
+                 if (!of_force) {
+                   work_of_held_rows(segment, impulses(batch), rates, kick, work);
+                 } else if (springs == Springs::as_forces) {
+                   work_of_forces(world, segment, rates, time, h, work);
+                 } else if (springs == Springs::whole || !of_spring) {
+                   work_of_whole_forces(world, segment, impulses(batch), rates, acted, time, h, work);
+                 } else {
+                   rates(segment);
+                   for (int slot = segment.begin; slot < segment.end; ++slot) {
+                     if (batch.law->is_of_effect())
+                       work_of_parted_effect(world, batch, slot, impulses(batch), springs, time, h, work);
+                     else work_of_parted_springs(world, batch, slot, impulses(batch), springs, time, work);
+                   }
+                 }
+               });
+}
+
+// J v of a segment, into `to`.
+template <class S, class Array>
+const typename S::Scalar* rates_along(const Segment<S>& segment, const typename S::Velocity* v, Array& to) {
+  segment.batch->ops->velocity(*segment.batch, segment.begin, segment.end, v, to.data());
+  return to.data();
 }
 
 // Sweeps leave a spring at another rate than the one that gave its impulse: J v = -bias - softness lambda.
@@ -181,29 +154,36 @@ typename S::Scalar moment_of(const Island<S>& island, const typename S::Velocity
   return fastest * longest > way ? way / fastest : longest;
 }
 
-// Springs given by their frequency: their stiffness changes with the pose.
+// True if energies of these rows may change with K, as those of springs given by their frequency do.
 template <class S>
-void work_of_stiffness(WorldData<S>& world, const Island<S>& island, typename S::Scalar time,
+bool may_stiffen(const Segment<S>& segment) {
+  return segment.batch->law && segment.batch->law->by_mass;
+}
+// f(slot) of those that do.
+template <class S, class F>
+void each_by_mass(const Segment<S>& segment, F f) {
+  const Batch<S>& batch = *segment.batch;
+  for (int slot = segment.begin; slot < segment.end; ++slot)
+    if (batch.law->by_mass(batch, slot)) f(slot);
+}
+
+// Their stiffness changes with the pose.
+template <class S>
+void work_of_stiffness(WorldData<S>& world, const Island<S>& island, const Segment<S>& segment, typename S::Scalar time,
                        const typename S::Velocity* v, double h, Work& work) {
-  std::optional<Along<S>> motion;
-  for (const Segment<S>& segment : island.segments) {
-    const Batch<S>& batch = *segment.batch;
-    if (!batch.law || !batch.law->by_mass) continue;
-    for (int slot = segment.begin; slot < segment.end; ++slot) {
-      if (!batch.law->by_mass(batch, slot)) continue;
-      if (!motion) motion = {time, moment_of(island, v), v};
-      work.put(batch.source, h * power_of_stiffness(world, batch, slot, *motion, world.one_slot, world.few));
-    }
-  }
+  const Batch<S>& batch = *segment.batch;
+  each_by_mass(segment, [&](int slot) {
+    const Along<S> motion{time, moment_of(island, v), v};
+    work.put(batch.source, h * power_of_stiffness(world, batch, slot, motion, world.one_slot, world.few));
+  });
 }
 
 // Energies whose parameters follow functions of time, over h from the present C.
 template <class S>
-void work_of_drives(const Island<S>& island, double h, Work& work) {
-  for (const auto& [batch, begin, end, whole] : island.segments) {
-    if (!batch->driven() || !batch->law || !batch->law->power) continue;
-    for (int slot = begin; slot < end; ++slot) work.put(batch->source, h * batch->law->power(*batch, slot));
-  }
+void work_of_drives(const Segment<S>& segment, double h, Work& work) {
+  const Batch<S>& batch = *segment.batch;
+  if (!batch.driven() || !batch.law || !batch.law->power) return;
+  for (int slot = segment.begin; slot < segment.end; ++slot) work.put(batch.source, h * batch.law->power(batch, slot));
 }
 
 // Drag and, in space, torques: forces at the velocities `acted`, over h, work along `mean`.
@@ -280,17 +260,22 @@ void book(WorldData<S>& world, Island<S>& island, Kind impulses, typename S::Sca
                        impulses == Impulses::relaxed;
   if (!of_rows && (S::has_gyroscopes || !island.drags.empty()))
     work_on_bodies(world, island, start.data(), mean.data(), impulses != Impulses::middle, at_end, h, work);
-  const bool by_mass = work_of_rows(
-      world, island, mean.data(), [&](const Batch<S>& batch) { return impulses_of(impulses, batch); },
-      [&](Batch<S>& batch, int begin, int end) {
-        batch.ops->velocity(batch, begin, end, acted, batch.impulse.data());
-        if (at_end && sweeps(world.settings.solver)) find_rates_met(batch, begin, end);
-        return batch.impulse.data();
+  work_of_rows(
+      world, island, [&](const Batch<S>& batch) { return impulses_of(impulses, batch); },
+      [&](const Segment<S>& segment) { return rates_along(segment, mean.data(), segment.batch->rate); },
+      [&](const Segment<S>& segment) {
+        const auto* const rates = rates_along(segment, acted, segment.batch->impulse);
+        if (at_end && sweeps(world.settings.solver)) find_rates_met(*segment.batch, segment.begin, segment.end);
+        return rates;
       },
-      springs_of(impulses), rows_of(impulses), kick_of(impulses), island.evaluated_at, double(h), work);
-  if (by_mass && (impulses == Impulses::rattle_start || impulses == Impulses::rattle_end))
-    work_of_stiffness(world, island, island.evaluated_at, start.data(), double(h), work);
-  if (!of_rows && world.driven) work_of_drives(island, double(h), work);
+      {springs_of(impulses), rows_of(impulses), kick_of(impulses)}, island.evaluated_at, double(h), work);
+  if (island.by_mass && (impulses == Impulses::rattle_start || impulses == Impulses::rattle_end))
+    each_working(island, [&](const Segment<S>& segment) {
+      if (may_stiffen(segment))
+        work_of_stiffness(world, island, segment, island.evaluated_at, start.data(), double(h), work);
+    });
+  if (!of_rows && world.driven)
+    each_working(island, [&](const Segment<S>& segment) { work_of_drives(segment, double(h), work); });
   add(world, work);
 }
 
@@ -311,42 +296,46 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
   else book(world, island, impulses, h);
 }
 
+// Known forces have just acted at the present velocities.
 template <class S>
 void find_power(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar* power) {
   using T = typename S::Scalar;
-  std::fill_n(power, 2 + world.work_by_source.size(), T(0));
-  if (!works_now(world, island)) return;
-  std::fill(world.work_by_source.begin(), world.work_by_source.end(), 0);
-  Work work{world.work_by_source.data()};
+  if (!works_now(world, island)) return void(std::fill_n(power, island.flow.work.size(), T(0)));
+  Work work{world.work_by_source.data()};  // not read: what each part adds to the sums is its own
   const auto* const v = world.bodies.velocity.data();
   work_on_bodies(world, island, v, v, true, false, T(1), work);
-  work_of_rows(
-      world, island, v, [](const Batch<S>& batch) { return batch.lambda.data(); },
-      [&](Batch<S>& batch, int begin, int end) {
-        batch.ops->effective_mass(batch, begin, end, world.bodies);
-        return batch.rate.data();
-      },
-      Springs::whole, Rows::all, Kick::only, time, 1, work);
-  work_of_stiffness(world, island, time, v, 1, work);
-  if (world.driven) work_of_drives(island, 1, work);
+  const auto acted = [](const Segment<S>& segment) { return segment.batch->acted.data(); };
+  const auto rates = [&](const Segment<S>& segment) { return rates_along(segment, v, segment.batch->rate); };
+  power[sums_of_work] = T(-work.taken), power[sums_of_work + 1] = T(work.put_in);
+  T* of_rows = power + work_of_bodies;
+  each_working(island, [&](const Segment<S>& segment) {
+    const Batch<S>& batch = *segment.batch;
+    const double before = work.put_in - work.taken;
+    if (batch.law && batch.law->force)
+      work_of_whole_forces(world, segment, batch.lambda.data(), acted, acted, time, 1, work);
+    else work_of_held_rows(segment, batch.lambda.data(), rates, Kick::only, work);
+    if (may_stiffen(segment)) work_of_stiffness(world, island, segment, time, v, 1, work);
+    if (world.driven) work_of_drives(segment, 1, work);
+    *of_rows++ = T(work.put_in - work.taken - before);
+  });
   power[0] = T(work.put_in), power[1] = T(work.taken);
-  std::copy(world.work_by_source.begin(), world.work_by_source.end(), power + 2);
 }
 
-// The same over a step of Euler's method: K is still that of its start.
+// K is still that of the step's start.
 template <class S>
 void book_stiffness(WorldData<S>& world, Island<S>& island) {
-  if (!island.rows_work) return;
-  for (const Segment<S>& segment : island.segments) {
+  if (!island.by_mass) return;
+  each_working(island, [&](const Segment<S>& segment) {
+    if (!may_stiffen(segment)) return;
     Batch<S>& batch = *segment.batch;
-    if (!batch.law || !batch.law->energy) continue;
-    double before = 0, after = 0;
-    for (int slot = segment.begin; slot < segment.end; ++slot) before += batch.law->energy(batch, slot);
-    batch.ops->effective_mass(batch, segment.begin, segment.end, world.bodies);
-    for (int slot = segment.begin; slot < segment.end; ++slot) after += batch.law->energy(batch, slot);
-    world.accounts.put_in += after - before;
-    world.accounts.by_source[batch.source] += after - before;
-  }
+    each_by_mass(segment, [&](int slot) {
+      const double before = batch.law->energy(batch, slot);
+      batch.ops->effective_mass(batch, slot, slot + 1, world.bodies);
+      const double change = batch.law->energy(batch, slot) - before;
+      world.accounts.put_in += change;
+      world.accounts.by_source[batch.source] += change;
+    });
+  });
 }
 
 #define CDOT_INSTANTIATE(S)                                                   \

@@ -16,7 +16,10 @@ void find_known_forces(WorldData<S>& world, Batch<S>& batch, int begin, int end,
   batch.ops->velocity(batch, begin, end, world.bodies.velocity.data(), batch.rate.data());
   for (int slot = begin; slot < end; ++slot) {
     T rate[most_rows];
-    for (int r = 0; r < rows; ++r) rate[r] = batch.rate[slot * rows + r] + batch.bias[slot * rows + r];
+    for (int r = 0, i = slot * rows; r < rows; ++r, ++i) {
+      batch.acted[i] = batch.rate[i];
+      rate[r] = batch.rate[i] + batch.bias[i];
+    }
     batch.law->force(batch, slot, rate, force + slot * rows);
   }
 }

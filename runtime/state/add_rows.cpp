@@ -73,7 +73,7 @@ void add_rows(WorldData<S>& world, int joint, const BlockOps<S>* ops, const Law<
     grow(batch.upper, ops->rows, std::numeric_limits<T>::infinity());
     grow(batch.mode, ops->rows, Mode::bounded);
     grow(batch.load, 1);
-    if (law->force) grow(batch.at_rest, ops->rows);
+    if (law->force) grow(batch.at_rest, ops->rows), grow(batch.acted, ops->rows);
     if (law->stores_part) grow(batch.unstored_at_rest, ops->rows);
     if (law->distance) grow(batch.happened, 1);
     for (double constant : constants) batch.constants.push_back(T(constant));

@@ -93,7 +93,9 @@ struct LoadedRow {
 template <class S>
 struct IslandWorkspace {
   std::vector<Segment<S>> segments;
-  System<S> system;  // of the direct solver and of projections
+  std::vector<size_t> working;  // of these, whose rows may do work without a potential
+  bool by_mass = false;         // energies of some may change with K
+  System<S> system;             // of the direct solver and of projections
   // The same with rows of tension, for steps in which a Runge-Kutta method falls back to an implicit one. Built
   // only if such rows exist.
   System<S> rescue;

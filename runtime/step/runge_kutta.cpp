@@ -74,16 +74,17 @@ class WeightedSum {
   int count_ = 0;
 };
 
-// now = start + h sum_j weights_j rates_j
+// now = start + h sum_j weights_j rates_j, of the first `numbers`.
 template <class S>
-void combine(Flow<S>& flow, const ExactNumber<typename S::Scalar>* weights, int count, typename S::Scalar h) {
+void combine(Flow<S>& flow, const ExactNumber<typename S::Scalar>* weights, int count, typename S::Scalar h,
+             size_t numbers) {
   using T = typename S::Scalar;
   const size_t n = flow.start.size();
   WeightedSum<T, T> sum;
   for (int j = 0; j < count; ++j) sum.add(T(weights[j]), flow.rates.data() + static_cast<size_t>(j) * n);
   const T* const start = flow.start.data();
   T* const now = flow.now.data();
-  sum.each(n, [&](size_t k, T rate) { now[k] = start[k] + h * rate; });
+  sum.each(numbers, [&](size_t k, T rate) { now[k] = start[k] + h * rate; });
 }
 
 // The largest of an embedded estimate, number by number in units of unit(k).
@@ -168,7 +169,8 @@ void note_stage(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
 template <class S>
 void take_stage(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
                 typename S::Scalar time, typename S::Scalar h) {
-  combine(island.flow, method.a[stage], stage, h);
+  Flow<S>& flow = island.flow;
+  combine(flow, method.a[stage], stage, h, flow.now.size() - flow.work.size());  // no stage asks for work
   evaluate_stage(world, island, method, stage, time + typename S::Scalar(method.c[stage]) * h);
 }
 
@@ -180,7 +182,7 @@ bool take_stages(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& 
     take_stage(world, island, method, stage, time, h);
     if (world.settings.local_error > 0) note_forces(island, stage == 1);
   }
-  combine(island.flow, method.a[method.stages], method.stages, h);
+  combine(island.flow, method.a[method.stages], method.stages, h, island.flow.now.size());
   set_numbers(world, island, island.flow.now.data());
   return true;
 }

@@ -278,7 +278,7 @@ std::vector<WorkOfSource> BasicWorld<S>::work_by_source() const {
       work += now.kinetic + now.potential - accounts.before_change;
     }
     for (const Island<S>& island : world.islands)
-      if (!island.flow.work.empty()) work += double(island.flow.work[2 + k]);
+      each_work(island, [&](size_t source, double done) { work += source == k ? done : 0; });
     if (work != 0) sources.push_back({world.sources[k], work});
   }
   return sources;

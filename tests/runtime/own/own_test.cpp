@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 #include <fstream>
 
+#include <cdot/balance.hpp>
+#include <cdot/integrators.hpp>
+
 #include "derive/own/own_kernel.hpp"
 #include "runtime/own/check_own.hpp"
 #include "tests/runtime/support.hpp"
@@ -303,6 +306,33 @@ TEST(Own, AForceAtItsLimitDoesTheSameWork) {
   };
   EXPECT_NEAR(work_of("position_drive"), 0.5 * 0.25, 1e-9);  // half a newton metre over a quarter of a radian in 1 s
   EXPECT_EQ(work_of("position_drive"), work_of(own.name));
+}
+
+// The energy of a spring that is stiffer where its joint is heavier changes without a force. A rod slides along a line
+// by its end; the mass that the slide moves changes as the rod turns.
+TEST(Own, AStiffnessByTheMassPutsInWhatItChanges) {
+  const OwnType own = add_own_type(CDOT_SOURCE_DIR "/tests/runtime/own/specs/hardening.effect");
+  ASSERT_EQ(own.problems, "");
+  double exact = 0;
+  for (const Integrator integrator : {Integrator::dop853, Integrator::rk4, Integrator::rattle, Integrator::euler}) {
+    Settings by = settings(Solver::direct, Drift::projection, -9.81);
+    by.integrator = integrator;
+    World<double> world(by);
+    const int rod = world.add_body({.x = 0.5, .mass = 1, .inertia = 1.0 / 12});
+    const int line =
+        world.add_joint({"line", {rod, world.ground()}, {{"pa", {-0.5, 0}}, {"pb", {0, 0}}, {"t", {1, 0}}}, {}});
+    add_effect(world, line, "slide", SpecEffect{own.name, {{"frequency", {1}}, {"a", {0.5}}, {"rest", {0.2}}}});
+    BalanceWatch seen;
+    for (int k = 0; k < 2000; ++k) {
+      ASSERT_TRUE(world.step(1e-3));
+      seen.look(world.balance());
+    }
+    const int order = row_of(integrator).order;
+    if (exact == 0) exact = seen.last.put_in;
+    EXPECT_GT(exact, 2);
+    EXPECT_NEAR(seen.last.put_in, exact, order == 1 ? 0.5 : order == 2 ? 1e-2 : 1e-6) << order;
+    EXPECT_LT(seen.energy.share(), order == 1 ? 0.02 : order == 2 ? 1e-4 : 1e-9) << order;
+  }
 }
 
 // A second route finds a wrong derivation: here a spoiled number of J.

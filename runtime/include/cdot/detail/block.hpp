@@ -214,8 +214,9 @@ struct BatchWorkspace {
   std::vector<T> impulse;    // of one round of a projection, or a known force
   // RATTLE: forces of the last kick, those at rest, and what no energy stores of them where Law::stores_part.
   std::vector<T> at_rest, unstored_at_rest;
-  std::vector<T> load;  // [slot] force that bounds grow with (runtime/solve/loads.hpp), at acceleration level
-  T time = 0;           // of C
+  std::vector<T> acted;  // J v at which known forces acted, at acceleration level
+  std::vector<T> load;   // [slot] force that bounds grow with (runtime/solve/loads.hpp), at acceleration level
+  T time = 0;            // of C
   // Numbers in time, those of a slot from first_drive[home] to first_drive[home + 1]; both empty if there are none.
   std::vector<Drive> drives;
   std::vector<int> first_drive;

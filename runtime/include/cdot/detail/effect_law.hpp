@@ -56,6 +56,7 @@ template <class S, class Effect, ParametersAt where = ParametersAt::joint>
 struct EffectLaw {
   using T = typename S::Scalar;
   static constexpr int rows = Effect::rows;
+  static constexpr bool reads_mass = requires { requires Effect::reads_mass; };
   using Row = const T (&)[rows];
 
   static const auto& parameters(const Batch<S>& batch, int slot) {
@@ -64,7 +65,7 @@ struct EffectLaw {
   // f(numbers..., mass) or f(numbers...)
   template <class Number = T, class F, class... Numbers>
   static void with_mass(const Batch<S>& batch, int slot, F f, const Numbers&... numbers) {
-    if constexpr (requires { requires Effect::reads_mass; }) f(numbers..., Number(inverse(batch.factor[slot])));
+    if constexpr (reads_mass) f(numbers..., Number(inverse(batch.factor[slot])));
     else f(numbers...);
   }
   static Row C(const Batch<S>& batch, int slot) { return reinterpret_cast<Row>(batch.C[slot * rows]); }
@@ -123,6 +124,15 @@ struct EffectLaw {
           batch, slot, [&](const auto&... n) { effect_of<Effect>(batch).energy(n..., E); }, C(batch, slot),
           parameters(batch, slot));
     return double(E);
+  }
+
+  // True if the energy changes with the mass, at the present C.
+  static bool by_mass(const Batch<S>& batch, int slot) {
+    T E[2] = {};
+    if constexpr (has_energy && reads_mass)
+      for (int mass : {0, 1})
+        effect_of<Effect>(batch).energy(C(batch, slot), parameters(batch, slot), T(1 + mass), E[mass]);
+    return E[0] != E[1];
   }
 
   // Power that the parameters add as they follow functions of time.
@@ -223,6 +233,7 @@ inline constexpr Law<S> effect_law{
     .stores_part = EffectLaw<S, Effect, where>::stores_part,
     .in_time = Effect::law_in_time,
     .within_limits = EffectLaw<S, Effect, where>::has_limits ? EffectLaw<S, Effect, where>::within_limits : nullptr,
+    .by_mass = EffectLaw<S, Effect, where>::reads_mass ? EffectLaw<S, Effect, where>::by_mass : nullptr,
     .power = EffectLaw<S, Effect, where>::has_energy ? EffectLaw<S, Effect, where>::power : nullptr};
 
 }  // namespace cdot
