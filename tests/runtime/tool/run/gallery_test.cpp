@@ -203,6 +203,23 @@ TEST(Gallery, TheGovernorStandsAtPortersAngle) {
   for (const Frame& frame : run_of(scene, 2, 0.1)) EXPECT_NEAR(frame.bodies[3].z, height, promised) << frame.time;
 }
 
+// A disc of inertia k m r^2 leaves where m v^2/(R + r) = m g cos(a), with (1 + k)/2 v^2 = g (R + r) (cos(start) -
+// cos(a)). It keeps its speed sideways, and what it turns. Without friction it turns none, as if k were 0.
+TEST(Gallery, DiscsLeaveTheDomeWhereTheirPathNeedsAllTheirWeight) {
+  struct Disc {
+    const char* name;
+    double k, turns;
+  };
+  for (const Disc& disc : {Disc{"smooth", 0, 0}, Disc{"solid", 0.5, 1}, Disc{"hoop", 1, 1}}) {
+    const double g = 9.81, r = 0.3, far = 1, cosine = 2 * std::cos(0.25) / (3 + disc.k);
+    const double v = std::sqrt(g * far * cosine);
+    BodyState end{};
+    Mechanism("dome").each(0.1, [&](auto body, double) { end = body(disc.name); });
+    EXPECT_NEAR(end.vx, v * cosine, 10 * promised) << disc.name;
+    EXPECT_NEAR(end.w, -disc.turns * v / r, 10 * promised / r) << disc.name;
+  }
+}
+
 // tan(theta1 / 2) tan(theta2 / 2) keeps its value; theta1 is the motor's angle.
 TEST(Gallery, BennettsHalfAnglesKeepTheirProduct) {
   const double alpha = 40 * pi / 180, beta = 75 * pi / 180, theta1 = 0.9;
