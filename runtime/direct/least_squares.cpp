@@ -110,31 +110,45 @@ void System<S>::share_contradictions() {
   }
 }
 
-// lambda - Z y with Z^T Z y = Z^T lambda: the same motion by the least sum of squares. Rows with bounds share only if
-// `bounds` are known, and if no share lies beyond them.
+// The part of the way from lambda to lambda - image on which no row passes its bound.
+template <class S>
+typename System<S>::Real System<S>::part_within_bounds(const std::vector<Real>& image) const {
+  Real part = 1;
+  for (int r = 0; r < rows_; ++r) {
+    if (out_[r] || image[r] == Real(0)) continue;
+    const Real left = lambda[r] - (image[r] > Real(0) ? lower[r] : upper[r]);  // as large as image if that passes none
+    part = std::min(part, std::max(left / image[r], Real(0)));
+  }
+  return part;
+}
+
+// lambda - Z y with Z^T Z y = Z^T lambda: the same motion by the least sum of squares, or on the way to it as far as
+// the bounds allow. Loads are shared where joints may break, and where an end holds: by elimination alone the impulse
+// of a rope along a rigid frame would be infinite in poses where the frame without the dropped row is none.
 template <class S>
 void System<S>::share_redundant_loads(Bounds bounds) {
-  if (!shares_loads_ || dependent_ == 0 || softened_ != Softened::no) return;
-  if (bounds == Bounds::unknown) {
-    bool under_laws = false;
-    each_row([&](int row, const Batch<S>& batch, int) { under_laws |= batch.law && !out_[row]; });
-    if (under_laws) return;
-  }
+  if (dependent_ == 0 || softened_ != Softened::no) return;
+  bool under_laws = false, holds_ends = false;
+  each_row([&](int row, const Batch<S>& batch, int) {
+    if (!batch.law || out_[row]) return;
+    under_laws = true, holds_ends |= batch.law->error != nullptr;
+  });
+  if (!holds_ends && (!shares_loads_ || (bounds == Bounds::unknown && under_laws))) return;
   auto &rest = shared_[0], &image = shared_[2], &y = shared_[3];
   for (int r = 0; r < rows_; ++r) rest[r] = out_[r] ? Real(0) : lambda[r];
   contract(rest);
   divide_by_null_space(rest, y);
   expand(y, image);
-  for (int r = 0; bounds == Bounds::known && r < rows_; ++r)
-    if (!out_[r] && !(lambda[r] - image[r] >= lower[r] && lambda[r] - image[r] <= upper[r])) return;
+  const Real part = bounds == Bounds::known ? part_within_bounds(image) : Real(1);
   for (int r = 0; r < rows_; ++r)
-    if (!out_[r]) lambda[r] -= image[r];
+    if (!out_[r]) lambda[r] -= part * image[r];
 }
 
-#define CDOT_INSTANTIATE(S)                                 \
-  template System<S>::Real System<S>::slight(Real);         \
-  template bool System<S>::misses_rows(std::vector<Real>&); \
-  template void System<S>::share_contradictions();          \
+#define CDOT_INSTANTIATE(S)                                                               \
+  template System<S>::Real System<S>::slight(Real);                                       \
+  template bool System<S>::misses_rows(std::vector<Real>&);                               \
+  template void System<S>::share_contradictions();                                        \
+  template System<S>::Real System<S>::part_within_bounds(const std::vector<Real>&) const; \
   template void System<S>::share_redundant_loads(Bounds);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -52,7 +52,8 @@ class System {
 
   // True if there are rows with softness or bounds.
   bool lawful() const { return lawful_; }
-  // From now on solve() shares forces among redundant rows: among equal motions the least sum of squares.
+  // From now on solve() shares forces among redundant rows: among equal motions the least sum of squares. So it does
+  // anyhow while an end holds.
   void share_loads() { shares_loads_ = true; }
 
   // b of every row from value(batch, i), i numbering the batch's rows.
@@ -198,6 +199,7 @@ class System {
   void share_contradictions();
   enum class Bounds : char { unknown, known };
   void share_redundant_loads(Bounds bounds);
+  Real part_within_bounds(const std::vector<Real>& image) const;
   void divide_by_null_space(std::vector<Real>& rest, std::vector<Real>& y);
   bool drops_rows_by_round_off();
   void soften(Softened how);

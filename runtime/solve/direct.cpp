@@ -37,11 +37,6 @@ bool has_error(const Batch<S>& batch, int i) {
 }
 
 template <class S>
-bool rolls(const Island<S>& island) {
-  return std::ranges::any_of(island.segments, [](const Segment<S>& s) { return has_velocity_rows(*s.batch); });
-}
-
-template <class S>
 [[gnu::always_inline]] inline void exert_solution(const WorldData<S>& world, const Island<S>& island, System<S>& system,
                                                   typename S::Velocity* to) {
   system.store([](Batch<S>& batch, int i, auto lambda) { batch.lambda[i] = typename S::Scalar(lambda); });

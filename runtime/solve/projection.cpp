@@ -184,6 +184,26 @@ void project_start(WorldData<S>& world, Island<S>& island) {
   island.evaluated = island.factored = false;
 }
 
+namespace {
+
+// A correction that is to roll may find no pose near a loss of rank: there it slips.
+template <class S>
+void correct_poses(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar foreign_error) {
+  auto& pose = world.bodies.pose;
+  const bool may_slip = island.solver->exact && !island.stiffened && rolls(island);
+  for (size_t k = 0; may_slip && k < island.bodies.size(); ++k) island.flow.pose[k] = pose[island.bodies[k]];
+  island.solver->positions(world, island, time, false);
+  if (!may_slip || !left_the_joints(world, island, foreign_error)) return;
+  for (size_t k = 0; k < island.bodies.size(); ++k) pose[island.bodies[k]] = island.flow.pose[k];
+  clear_correction(world, island);
+  island.residual = foreign_error;
+  island.flow.projects_stages = true;
+  island.solver->positions(world, island, time, true);
+  island.flow.projects_stages = false;
+}
+
+}  // namespace
+
 // Newton on C with the step's J and K (SHAKE). Then displacement / h is added to the velocities, and these are
 // projected onto J v = -dC/dt at the new poses. A projection of the poses alone loses energy at first order: every step
 // turns the velocity out of the tangent plane, and the next solve removes that part.
@@ -196,7 +216,7 @@ void project_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
   // An error left from the start of the step (contradicting joints, too few sweeps) is not due to the motion.
   const T foreign_error = island.residual, error = find_errors(world, island, time);
   const bool from_motion = foreign_error <= T(0.1) * error;
-  island.solver->positions(world, island, time, false);
+  correct_poses(world, island, time, foreign_error);
   if (island.solver->exact) fail_if_moved_far(world, island, double(std::max(error, foreign_error)), double(h));
   // Any other displacement would add energy to the velocities.
   const bool keep = from_motion && correction_is_small(world, island, double(h));

@@ -14,6 +14,11 @@ bool has_velocity_rows(const Batch<S>& batch) {
   return !batch.law && std::ranges::count(batch.kinds, RowKind::velocity) > 0;
 }
 
+template <class S>
+bool rolls(const Island<S>& island) {
+  return std::ranges::any_of(island.segments, [](const Segment<S>& s) { return has_velocity_rows(*s.batch); });
+}
+
 // Sets displacements and their impulses to 0.
 template <class S>
 void clear_correction(WorldData<S>& world, Island<S>& island);

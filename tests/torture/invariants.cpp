@@ -77,6 +77,7 @@ class Trial {
   double start_energy_ = 0, pushes_ = 0, torques_ = 0;
   std::optional<Accounts> accounts_;
   Snapshot middle_, end_;
+  int middle_at_ = 0;  // the step after which it was taken
 };
 
 // Starts the World like cdot-run.
@@ -263,7 +264,8 @@ Verdict Trial<S>::watch(BasicWorld<S>& world) {
         return verdict(Outcome::broken, "the state before a step that failed", name_of(result.problem), 0, 0, k);
       return verdict(Outcome::limited, fmt::format("the World says: {}", name_of(result.problem)), "", 0, 0, k);
     }
-    if (k == steps_ / 2) middle_ = world.snapshot();
+    if (middle_at_ == 0 && (k == steps_ / 2 || world.step_counts().events > 0))
+      middle_ = world.snapshot(), middle_at_ = k;
     if (k == steps_) end_ = world.snapshot();  // before look(): energy() changes numbers that the next step overwrites
     if (auto broken = look(world, k)) {
       if (world.step_counts().rescued > 0 && judged_by_order(broken->what)) {
@@ -281,8 +283,8 @@ Verdict Trial<S>::watch(BasicWorld<S>& world) {
   return first;
 }
 
-// Equal bits: in two threads at once, and from the snapshot at half time, through text, in a World from the scene's
-// text.
+// Equal bits: in two threads at once, and from the snapshot after the first event or at half time, through text, in a
+// World from the scene's text.
 template <class S>
 Verdict Trial<S>::bits() const {
   Snapshot twice[2];
@@ -305,7 +307,7 @@ Verdict Trial<S>::bits() const {
   } catch (const Error& error) {
     return verdict(Outcome::broken, "a state is taken back", error.what());
   }
-  for (int k = steps_ / 2 + 1; k <= steps_; ++k) push(world, k), step(world, k);
+  for (int k = middle_at_ + 1; k <= steps_; ++k) push(world, k), step(world, k);
   const Snapshot state = world.snapshot();
   if (!(state == end_))
     return verdict(Outcome::broken, "bits from a snapshot",

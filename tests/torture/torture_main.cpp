@@ -181,6 +181,7 @@ int main(int count, char** arguments) {
   app.add_flag("--changes", options.changes, "impulses, forces and the loss of a joint, while running");
   app.add_flag("--forces", options.forces, "a force on each body that is a function of time");
   app.add_flag("--effects", options.wish.effects, "effects of specs, on bodies and on coordinates");
+  app.add_flag("--islands", options.wish.islands, "few joints, and effects of specs between the islands");
   app.add_flag("--in-time", options.wish.in_time, "numbers of joints and effects follow functions of time");
   app.add_flag("--advice", options.advice, "runs each by cdot-run, and follows its advice; judges nothing else");
   app.add_flag("--misfit", options.misfit, "mechanisms at rest with a joint that is a little off; judges nothing else");

@@ -1,9 +1,11 @@
 // Mechanisms with redundant rows: every step counts and drops the same number of rows, and the motion is that without
 // them.
+#include <Eigen/QR>
 #include <fmt/core.h>
 #include <set>
 
 #include <cdot/integrators.hpp>
+#include <cdot/methods.hpp>
 
 #include "tests/runtime/mechanisms.hpp"
 #include "tests/runtime/support.hpp"
@@ -165,6 +167,82 @@ TEST(Redundancy, ALockBreaksAtADeadCentre) {
     }
     EXPECT_TRUE(steps || row.integrator == Integrator::rattle) << row.name;
   }
+}
+
+// Three bodies and three hinges are a rigid triangle, which spins freely. A rope between two of them is as long as the
+// distance of its ends, so that any pull of it is possible.
+struct RopeInATriangle {
+  static constexpr double spin = 8, mass[3] = {1, 3, 0.5}, x[3] = {0, 1.3, 0.4}, y[3] = {0, 0.2, 1.1};
+  // Of hinge i between the bodies i and i + 1, and of the rope from body 0 to body 2: its ends from both bodies.
+  static constexpr double from[4][2] = {{0.7, -0.1}, {-0.2, 0.8}, {-0.3, -0.6}, {0.1, 0.3}};
+  static constexpr double to[4][2] = {{-0.6, -0.3}, {0.7, -0.1}, {0.1, 0.5}, {0.2, 0.4}};
+
+  // The pull of the rope with the least sum of squares of all forces that let the triangle spin about its centre of
+  // mass.
+  static double least_pull() {
+    Eigen::Matrix<double, 9, 6> hinges = Eigen::Matrix<double, 9, 6>::Zero();
+    Eigen::Matrix<double, 9, 1> rope = Eigen::Matrix<double, 9, 1>::Zero(), needed = rope;
+    const auto add = [](auto column, int body, const double* arm, double fx, double fy) {
+      column(3 * body) += fx, column(3 * body + 1) += fy, column(3 * body + 2) += arm[0] * fy - arm[1] * fx;
+    };
+    for (int i = 0; i < 3; ++i)
+      for (int c = 0; c < 2; ++c) {
+        add(hinges.col(2 * i + c), i, from[i], c == 0, c == 1);
+        add(hinges.col(2 * i + c), (i + 1) % 3, to[i], -(c == 0), -(c == 1));
+      }
+    const double along[2] = {x[2] + to[3][0] - from[3][0], y[2] + to[3][1] - from[3][1]},
+                 l = std::hypot(along[0], along[1]);
+    add(rope.col(0), 0, from[3], along[0] / l, along[1] / l);
+    add(rope.col(0), 2, to[3], -along[0] / l, -along[1] / l);
+    const double all = mass[0] + mass[1] + mass[2];
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) {
+        needed(3 * i) += -spin * spin * mass[i] * mass[k] / all * (x[i] - x[k]);
+        needed(3 * i + 1) += -spin * spin * mass[i] * mass[k] / all * (y[i] - y[k]);
+      }
+    const auto solved = hinges.colPivHouseholderQr();
+    const Eigen::Matrix<double, 6, 1> without = solved.solve(needed), less = solved.solve(rope);
+    EXPECT_LT((hinges * without - needed).norm(), 1e-9);
+    return without.dot(less) / (1 + less.dot(less));
+  }
+
+  // The largest pull in 0.4 s, in which the triangle turns by half a turn.
+  static double largest_pull(Integrator integrator, double h) {
+    Settings s = settings(Solver::direct);
+    s.integrator = integrator;
+    World<double> world(s);
+    for (int i = 0; i < 3; ++i)
+      world.add_body({.x = x[i],
+                      .y = y[i],
+                      .vx = -spin * y[i],
+                      .vy = spin * x[i],
+                      .w = spin,
+                      .mass = mass[i],
+                      .inertia = 0.2 * mass[i]});
+    for (int i = 0; i < 3; ++i) revolute(world, i, (i + 1) % 3, from[i][0], from[i][1], to[i][0], to[i][1]);
+    const double l = std::hypot(x[2] + to[3][0] - from[3][0], y[2] + to[3][1] - from[3][1]);
+    const int rope = world.add_joint(
+        {"rope", {0, 2}, {{"pa", {from[3][0], from[3][1]}}, {"pb", {to[3][0], to[3][1]}}, {"l", {l}}}, {}});
+    const double energy = world.energy();
+    double largest = 0;
+    for (int k = 0; k < std::lround(0.4 / h); ++k) {
+      EXPECT_TRUE(world.step(h));
+      largest = std::max(largest, std::abs(world.impulse(rope)[0]) / h);
+    }
+    EXPECT_NEAR(world.energy() / energy, 1, 1e-8) << name_of(integrators, integrator) << " by " << h;
+    return largest;
+  }
+};
+
+TEST(Redundancy, ARopeAlongARigidTrianglePullsAtMostItsShare) {
+  const double share = RopeInATriangle::least_pull();
+  EXPECT_GT(share, 10);
+  for (const Integrator integrator :
+       {Integrator::euler, Integrator::implicit, Integrator::rattle, Integrator::dop853, Integrator::radau5})
+    for (const double h : {1e-4, 1e-3, 0.01})
+      EXPECT_LT(RopeInATriangle::largest_pull(integrator, h), 1.2 * share)
+          << name_of(integrators, integrator) << " by " << h;
+  EXPECT_NEAR(RopeInATriangle::largest_pull(Integrator::dop853, 1e-3), share, 1e-6 * share);
 }
 
 }  // namespace

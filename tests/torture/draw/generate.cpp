@@ -162,7 +162,7 @@ void Growth::add_tree(BasicWorld<S>& world) {
   const int bodies = static_cast<int>(made_.scene.bodies.size());
   if (!wish_.joint.empty()) add_joint(world, wish_.joint, random_.below(bodies));
   for (int child = 0; child < bodies; ++child)
-    if (random_.chance(0.9)) add_joint(world, any_type(), child);
+    if (random_.chance(wish_.islands ? 0.4 : 0.9)) add_joint(world, any_type(), child);
 }
 
 // Joints beyond the tree: they close a loop or repeat a joint.
@@ -219,7 +219,8 @@ void Growth::grow() {
   settle<S>();
   try {
     if (random_.chance(0.4)) add_effects<S>(random_, scales_, made_.scene);
-    if (wish_.effects) add_spec_effects<S>(random_, scales_, made_.scene, made_.refused);
+    const int most = wish_.islands ? std::max(3, 2 * static_cast<int>(made_.scene.bodies.size())) : 3;
+    if (wish_.effects || wish_.islands) add_spec_effects<S>(random_, scales_, most, made_.scene, made_.refused);
     if (wish_.in_time) add_numbers_in_time<S>(random_, scales_, made_.scene, made_.refused);
   } catch (const SceneError& error) {  // the World refuses the projected poses, as gears that have turned too far
     made_.refused.push_back(error.what());

@@ -115,7 +115,7 @@ std::vector<const JointType*> laws_for(const CoordinateInfo& coordinate) {
 }  // namespace
 
 template <class S>
-void add_spec_effects(Random& random, const Scales& scales, Scene& scene, std::vector<std::string>& refused) {
+void add_spec_effects(Random& random, const Scales& scales, int most, Scene& scene, std::vector<std::string>& refused) {
   std::vector<const JointType*> on_bodies;
   for (const JointType& type : joint_types(S::dimension))
     if (type.is_effect) on_bodies.push_back(&type);
@@ -128,7 +128,7 @@ void add_spec_effects(Random& random, const Scales& scales, Scene& scene, std::v
       taken<S>(scene, refused, [&](Scene& trial) { effects_on(trial.joints[j], type, k).specs.push_back(law); });
     }
   }
-  for (int k = 1 + random.below(3); k > 0; --k) {
+  for (int k = 1 + random.below(most); k > 0; --k) {
     SceneJoint effect = random_effect(random, scales, scene, *random.of(on_bodies));
     effect.name = fmt::format("e{}", k);
     taken<S>(scene, refused, [&](Scene& trial) { trial.joints.push_back(effect); });
@@ -136,7 +136,7 @@ void add_spec_effects(Random& random, const Scales& scales, Scene& scene, std::v
 }
 
 #define CDOT_INSTANTIATE(S) \
-  template void add_spec_effects<S>(Random&, const Scales&, Scene&, std::vector<std::string>&);
+  template void add_spec_effects<S>(Random&, const Scales&, int, Scene&, std::vector<std::string>&);
 CDOT_INSTANTIATE(Planar<double>)
 CDOT_INSTANTIATE(Spatial<double>)
 #undef CDOT_INSTANTIATE

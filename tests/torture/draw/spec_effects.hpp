@@ -27,8 +27,8 @@ bool taken(Scene& scene, std::vector<std::string>& refused, Change change) {
   return true;
 }
 
-// `refused` receives the reasons why the World took one not.
+// At most `most` on bodies, and others on coordinates. `refused` receives the reasons why the World took one not.
 template <class S>
-void add_spec_effects(Random& random, const Scales& scales, Scene& scene, std::vector<std::string>& refused);
+void add_spec_effects(Random& random, const Scales& scales, int most, Scene& scene, std::vector<std::string>& refused);
 
 }  // namespace cdot::torture
