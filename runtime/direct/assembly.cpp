@@ -99,6 +99,7 @@ void System<S>::build(const std::vector<Segment<S>>& segments, const Bodies<S>& 
   upper.assign(n, std::numeric_limits<Real>::infinity());
   for (auto* flags : {&fixed, &broken, &out_, &passing_}) flags->assign(n, 0);
   active_set_.assign(n, free);
+  circle_.reserve(n);
   multiplies_own_ = std::is_same_v<T, float> && (has_light_bodies(bodies) || has_loops(bodies));
   order_rows(bodies);
   each_row([&](int row, const Batch<S>& batch, int) { passing_[row] = batch.law != nullptr; });

@@ -30,6 +30,7 @@ int System<S>::factor() {
   char any = 0;
   for (int r = 0; r < rows_; ++r) any |= out_[r] = fixed[r] | broken[r];
   any_out_ = any != 0;
+  ++rounds_;
   softened_ = Softened::no;
   dependent_ = ldlt_.factor(softness.data(), any_out_ ? out_.data() : nullptr, lawful_ ? passing_.data() : nullptr);
   if (taut_ && dependent_ > 0)
@@ -205,18 +206,24 @@ int System<S>::find_active_set() {
   const int fast = 10, slow = std::min(2 * rows_, 200);
   int dependent = 0;
   bool settled = false;
+  circle_.begin(fixed);
   for (int round = 0; round < fast + slow && !settled; ++round) {
+    if (round == fast) circle_.begin(fixed);
     dependent = factor();
     solve_rows();
     if (round >= fast && dependent > 0) {
       share_contradictions();
       if (hold_motors(*this, slight(largest_b(Of::free_rows)))) {
         yields_ = true;
+        circle_.begin(fixed);
         continue;
       }
     }
     settled = revise_active_set(round >= fast);
     eased_ |= yields_ && !settled;
+    // Whole circles lead nowhere.
+    if (const int length = circle_.closes(fixed))
+      round += ((round < fast ? fast : fast + slow) - 1 - round) / length * length;
   }
   return settled || rows_ == 0 ? dependent : end_turns();
 }
@@ -241,6 +248,7 @@ int System<S>::solve_bounded() {
     if (fixed[r]) lambda[r] = fixed[r] == at_lower ? lower[r] : upper[r];
     if (!std::isfinite(lambda[r])) fixed[r] = free;
   }
+  rounds_ = 0;
   int dependent = part_and_settle();
   // A motor that yielded to a row now at its bound need not yield any more: it pulls a slipping brake with all it has.
   if (eased_) {

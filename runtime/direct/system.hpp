@@ -10,6 +10,7 @@
 #include <cdot/detail/state_array.hpp>
 
 #include "runtime/direct/ldlt.hpp"
+#include "runtime/number/circle.hpp"
 
 namespace cdot {
 
@@ -133,6 +134,8 @@ class System {
   // lambda within [lower, upper], by an active set: at a bound J v + bias need not vanish. Returns the number of
   // redundant rows of the last factorisation.
   int solve_bounded();
+  // Factorisations of the last solve_bounded().
+  int rounds() const { return rounds_; }
 
   // Its State.
   StateArray<char>& active_set() { return active_set_; }
@@ -215,7 +218,7 @@ class System {
   Real forgiven_share_ = 0, forgiven_ = 0;
   bool yields_ = false, eased_ = false;  // within solve_bounded(): part_and_settle()
   Softened softened_ = Softened::no;
-  int rows_ = 0, dependent_ = 0;
+  int rows_ = 0, dependent_ = 0, rounds_ = 0;
   BasicLdlt<Real> ldlt_;
   std::vector<Product> products_;
   std::vector<Real> jacobian_, weighted_;
@@ -224,6 +227,7 @@ class System {
   std::vector<Real> unmet_;                  // by row
   std::vector<int> tension_of_;              // index into `blocks`
   std::vector<char> out_, passing_;          // passing_: rows under a law, which may leave
+  Circle circle_;                            // of active sets, within find_active_set()
   StateArray<char> active_set_;              // State: Hold by row, of the last solve_bounded()
 };
 

@@ -63,7 +63,7 @@ void solve_loaded(WorldData<S>& world, Island<S>& island, System<S>& system) {
   begin_loads(world, island);
   const auto solve = [&] {
     system.load_laws();
-    island.redundant_rows = system.solve_bounded();
+    solve_bounded(world, island, system);
     system.find_excess();
     system.store([](Batch<S>& batch, int i, auto lambda) { batch.lambda[i] = T(lambda); });
   };
@@ -89,7 +89,7 @@ void solve_velocities(WorldData<S>& world, Island<S>& island, typename S::Veloci
     solve_loaded(world, island, system);
   } else if (system.lawful()) {
     system.load_laws();
-    island.redundant_rows = system.solve_bounded();
+    solve_bounded(world, island, system);
   } else {
     if (!island.factored) island.redundant_rows = system.factor();
     system.solve();

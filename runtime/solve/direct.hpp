@@ -33,6 +33,13 @@ template <class S, class Array>
   system.pull(world.bodies, to);
 }
 
+// The rows under laws, within the bounds that they have now.
+template <class S>
+[[gnu::always_inline]] inline void solve_bounded(WorldData<S>& world, Island<S>& island, System<S>& system) {
+  island.redundant_rows = system.solve_bounded();
+  if (!island.acceleration_level) world.solves += system.rounds();
+}
+
 // Selects the rows that have an error to correct and factors them. Velocity rows have none: they take part if the
 // correction is to change no rate of theirs.
 enum class Rates : char { free, kept };

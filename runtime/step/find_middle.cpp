@@ -209,7 +209,7 @@ typename S::Scalar improve(WorldData<S>& world, Island<S>& island, typename S::S
     std::ranges::fill(system.lambda, typename System<S>::Real(0));  // loads start from the present impulses
     const auto solve = [&] {
       bound_changes(island);
-      island.redundant_rows = system.solve_bounded();
+      solve_bounded(world, island, system);
       system.find_excess();
     };
     const auto impulse = [&](const Batch<S>& batch, int i, int row) {
@@ -222,7 +222,7 @@ typename S::Scalar improve(WorldData<S>& world, Island<S>& island, typename S::S
     if (!settle_loads(island, solve, impulse, solution)) island.trouble = StepProblem::jams;
   } else if (system.lawful()) {
     bound_changes(island);
-    island.redundant_rows = system.solve_bounded();
+    solve_bounded(world, island, system);
   } else {
     if (renew) {
       system.choose([](const Batch<S>&, int) { return true; });

@@ -166,21 +166,21 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
       result.first_rescue = after.time, result.at_rescue = largest_force(world);
     if (every_step) options.row(after);
     requested.after_step(before, after);
-    if (k > 0) error.after_step(world, before, after, k);
+    if (k > 0 && options.estimates_error) error.after_step(world, before, after, k);
     if (options.save_at && result.state.empty() && after.time >= *options.save_at * (1 - 1e-12))
       result.state = world.snapshot();
     const auto due =
         std::upper_bound(next_diagnosis, options.diagnose_times.end(), after.time + same_time * scene.duration);
     if (due != next_diagnosis) look(scene, world, result);
     next_diagnosis = due;
-    result.counts = world.step_counts();
+    result.counts = world.step_counts(), result.solves = data.solves;
     result.stopped = (options.look && !options.look(after, result)) ||
                      static_cast<double>(result.counts.evaluations) > options.most_evaluations;
     if (result.stopped && !options.diagnose_times.empty()) look(scene, world, result);
     if (Interrupt::asked() && options.save_at && result.state.empty()) result.state = world.snapshot();
     if (k == steps.count() || result.stopped || Interrupt::asked()) break;
     requested.before_step(world, after, steps.time(k + 1));
-    error.before_step(world, k + 1, steps.length(k + 1));
+    if (options.estimates_error) error.before_step(world, k + 1, steps.length(k + 1));
     const double start = cpu_now();
     const StepResult step = world.step(steps.length(k + 1));
     result.cpu += cpu_now() - start;

@@ -38,6 +38,7 @@ struct RunOptions {
   // Of a method that chooses its steps: those of an earlier run, to follow, and where to note those of this one.
   const Paces* paced_by = nullptr;
   Paces* paces = nullptr;
+  bool estimates_error = true;  // of a trajectory by fixed steps; a search compares runs instead
   double search_work =
       1e8;        // after which the search for a method ends with the best run so far; in units of search/work.hpp
   Snapshot from;  // to continue from; empty: the scene's start
@@ -65,6 +66,7 @@ struct SensorRange {
 struct RunResult {
   std::optional<Choice> choice;  // if the scene asks for an accuracy
   StepCounts counts;             // of integrators on accelerations
+  long long solves = 0;          // of others, see Workspace::solves
   double time = 0;               // at the end [s]
   double start = 0;              // [s]; above 0 if the run continued from a state
   long long steps = 0;

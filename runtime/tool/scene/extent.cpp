@@ -106,9 +106,11 @@ Extents extents_of(const Scene& scene) {
     boxes[static_cast<std::size_t>(groups.of(body))].add(frames.to_world(mark.body, mark.point));
   };
   Extents extents;
+  std::vector<int> members(scene.bodies.size());
   for (int body = 0; body < std::ssize(scene.bodies); ++body) {
     if (!movable(scene, body)) continue;
     extents.mechanisms += groups.of(body) == body;
+    ++members[static_cast<std::size_t>(groups.of(body))];
     const Shape& shape = scene.bodies[static_cast<std::size_t>(body)].shape;
     for (const double side : {-0.5, 0.0, 0.5})
       add(body, {body, {side * shape.length, side * shape.width, side * shape.depth}});
@@ -116,8 +118,11 @@ Extents extents_of(const Scene& scene) {
   for (const Link& link : links)
     if (const int anchor = anchor_of(scene, link); anchor != world_body)
       for (const Mark& mark : link.marks) add(anchor, mark);
-  for (int body = 0; body < std::ssize(scene.bodies); ++body)
-    extents.of_body.push_back(boxes[static_cast<std::size_t>(groups.of(body))].diagonal());
+  for (int body = 0; body < std::ssize(scene.bodies); ++body) {
+    const auto group = static_cast<std::size_t>(groups.of(body));
+    extents.of_body.push_back(boxes[group].diagonal());
+    extents.bodies.push_back(members[group]);
+  }
   return extents;
 }
 

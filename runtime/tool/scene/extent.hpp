@@ -11,7 +11,8 @@ struct Extents {
   // Of the mechanism that each body belongs to [m]: the diagonal of the box around its bodies, their shapes and the
   // points of its joints and springs at the start. 0: a single point.
   std::vector<double> of_body;
-  int mechanisms = 0;  // bodies that joints or springs connect are one; immovable bodies connect nothing
+  std::vector<int> bodies;  // movable ones in that mechanism, by body
+  int mechanisms = 0;       // bodies that joints or springs connect are one; immovable bodies connect nothing
 };
 
 Extents extents_of(const Scene& scene);

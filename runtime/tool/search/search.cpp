@@ -51,12 +51,13 @@ constexpr double unasked_work = 7e7, unasked_work_of_others = 5e6, most_unasked_
 // if a run has taken `suspicious` evaluations, is on the way to `dear`, and the fastest oscillation explains a share of
 // that price. Then methods for stiff scenes get such a share to be cheaper.
 constexpr double suspicious = 600, dear = 4000, share_of_stiff = 0.33, share_of_surely_stiff = 0.5;
+constexpr double steps_of_collocation = 10;  // half of its first run, or less
 
 class Search {
  public:
   Search(const Scene& scene, const RunOptions& options, std::string& warnings)
-      : scene_(scene), options_(options), warnings_(warnings), yardstick_(scene) {
-    const double steps = scene.duration / default_step * yardstick_.mechanisms();
+      : scene_(scene), options_(options), warnings_(warnings), yardstick_(scene), all_(evaluations_of_all(scene)) {
+    const double steps = scene.duration / default_step * all_;
     least_left_ = most_millisecond_runs * price_of_step(row_of(Integrator::euler)) * steps;
     left_ = options.search_work / work_of_evaluation(scene);
     least_left_ = std::min(left_, least_left_);
@@ -66,7 +67,7 @@ class Search {
 
  private:
   std::optional<double> next_share(const Attempt& last, const Attempt& now, int& idle);
-  void try_candidate(Integrator integrator, double most);
+  void try_candidate(Integrator integrator, double most, double reach = 0);
   void try_stiff(double most);
   void try_even_steps(const Attempt& even);
   bool has_long_steps(const Attempt& now) const {
@@ -84,13 +85,18 @@ class Search {
   double left_for_all() const { return options_.most_evaluations - price_; }
   bool done() const { return stopped_ || given_up_ || best_.reached || out_of_budget(); }
   bool in_reach(const Attempt& now, double most) const;
-  double price_of(const Try& knob) const { return price_of_step(knob.row()) * knob.steps() * yardstick_.mechanisms(); }
+  double price_after(const Attempt& last, const Try& knob) const;
+  double price_of_fixed(const Try& knob, const RunResult& so_far) const {
+    return std::max(price_of(knob), static_cast<double>(so_far.solves));
+  }
+  double price_of(const Try& knob) const { return price_of_step(knob.row()) * knob.steps() * all_; }
   Choice choice_of(const Attempt& attempt) const;
 
   const Scene& scene_;
   const RunOptions& options_;
   std::string& warnings_;
   Yardstick yardstick_;
+  double all_;                 // evaluations_of_all()
   double left_;                // of the budget
   double unasked_ = infinity;  // for all runs, if nobody asked for the accuracy
   double least_left_;          // for all other candidates, when the first has a price
@@ -128,7 +134,7 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool 
   }
   if (may_be_dear_) options.diagnose_times = {2 * solved.duration};  // only if the run is stopped
   options.paced_by = attempt.paced_by.get(), options.paces = attempt.paces.get();
-  options.progress = options_.progress;
+  options.progress = options_.progress, options.estimates_error = false;
   options.doing = name_of(knob) + ": ";
   options.most_evaluations = std::min(left_for_all(), knob.adaptive() ? most : infinity);
   const double interval = solved.duration / knob.intervals;
@@ -136,7 +142,7 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool 
     if (std::abs(frame.time - static_cast<double>(attempt.frames.size()) * interval) < 1e-6 * interval)
       attempt.frames.push_back(frame);
     attempt.energy_share = so_far.balance.energy.share();
-    if (!knob.adaptive()) return true;
+    if (!knob.adaptive()) return (attempt.price = price_of_fixed(knob, so_far)) <= most;
     if (judged && (attempt.foreseen = foreseen_distance(yardstick_, solved.duration, last, attempt)) > 0) return false;
     attempt.price = static_cast<double>(so_far.counts.evaluations);
     const double foreseen = frame.time > 0 ? attempt.price * solved.duration / frame.time : 0;
@@ -149,7 +155,7 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool 
   std::string ignored;
   attempt.result = run_once(solved, options, runs_ == 0 ? warnings_ : ignored);
   const RunResult& result = attempt.result;
-  attempt.price = knob.adaptive() ? static_cast<double>(result.counts.evaluations) : price_of(knob);
+  attempt.price = knob.adaptive() ? static_cast<double>(result.counts.evaluations) : price_of_fixed(knob, result);
   stiff_price_ = stiff_price(scene_, result.diagnosis);
   attempt.whole = result.finite && !result.failed_step && !result.stopped && !result.interrupted;
   stopped_ = result.interrupted;
@@ -244,7 +250,13 @@ void Search::bound_budget(const Attempt& now) {
   left_ = std::min(left_, seems_good ? std::max(unasked_, most_unasked_runs * now.price) : unasked_);
 }
 
-void Search::try_candidate(Integrator integrator, double most) {
+// The price of a run by fixed steps, foreseen by that of the last one: where rows press on each other, steps are dear.
+double Search::price_after(const Attempt& last, const Try& knob) const {
+  return price_of(knob) * (last.whole ? last.price / price_of(last.knob) : 1);
+}
+
+// Its runs may have this price altogether. `reach`: and with those that may follow later, if that is more.
+void Search::try_candidate(Integrator integrator, double most, double reach) {
   const bool adaptive = row_of(integrator).level == Level::acceleration;
   std::optional<Try> knob =
       first_try(integrator, yardstick_.asked(), !adaptive || stiff_at_start_ <= suspicious * yardstick_.mechanisms());
@@ -255,7 +267,7 @@ void Search::try_candidate(Integrator integrator, double most) {
   if (begun_.last.whole && begun_.last.knob.integrator == integrator)
     knob = begun_.next, last = std::move(begun_.last), idle = begun_.idle;
   while (knob && !done() && !sensitive_) {
-    if (!knob->adaptive() && spent + price_of(*knob) > most) break;
+    if (!knob->adaptive() && spent + price_after(last, *knob) > most) break;
     given_up_ = !knob->adaptive() && price_of(*knob) > left_for_all();
     if (given_up_) break;
     const bool judged = may_end_early && last.whole && last.result.counts.rescued == 0;
@@ -278,7 +290,8 @@ void Search::try_candidate(Integrator integrator, double most) {
       else if (runs_ == 1 && has_long_steps(now) && now.price <= even * yardstick_.mechanisms()) try_even_steps(now);
     }
     const std::optional<double> share = next_share(last, now, idle);
-    knob = share && in_reach(now, most - spent) ? finer(*knob, *share, shorter_after(now)) : std::nullopt;
+    knob =
+        share && in_reach(now, std::max(most, reach) - spent) ? finer(*knob, *share, shorter_after(now)) : std::nullopt;
     keep(Attempt(now));
     last = std::move(now);
   }
@@ -286,9 +299,12 @@ void Search::try_candidate(Integrator integrator, double most) {
 }
 
 // Those that take stiffness implicitly, high orders first. But what stands still costs the lowest order next to
-// nothing: its first two runs, of equal and of twice as many steps as intervals.
+// nothing: its first two runs, of equal and of twice as many steps as intervals. In large mechanisms it goes on for the
+// price of some steps of the highest order, while it promises to get there.
 void Search::try_stiff(double most) {
-  try_candidate(Integrator::implicit, 3 * price_of({Integrator::implicit}));
+  const double of_collocation = steps_of_collocation * price_of_derivatives(scene_);
+  try_candidate(Integrator::implicit, std::max(3 * price_of({Integrator::implicit}), std::min(most, of_collocation)),
+                most);
   auto begun = std::move(begun_);
   for (auto row = integrator_rows.rbegin(); row != integrator_rows.rend(); ++row) {
     if (row->integrator == Integrator::implicit) begun_ = std::move(begun);

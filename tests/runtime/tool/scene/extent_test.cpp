@@ -53,6 +53,7 @@ at = [999, 0]
   EXPECT_NEAR(extents.of_body[1], std::hypot(2, 0.12), 1e-12);  // the rod's width is 0.06 of its length
   EXPECT_EQ(extents.of_body[3], 0);
   EXPECT_EQ(extents.of_body[4], extents.of_body[0]);
+  EXPECT_EQ(extents.bodies, (std::vector<int>{2, 1, 0, 1, 2}));
 }
 
 }  // namespace
