@@ -161,7 +161,7 @@ void project_velocities_at_start(WorldData<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void project_start(WorldData<S>& world, Island<S>& island) {
+void project_start(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   using T = typename S::Scalar;
   if (world.settings.drift != Drift::projection || island.segments.empty()) return;
   if (!(island.residual > foreign<T> * island.scale)) return;
@@ -169,15 +169,15 @@ void project_start(WorldData<S>& world, Island<S>& island) {
   Bodies<S>& all = world.bodies;
   const bool exact = island.solver->exact;
   for (size_t k = 0; exact && k < island.bodies.size(); ++k) island.flow.pose[k] = all.pose[island.bodies[k]];
-  const T error = find_errors(world, island, T(world.time));
-  island.solver->positions(world, island, T(world.time), true);
+  const T error = find_errors(world, island, time);
+  island.solver->positions(world, island, time, true);
   if (exact) fail_if_moved_far(world, island, double(error), 0);
   // Joints that contradict each other may have no pose near by, and Newton leads away from all.
   if (exact && island.residual > error) {
     for (size_t k = 0; k < island.bodies.size(); ++k) all.pose[island.bodies[k]] = island.flow.pose[k];
     if constexpr (S::has_gyroscopes) set_inertias(world, island);
     clear_correction(world, island);
-    island.residual = find_errors(world, island, T(world.time));
+    island.residual = find_errors(world, island, time);
     note_errors(island);
   }
   scale_corrections(island, T(0));  // the motion does not need them, so they are no load for its friction
@@ -242,7 +242,7 @@ void project_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
   template bool correction_is_small(const WorldData<S>&, const Island<S>&, double); \
   template void project_velocities(WorldData<S>&, Island<S>&);                      \
   template void project_velocities_at_start(WorldData<S>&, Island<S>&);             \
-  template void project_start(WorldData<S>&, Island<S>&);                           \
+  template void project_start(WorldData<S>&, Island<S>&, S::Scalar);                \
   template void project_step(WorldData<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -65,7 +65,7 @@ void project_velocities_at_start(WorldData<S>& world, Island<S>& island);
 // With Drift::projection: project_start() projects the poses at the start of a step onto C = 0 if they are off.
 // project_step() projects the poses and velocities at the end of a step of h.
 template <class S>
-void project_start(WorldData<S>& world, Island<S>& island);
+void project_start(WorldData<S>& world, Island<S>& island, typename S::Scalar time);
 template <class S>
 void project_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 

@@ -57,7 +57,7 @@ template <class S>
 void advance(WorldData<S>& world, Island<S>& island, typename S::Scalar h, const Try& by) {
   const bool held_back = island.stiffened && island.floats;
   const auto momentum = held_back ? momentum_of(world, island) : MomentumOf<S>{};
-  project_start(world, island);
+  project_start(world, island, typename S::Scalar(world.time));
   begin_kick(world, island);
   if (island.stiffened) {
     if (by.last_step == 0) rehearse(world, island, h);

@@ -145,7 +145,7 @@ typename S::Scalar begin_kick_drift(WorldData<S>& world, Island<S>& island, type
   const T share = world.last_step > 0 ? h / T(world.last_step) : T(0);
   // Errors that sweeps left in the impulses would grow with them, until they throw the bodies off.
   if (island.evaluated) return island.solver->exact ? share : std::min(T(1), share);
-  project_start(world, island);
+  project_start(world, island, typename S::Scalar(world.time));
   evaluate_anew(world, island, typename S::Scalar(world.time));
   clear_correction(world, island);
   project_velocities_at_start(world, island);

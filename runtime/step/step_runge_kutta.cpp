@@ -227,7 +227,7 @@ void begin(WorldData<S>& world, Island<S>& island, typename S::Scalar time, type
   if (island.flow.known) return;
   drop_modes(island);
   island.acceleration_level = false;
-  project_start(world, island);
+  project_start(world, island, time);
   island.acceleration_level = true;
   evaluate_anew(world, island, time);
   island.jams = false;
