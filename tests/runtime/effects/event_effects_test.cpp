@@ -311,7 +311,7 @@ TEST(EventEffects, AnEndOnACrankIsMetAtItsTime) {
     driven.push_back({"rate", {1}});
     world.add_joint({"driven", {world.ground(), crank}, driven, {}});
     const int pin = world.add_joint({"hinge", {crank, finger}, axle, {}});
-    add_limit(world, pin, "angle", {.upper = end});
+    add_limit(world, pin, "angle", {.lower = {}, .upper = end});
     world.add_joint({"spherical_spherical", {crank, ball}, {{"pa", centre}, {"pb", {1e-9, 0, 0}}}, {}});
     while (world.time() < 1) {
       ASSERT_TRUE(world.step(h)) << name;
