@@ -59,10 +59,11 @@ std::string parameters_of(const JointType& type, bool in_space) {
   return text;
 }
 
+// Three bodies lie on no line.
 std::string body_text(int index, bool in_space) {
   return fmt::format(
       "[[body]]\nname     = \"body{0}\"\nmass     = 1\nshape    = {{ {1} }}\nposition = [{2:.2g}, {3:.2g}{4}]\n\n",
-      index, in_space ? "box = [0.6, 0.2, 0.1]" : "rod = 0.6", 0.8 * index, 0.1 * index, in_space ? ", 0" : "");
+      index, in_space ? "box = [0.6, 0.2, 0.1]" : "rod = 0.6", 0.8 * index, 0.1 * index * index, in_space ? ", 0" : "");
 }
 
 // { speed = 1, most = 1 }: the parameters without a default on a coordinate, and a speed, so that a drive moves; else

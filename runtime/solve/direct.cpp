@@ -243,8 +243,8 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   using T = typename S::Scalar;
   System<S>& system = island.at_work();
   T before = std::numeric_limits<T>::infinity();
-  if (fresh && may_stay(island)) evaluate_anew(world, island, time);
-  bool renewed = false, fitted = left_round_off(world, island);
+  bool renewed = false,
+       fitted = T(island.residual) <= std::max(converged<T> * island.scale, round_off_of(world, island));
   // Near a loss of rank the error is magnified, so nothing but round-off may stay.
   const T tolerance = island.flow.projects_stages ? std::numeric_limits<T>::epsilon() : converged<T>;
   system.blur(0);

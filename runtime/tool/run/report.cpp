@@ -71,11 +71,10 @@ text::Json failed_step_json(const Scene& scene, const StepResult& step) {
           {"row", step.row + 1}};
 }
 
-// Of a pose where the law of an effect has none, as a gas spring of negative length. Its work tells which.
+// Of a pose where the law of an effect has none, as a gas spring of negative length.
 std::string energy_without_value(const RunResult& result) {
-  const auto of_effect = std::ranges::find_if_not(result.work, [](const auto& of) { return !std::isnan(of.work); });
   const std::string effect =
-      of_effect == result.work.end() ? "an effect" : fmt::format("an effect `{}`", of_effect->name);
+      result.without_energy.empty() ? "an effect" : fmt::format("an effect `{}`", result.without_energy);
   return fmt::format("{} has no energy at the pose of t = {:.6g} s. {}", effect, result.time,
                      fix_of(result, "a limit or a stop before that pose, or a shorter step"));
 }

@@ -42,6 +42,15 @@ void judge(const Scene& scene, const Frame& frame, RunResult& result) {
   result.time = frame.time;
 }
 
+// As a gas spring shorter than 0 has none; empty if all have one.
+template <class S>
+std::string effect_without_energy(const WorldData<S>& world) {
+  for (const auto& batch : world.batches)
+    for (int slot = 0; batch->law && batch->law->energy && slot < static_cast<int>(batch->joint.size()); ++slot)
+      if (!std::isfinite(batch->law->energy(*batch, slot))) return std::string(world.sources[batch->source]);
+  return {};
+}
+
 template <class S>
 void finish(const Scene& scene, const BasicWorld<S>& world, RunResult& result) {
   for (std::size_t k = 0; k < scene.joints.size(); ++k) {
@@ -201,6 +210,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   }
   if (result.finite) result.balance.look(world.balance());
   result.work = world.work_by_source();
+  if (std::isnan(result.energy_end)) result.without_energy = effect_without_energy(data);
   rank.end();
   result.rank_losses = rank.found();
   result.worst_step = worst_step.found();

@@ -78,6 +78,7 @@ struct RunResult {
   double worst_end_time = 0;
   double energy_start = 0, energy_end = 0,
          energy_drift = 0;           // [J]; drift: the largest |E - E_start|
+  std::string without_energy;        // where energy_end is no number: the effect whose law has none there
   BalanceWatch balance;              // after every step
   std::vector<WorkOfSource> work;    // of the whole run
   std::vector<SensorRange> sensors;  // of the scene
