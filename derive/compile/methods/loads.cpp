@@ -61,16 +61,16 @@ constexpr const char* changes = R"(
   // yields. The bounds are then those of these loads. lambda: of the joints without these forces. True in lanes that
   // jam: no finite force lets the rows slip on.
   template <class Solve>
-  static Mask settle_loads($dconst Pose (&q)[bodies], const T& time, {2}Bounded& B, T (&force)[bounded],
-                           T (&load)[bounded], const Solve& solve) {{
+  static Mask {12}($dconst Pose (&q)[bodies], const T& time, {2}Bounded& B, T (&force)[bounded],
+                           T (&load)[bounded], {13}const Solve& solve) {{
     const Bounded plain = B;
     Search search;
-    Mask busy = T(0) < T(1);
-    for (int i = 0; i < bounded; ++i) load[i] = larger(T(0), load[i]);
+{14}    for (int i = 0; i < bounded; ++i) load[i] = larger(T(0), load[i]);
 {3}    for (int round = 0; round < {4} && any(busy); ++round) {{
       T now[bounded], found[bounded], change[bounded], worst = T(0);
       for (int i = 0; i < bounded; ++i) {{
-        B.low[i] = plain.low[i] + plain.by_low[i] * load[i], B.high[i] = plain.high[i] + plain.by_high[i] * load[i];
+        const T taken = {15}load[i];
+        B.low[i] = plain.low[i] + plain.by_low[i] * taken, B.high[i] = plain.high[i] + plain.by_high[i] * taken;
         B.S[i * (i + 1) / 2 + i] = entry(plain.S, i, i);
       }}
 {5}      solve(now);
@@ -80,6 +80,48 @@ constexpr const char* changes = R"(
 {8}
     }}
 {9}    return busy;
+  }}
+)";
+
+constexpr const char* all_lanes = "    Mask busy = T(0) < T(1);\n";
+
+// Without cones: `share` of the loads bounds forces. Loads that run away are `beyond`.
+constexpr const char* shared_lanes = R"(    Mask busy = lanes;
+    T last[bounded], last_found[bounded];
+)";
+constexpr const char* notes_running_away = R"(      T way = T(0), together = T(0), size = T(0);
+      for (int i = 0; i < bounded && round > 0; ++i) {
+        const T step = load[i] - last[i];
+        way = way + step * step, together = together + step * (found[i] - last_found[i]), size = size + load[i] * load[i];
+      }
+      for (int i = 0; i < bounded; ++i) last[i] = load[i], last_found[i] = found[i];
+      beyond = beyond || (busy && way > T(single ? 1e-6 : 1e-16) * size && together > way);
+)";
+// As the World does it: settle_loads() in runtime/solve/loads.hpp.
+constexpr const char* least_loads = R"(
+  // The same for whole loads. Where friction changes its own load by more than it is, more than one load is possible:
+  // the right one is the least, to which the load tends as friction grows from none.
+  template <class Solve>
+  static Mask settle_loads($dconst Pose (&q)[bodies], const T& time, {0}Bounded& B, T (&force)[bounded],
+                           T (&load)[bounded], const Solve& solve) {{
+    constexpr int parts = 16;
+    const Bounded plain = B;
+    const Mask all = T(0) < T(1);
+    Mask beyond = !all, jams = settle_share($pq, time, {1}B, force, load, T(1), all, beyond, solve);
+    const Mask doubtful = beyond && !jams;
+    if (!any(doubtful)) return jams;
+    for (int i = 0; i < bounded; ++i) load[i] = select(doubtful, T(0), load[i]);
+    Mask grows = doubtful;
+    for (int part = 1; part <= parts; ++part) {{
+      const Mask lanes = part < parts ? grows : doubtful;
+      Mask passes = !all;
+      B = plain;
+      const Mask stuck = settle_share($pq, time, {1}B, force, load,
+                                      select(lanes, T(double(part) / parts), T(1)), lanes, passes, solve);
+      grows = grows && !stuck && !passes;
+      if (part == parts) jams = jams || stuck;
+    }}
+    return jams;
   }}
 )";
 
@@ -115,14 +157,21 @@ std::string settle_loads_of(const Contents& has, const std::string& cones) {
   std::string parameters = has.rows ? "const Jacobian& J, const T (&lambda)[rows], " : "";
   if (has.corrects_loads())
     parameters += std::string(has.rows ? "const T (&drawn)[rows], " : "") + "const T (&before)[bounded], ";
-  if (!has.cones)
-    return goes_with_loads + fmt::format(changes, "", "", parameters, "", "some_rounds", "", carries, enough_of_loads,
-                                         moves_loads, "", "", "T(1)");
+  if (!has.cones) {
+    const std::string arguments = std::string(has.rows ? "J, lambda, " : "") +
+                                  (has.corrects_loads() && has.rows ? "drawn, " : "") +
+                                  (has.corrects_loads() ? "before, " : "");
+    return goes_with_loads +
+           fmt::format(changes, "", "", parameters, "", "some_rounds", "", carries + notes_running_away,
+                       enough_of_loads, moves_loads, "", "", "T(1)", "settle_share",
+                       "const T& share, const Mask& lanes, Mask& beyond, ", shared_lanes, "share * ") +
+           fmt::format(least_loads, parameters, arguments);
+  }
   if (has.midpoint) carries += fmt::format(carries_for_cones, joints);
   return fmt::format(goes_with_cones, cones) +
          fmt::format(changes, "const Mask (&turns)[bounded], ", "turns[i], ", parameters + parameters_of_cones,
                      begins_corners, "3 * some_rounds", bounds_corners, carries + finds_corners, enough_of_corners,
-                     moves_corners, ends_corners, unless_plain, lengthens);
+                     moves_corners, ends_corners, unless_plain, lengthens, "settle_loads", "", all_lanes, "");
 }
 
 std::string corners(const Contents& has, const char* share) {

@@ -1,4 +1,4 @@
-// Bounds that grow with a load, by Runge-Kutta methods: friction of pins, rails and contacts.
+// Bounds that grow with a load: friction of pins, rails and contacts, mostly by Runge-Kutta methods.
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -10,6 +10,9 @@
 #include "rough_rail_dop853.hpp"
 #include "rough_rail_rk4.hpp"
 #include "tests/derive/compile/beside_world.hpp"
+#include "very_rough_pin_euler.hpp"
+#include "very_rough_pin_rattle.hpp"
+#include "very_rough_pin_rk4.hpp"
 
 namespace {
 
@@ -25,6 +28,17 @@ TEST(CompiledLoads, MoveAsTheWorld) {
   runs_as_the_world<rough_pins_rk4<double>>(scenes + "rough_pins.toml", Integrator::rk4, 1e-11, 2);
   runs_as_the_world<rough_pins_dop853<double>>(scenes + "rough_pins.toml", Integrator::dop853, 1e-11, 2);
   runs_as_the_world<rough_rail_rk4<double>>(scenes + "rough_rail.toml", Integrator::rk4, 1e-12, 2);
+}
+
+// Two loads solve for the pin. The World takes the least one, and is tested by a closed form in
+// LoadedEffects.ARodOnAVeryRoughPinHasTheSmallerOfTwoLoads; with the other one the rod is 0.013 rad/s slower at the
+// end.
+TEST(CompiledLoads, TakeTheLeastOfTwo) {
+  const std::string pin = scenes + "very_rough_pin.toml";
+  runs_as_the_world<very_rough_pin_euler<double>>(pin, Integrator::euler, 1e-12, 0.01, 1e-4);
+  runs_as_the_world<very_rough_pin_rattle<double>>(pin, Integrator::rattle, 1e-12, 0.01, 1e-4);
+  runs_as_the_world<very_rough_pin_rk4<double>>(pin, Integrator::rk4, 1e-12, 0.01, 1e-4);
+  cdot::lanes_are_as_alone<very_rough_pin_rk4>();
 }
 
 // The sledge slides v^2 / (2 mu g). The ball takes mu times the impulse of its landing, then slips until it rolls:
