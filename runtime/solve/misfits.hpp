@@ -1,4 +1,4 @@
-// What a projection leaves of C, row by row: round-off, or the misfits of joints that contradict each other.
+// The rest of C after a projection, row by row: round-off, or the misfits of joints that contradict each other.
 #pragma once
 
 #include "runtime/state/world_data.hpp"

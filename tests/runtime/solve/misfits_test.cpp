@@ -1,4 +1,4 @@
-// What counts as an error of a row: in m, in rad and in m^2, near the origin and far away, in mechanisms of any size.
+// The size from which C is an error of a row: in m, in rad and in m^2, near the origin and far away, at any size.
 #include "runtime/solve/misfits.hpp"
 
 #include <cmath>
