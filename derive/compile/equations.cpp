@@ -112,17 +112,11 @@ class EquationWriter {
     if (mechanism_.method == Method::rattle) list_freed();
   }
 
-  // Of a mechanism with effects or rows with bounds.
   void list_freed() {
-    const std::vector<int> all = groups_of(mechanism_);
-    std::set<int> lawful;
-    for (const std::vector<Effect>* effects : {&mechanism_.effects, &mechanism_.bounded})
-      for (const Effect& effect : *effects) lawful.insert(group_of(all, effect.bodies));
     for (std::size_t k = 0; k < system().blocks().size(); ++k) {
       const RowBlock& block = system().blocks()[k];
       for (std::size_t r = 0; r < block.rows->count(); ++r)
-        if (block.joint->is_rate[r] && lawful.contains(group_of(all, *block.bodies)))
-          out_.freed.push_back(static_cast<int>(system().first_row(k) + r));
+        if (block.joint->is_rate[r]) out_.freed.push_back(static_cast<int>(system().first_row(k) + r));
     }
   }
 

@@ -36,7 +36,7 @@ struct Equations {
   bool exerts = false;         // so does the start of a run
   int groups = 1;              // mechanisms
   std::string group_lists;     // by body, by row, by row with bounds
-  std::vector<int> freed;      // rows of velocities beside effects or rows with bounds
+  std::vector<int> freed;      // rows of velocities
   std::vector<int> effect_of;  // by row of Damping: its effect
   std::size_t triangle = 0;    // numbers in Damping::K
   Program dampen;              // q, v, time, h -> next: v with the dampers at the start

@@ -168,6 +168,14 @@ void begin_search(Island<S>& island) {
   island.flow.search.begin([&](size_t row) { return island.at_work().diagonal(static_cast<int>(row)); });
 }
 
+// The rows that close C. Velocity rows have none: they repeat their impulse of the last half, and their rates are free.
+// If these were kept, an error of that impulse would grow by 1 / (1 - c^2) in each step. There c is the correlation of
+// such a row with one of C, and 1 at a loss of rank.
+template <class S>
+void choose_rows_of_drift(System<S>& system, bool rolling, int round) {
+  if (system.lawful() || (rolling && round == 0)) factor_rows_with_errors(system, Rates::free);
+}
+
 // Repeats K lambda = -C / h with the factor of the start and Broyden's updates, velocity += M^-1 J^T lambda, and the
 // drift. False if the error does not shrink because the step is too long. False also if the solution reverses the
 // bodies' velocities. That happens where a joint's direction reverses, as that of a rope whose length passes through 0.
@@ -178,6 +186,7 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
   const T near = std::max(converged<T> * island.scale, of_long_arms<T> * T(island.size));
   begin_search(island);
   T least = std::numeric_limits<T>::infinity(), at_first = 0;
+  const bool rolling = rolls(island);
   bool astray = false;
   for (int round = 0, vain = 0;; ++round) {
     drift(world, island, h);
@@ -198,7 +207,7 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
                                           std::min(slight<T> * at_first, foreign<T> * island.scale)});
     astray |= vain > 0;
     load_errors(system, T(-1) / h);
-    if (system.lawful()) factor_rows_with_errors(system, Rates::free);
+    choose_rows_of_drift(system, rolling, round);
     system.solve();
     if (at_ends) {  // updates would not know which ends hold
       let_go_of_pulling_ends(system);
@@ -365,6 +374,7 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   begin_kick(world, island);
   kick(world, island, h / 2);
   note_impulses_of_forces(island, h / 2, false);
+  if (repeats && !by_sweeps) island.at_work().choose([](const Batch<S>&, int) { return true; });  // rolling as well
   solve_end(world, island, h, struck);
   book_kick(world, island, Impulses::rattle_end, h / 2);  // the mirror image of the start
   island.evaluated = !struck;                             // the next step does not repeat friction's share of an impact

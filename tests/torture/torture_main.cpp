@@ -10,6 +10,7 @@
 #include <cdot/methods.hpp>
 
 #include "tests/torture/advice.hpp"
+#include "tests/torture/draw/own_effects.hpp"
 #include "tests/torture/draw/scene_text.hpp"
 #include "tests/torture/misfit.hpp"
 #include "tests/torture/shrink.hpp"
@@ -65,11 +66,17 @@ Verdict judged(const Options& options, const Scene& scene, const Asked& asked) {
   return options.misfit ? judge_misfit(scene) : judge(scene, asked);
 }
 
-// The scene and its tables, as files of a folder.
+std::vector<std::pair<std::string, std::string>> files_of(const Scene& scene) {
+  auto files = tables_of(scene);
+  std::ranges::move(own_specs_of(scene), std::back_inserter(files));
+  return files;
+}
+
+// The scene with its tables and specs, as files of a folder.
 void write(const std::string& folder, const std::string& name, const Scene& scene) {
   std::filesystem::create_directories(folder);
   std::ofstream(folder + "/" + name) << text_of(scene);
-  for (const auto& [table, rows] : tables_of(scene)) std::ofstream(folder + "/" + table) << rows;
+  for (const auto& [file, content] : files_of(scene)) std::ofstream(folder + "/" + file) << content;
 }
 
 // Prints the broken invariant, the shrunk scene and the command that repeats it.
@@ -93,7 +100,7 @@ void report(const Options& options, std::uint64_t seed, const Scene& scene, cons
       "  again: torture --seed {:#x} --count 1 --steps {}; the small one: torture --scene {}{}; cdot-run simulate "
       "{}\n\n{}\n",
       seed, options.wish.steps, name, how, name, text);
-  for (const auto& [table, rows] : tables_of(small.scene)) fmt::print("{}\n{}\n", table, rows);
+  for (const auto& [file, content] : files_of(small.scene)) fmt::print("{}\n{}\n", file, content);
   if (!options.keep.empty()) write(options.keep, name, small.scene);
 }
 
@@ -182,6 +189,7 @@ int main(int count, char** arguments) {
   app.add_flag("--forces", options.forces, "a force on each body that is a function of time");
   app.add_flag("--effects", options.wish.effects, "effects of specs, on bodies and on coordinates");
   app.add_flag("--islands", options.wish.islands, "few joints, and effects of specs between the islands");
+  app.add_flag("--own", options.wish.own, "effects whose specs are written at random, too");
   app.add_flag("--in-time", options.wish.in_time, "numbers of joints and effects follow functions of time");
   app.add_flag("--advice", options.advice, "runs each by cdot-run, and follows its advice; judges nothing else");
   app.add_flag("--misfit", options.misfit, "mechanisms at rest with a joint that is a little off; judges nothing else");

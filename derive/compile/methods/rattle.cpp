@@ -126,8 +126,8 @@ constexpr const char* joint_changes =
       solve($qs.J, {}C, impulse, d);
 {}      for (int i = 0; i < bodies; ++i) d[i] = -d[i];
 )";
-// Beside effects and rows with bounds, rows of velocities are free in the first half, as in the World: of all impulses
-// those with none of theirs. F.lambda of each such row is 1 in it and 0 in the others.
+// Rows of velocities are free in the first half, as in the World: of all impulses those with none of theirs. F.lambda
+// of each such row is 1 in it and 0 in the others.
 constexpr const char* frees = R"(
   static constexpr int freed = {0}, freed_rows[freed] = {{{1}}};
   struct Freed {{

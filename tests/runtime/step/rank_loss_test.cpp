@@ -241,6 +241,9 @@ TEST(RankLoss, APlateThatRollsOnABallPassesIt) {
                                             {Integrator::euler, 0.001, 0.02},
                                             {Integrator::implicit, 0.03, 1e-3},
                                             {Integrator::implicit, 0.0075, 1e-4},
+                                            {Integrator::rattle, 0.03, 2e-3},
+                                            {Integrator::rattle, 0.0075, 1e-4},
+                                            {Integrator::rattle, 0.001, 2e-6},
                                             {Integrator::rk4, 0.03, 1e-4},
                                             {Integrator::rk4, 0.0075, 1e-6},
                                             {Integrator::dop853, 0.03, 1e-10}}) {

@@ -7,6 +7,7 @@
 
 #include "tests/torture/draw/draw.hpp"
 #include "tests/torture/draw/in_time.hpp"
+#include "tests/torture/draw/own_effects.hpp"
 #include "tests/torture/draw/scene_text.hpp"
 #include "tests/torture/draw/spec_effects.hpp"
 
@@ -220,7 +221,11 @@ void Growth::grow() {
   try {
     if (random_.chance(0.4)) add_effects<S>(random_, scales_, made_.scene);
     const int most = wish_.islands ? std::max(3, 2 * static_cast<int>(made_.scene.bodies.size())) : 3;
-    if (wish_.effects || wish_.islands) add_spec_effects<S>(random_, scales_, most, made_.scene, made_.refused);
+    const auto add = [&](const EffectTypes& types) {
+      add_spec_effects<S>(random_, scales_, types, most, made_.scene, made_.refused);
+    };
+    if (wish_.effects || wish_.islands) add(effects_of_catalogue(S::dimension));
+    if (wish_.own) add(own_effects(random_, S::dimension));
     if (wish_.in_time) add_numbers_in_time<S>(random_, scales_, made_.scene, made_.refused);
   } catch (const SceneError& error) {  // the World refuses the projected poses, as gears that have turned too far
     made_.refused.push_back(error.what());

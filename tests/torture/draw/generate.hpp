@@ -20,6 +20,7 @@ struct Wish {
   std::optional<bool> single = {};
   bool effects = false;  // of specs too
   bool islands = false;  // few joints, and many such effects between the islands
+  bool own = false;      // effects whose specs are written at random
   bool in_time = false;  // numbers of joints and effects follow functions of time
   int steps = 200;
 };

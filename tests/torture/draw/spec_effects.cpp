@@ -4,6 +4,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "runtime/own/own.hpp"
+
 namespace cdot::torture {
 
 double scale_of(std::string_view unit, const Scales& scales) {
@@ -105,38 +107,48 @@ bool has_key_of_its_own(const JointType& law) {
                      [&](const EffectKind* kind) { return law.name == kind->key; });
 }
 
-std::vector<const JointType*> laws_for(const CoordinateInfo& coordinate) {
+std::vector<const JointType*> laws_for(const EffectTypes& types, const CoordinateInfo& coordinate) {
   std::vector<const JointType*> laws;
-  for (const JointType& type : coordinate_effects())
-    if (type.coordinate_unit == coordinate.unit && !has_key_of_its_own(type)) laws.push_back(&type);
+  for (const JointType* type : types.on_coordinates)
+    if (type->coordinate_unit == coordinate.unit) laws.push_back(type);
   return laws;
 }
 
+bool is_compiled(const JointType& type) { return file_of_own_type(std::string(type.name)).empty(); }
+
 }  // namespace
 
+EffectTypes effects_of_catalogue(Dimension dimension) {
+  EffectTypes types;
+  for (const JointType& type : joint_types(dimension))
+    if (type.is_effect && is_compiled(type)) types.on_bodies.push_back(&type);
+  for (const JointType& type : coordinate_effects())
+    if (!has_key_of_its_own(type) && is_compiled(type)) types.on_coordinates.push_back(&type);
+  return types;
+}
+
 template <class S>
-void add_spec_effects(Random& random, const Scales& scales, int most, Scene& scene, std::vector<std::string>& refused) {
-  std::vector<const JointType*> on_bodies;
-  for (const JointType& type : joint_types(S::dimension))
-    if (type.is_effect) on_bodies.push_back(&type);
+void add_spec_effects(Random& random, const Scales& scales, const EffectTypes& types, int most, Scene& scene,
+                      std::vector<std::string>& refused) {
   const std::size_t joints = scene.joints.size();
   for (std::size_t j = 0; j < joints; ++j) {
     const JointType& type = *find_joint_type(S::dimension, scene.joints[j].definition.type);
     for (std::size_t k = 0; k < type.coordinates.size(); ++k) {
-      if (!random.chance(0.4)) continue;
-      const SpecEffect law = random_law(random, scales, *random.of(laws_for(type.coordinates[k])));
+      const std::vector<const JointType*> laws = laws_for(types, type.coordinates[k]);
+      if (laws.empty() || !random.chance(0.4)) continue;
+      const SpecEffect law = random_law(random, scales, *random.of(laws));
       taken<S>(scene, refused, [&](Scene& trial) { effects_on(trial.joints[j], type, k).specs.push_back(law); });
     }
   }
   for (int k = 1 + random.below(most); k > 0; --k) {
-    SceneJoint effect = random_effect(random, scales, scene, *random.of(on_bodies));
+    SceneJoint effect = random_effect(random, scales, scene, *random.of(types.on_bodies));
     effect.name = fmt::format("e{}", k);
     taken<S>(scene, refused, [&](Scene& trial) { trial.joints.push_back(effect); });
   }
 }
 
 #define CDOT_INSTANTIATE(S) \
-  template void add_spec_effects<S>(Random&, const Scales&, int, Scene&, std::vector<std::string>&);
+  template void add_spec_effects<S>(Random&, const Scales&, const EffectTypes&, int, Scene&, std::vector<std::string>&);
 CDOT_INSTANTIATE(Planar<double>)
 CDOT_INSTANTIATE(Spatial<double>)
 #undef CDOT_INSTANTIATE

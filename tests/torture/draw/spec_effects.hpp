@@ -27,8 +27,17 @@ bool taken(Scene& scene, std::vector<std::string>& refused, Change change) {
   return true;
 }
 
+// The effects that a mechanism may have.
+struct EffectTypes {
+  std::vector<const JointType*> on_bodies, on_coordinates;
+};
+
+// All that are compiled, but for those on coordinates whose names are keys of a scene already.
+EffectTypes effects_of_catalogue(Dimension dimension);
+
 // At most `most` on bodies, and others on coordinates. `refused` receives the reasons why the World took one not.
 template <class S>
-void add_spec_effects(Random& random, const Scales& scales, int most, Scene& scene, std::vector<std::string>& refused);
+void add_spec_effects(Random& random, const Scales& scales, const EffectTypes& types, int most, Scene& scene,
+                      std::vector<std::string>& refused);
 
 }  // namespace cdot::torture
