@@ -29,11 +29,22 @@ typename S::Velocity rigid_motion(const typename S::Pose& pose, int c) {
   return velocity<S>(motion);
 }
 
-// True if no row of the slot resists rigid motions along, or about, the axes [first, last). Displacements are tried at
-// generic poses, where no direction vanishes by chance. Rotations turn C with the bodies, so they leave it alone only
-// where C = 0. The effect of one body that has no force there acts elsewhere, as a liquid on a ball in the air.
+// The rows of a joint turn with the bodies, so a rotation changes them by their errors, which sweeps and soft joints
+// leave.
 template <class S>
-bool lets_move(const Batch<S>& batch, int slot, const Bodies<S>& at, typename S::Scalar time, int first, int last) {
+double turned_errors(const Batch<S>& batch, const Batch<S>& one) {
+  double most = 0;
+  for (int r = 0; r < batch.ops->rows && (!batch.law || batch.law->reported); ++r)
+    if (batch.kinds[static_cast<size_t>(r)] == RowKind::equality) most = std::max(most, std::abs(double(one.C[r])));
+  return 2 * most;
+}
+
+// True if no row of the slot resists rigid motions along, or about, the axes [first, last). Displacements are tried at
+// `generic` poses, where no direction vanishes by chance. The effect of one body that has no force there acts
+// elsewhere, as a liquid on a ball in the air.
+template <class S>
+bool lets_move(const Batch<S>& batch, int slot, const Bodies<S>& at, typename S::Scalar time, int first, int last,
+               bool generic) {
   using Real = ExactNumber<typename S::Scalar>;
   const int rows = batch.ops->rows, bodies = batch.ops->bodies, width = S::freedom * bodies;
   Batch<S> one;
@@ -48,6 +59,7 @@ bool lets_move(const Batch<S>& batch, int slot, const Bodies<S>& at, typename S:
   std::vector<Real> J(static_cast<size_t>(rows * width)), weighted(J);
   Real K[most_rows * most_rows];
   batch.ops->dense(one, 0, at, J.data(), weighted.data(), K, most_rows);
+  const double errors = generic ? 0 : turned_errors(batch, one);
   for (int r = 0; r < rows; ++r) {
     const auto row = J.begin() + r * width;
     if (bodies == 1 && std::all_of(row, row + width, [](Real entry) { return entry == Real(0); })) return false;
@@ -61,7 +73,7 @@ bool lets_move(const Batch<S>& batch, int slot, const Bodies<S>& at, typename S:
           sum += term, size += std::abs(term);
         }
       }
-      if (std::abs(sum) > by_precision<typename S::Scalar>(1e-3, 1e-7) * size) return false;
+      if (std::abs(sum) > by_precision<typename S::Scalar>(1e-3, 1e-7) * size + errors) return false;
     }
   }
   return true;
@@ -109,9 +121,9 @@ void find_free_motions(const WorldData<S>& world, Island<S>& island, Bodies<S>& 
       const Batch<S>& batch = *segment.batch;
       // Springs on the rows of one vector pull along it if they are equally stiff. Those by frequency are not.
       const bool unequal = batch.law && batch.law->by_mass && batch.law->by_mass(batch, slot);
-      island.floats = island.floats && lets_move(batch, slot, at, T(world.time), 0, S::lengths);
-      island.spins_freely = island.spins_freely &&
-                            lets_move(batch, slot, unequal ? at : world.bodies, T(world.time), S::lengths, S::freedom);
+      island.floats = island.floats && lets_move(batch, slot, at, T(world.time), 0, S::lengths, true);
+      island.spins_freely = island.spins_freely && lets_move(batch, slot, unequal ? at : world.bodies, T(world.time),
+                                                             S::lengths, S::freedom, unequal);
     }
   }
   for (int i : island.bodies) at.pose[i] = world.bodies.pose[i];
