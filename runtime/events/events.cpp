@@ -153,7 +153,8 @@ namespace {
 
 // False if a blow ended a joint or a row: choose again.
 template <class S>
-bool choose_modes_once(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
+bool choose_modes_once(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h,
+                       Blow& blow) {
   using T = typename S::Scalar;
   if (island.flow.guarded > 0) {
     std::fill(island.flow.resolution.begin(), island.flow.resolution.end(), Resolution<typename S::Scalar>{});
@@ -161,16 +162,17 @@ bool choose_modes_once(WorldData<S>& world, Island<S>& island, typename S::Scala
     latch_by_lambda(island, T(1));
     free_accelerations(world, island);
     find_resolution(world, island, h);
-    if (stop_what_hits(world, island, time, h)) return false;
+    if (stop_what_hits(world, island, time, h, blow)) return false;
     if (offer_bounds(world, island)) {
       decide_by_forces(world, island, time);
       evaluate_anew(world, island, time);
     }
   }
-  const bool starts_motor = island.kinked < 0 && has_strong_motor(island);
+  const bool is_kinked = island.kinked >= 0, starts_motor = !is_kinked && has_strong_motor(island);
   const double before = starts_motor ? kinetic_energy(world, island) : 0;
   project_velocities_at_start(world, island);
   if (starts_motor) put_in(world, Source::motor, kinetic_energy(world, island) - before);
+  else if (blow.source >= 0 && !is_kinked) end_blow(world, island, blow);
   note_rates(world, island);
   accelerate(world, island, time);
   find_resolution(world, island, h);
@@ -191,7 +193,9 @@ bool forces_make_events(WorldData<S>& world, Island<S>& island) {
 
 template <class S>
 void choose_modes(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
-  while (!choose_modes_once(world, island, time, h) || (island.flow.guarded > 0 && forces_make_events(world, island)) ||
+  Blow blow;
+  while (!choose_modes_once(world, island, time, h, blow) ||
+         (island.flow.guarded > 0 && forces_make_events(world, island)) ||
          break_by_lambda(world, island, time, typename S::Scalar(1))) {
   }
   measure_margins(world, island, time);

@@ -34,18 +34,18 @@ bool may_strike(const Guard<T>& guard, const Resolution<T>& resolution, bool loa
   return guard.bilateral() || (guard.of_rate && (std::isinf(guard.lower) || std::isinf(guard.upper)));
 }
 
-// The source of the row that strikes hardest, in units of its resolution; -1: none strikes.
+// The row that strikes hardest, in units of its resolution.
 template <class S>
-int what_hits(Island<S>& island) {
+Blow what_hits(Island<S>& island) {
   using T = typename S::Scalar;
   T hardest = 0;
-  int source = -1;
+  Blow blow;
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
     const T missing = guard.rate - (batch.rate[i] + batch.bias[i]), share = std::abs(missing) / resolution.rate;
     if (!strikes(guard, resolution, missing, batch.law->distance && island.kinked < 0) || !(share > hardest)) return;
-    hardest = share, source = static_cast<int>(batch.source);
+    hardest = share, blow.source = static_cast<int>(batch.source);
   });
-  return source;
+  return blow;
 }
 
 // Bounds of impulses: rows at their ends only push; motors with a bounded force do not act.
@@ -84,18 +84,16 @@ void count_impulses(const Island<S>& island) {
 }  // namespace
 
 template <class S>
-bool stop_what_hits(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
+bool stop_what_hits(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h, Blow& blow) {
   find_rates(world, island);
-  const int source = what_hits(island);
-  if (source < 0) return false;
+  const Blow now = what_hits(island);
+  if (now.source < 0) return false;
+  blow = now, blow.left = kinetic_energy(world, island);
   offer_impulses(island);
-  const double before = kinetic_energy(world, island);
   solve(world, island, world.bodies.velocity.data());
-  const double lost = before - kinetic_energy(world, island);
-  if (lost >= 0) take(world, static_cast<Source>(source), lost);
-  else put_in(world, static_cast<Source>(source), -lost);  // by an end that moves
-  count_impulses(island);
   hold_what_struck(island);
+  end_blow(world, island, blow);
+  count_impulses(island);
   if (!island.flow.locates) return false;
   const auto lasts = world.settings.local_error > 0 ? typename S::Scalar(impact_time) : h;
   find_rates(world, island);
@@ -104,7 +102,17 @@ bool stop_what_hits(WorldData<S>& world, Island<S>& island, typename S::Scalar t
   return latched || broken;
 }
 
-#define CDOT_INSTANTIATE(S) template bool stop_what_hits(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar);
+template <class S>
+void end_blow(WorldData<S>& world, const Island<S>& island, Blow& blow) {
+  const double left = kinetic_energy(world, island), lost = blow.left - left;
+  blow.left = left;
+  if (lost >= 0) take(world, static_cast<Source>(blow.source), lost);
+  else put_in(world, static_cast<Source>(blow.source), -lost);  // by an end that moves
+}
+
+#define CDOT_INSTANTIATE(S)                                                             \
+  template bool stop_what_hits(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar, Blow&); \
+  template void end_blow(WorldData<S>&, const Island<S>&, Blow&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -40,7 +40,7 @@ typename S::Scalar carried(const Island<S>& island, const LoadedRow<S>& row, Lam
   const Batch<S>& of = *row.carrier;
   const int rows = of.ops->rows, slot = of.slot_of[row.carrier_home];
   const int first = row.carrier_block < 0 ? 0 : island.at_work().blocks[row.carrier_block].first;
-  const T share = row.turns ? island.corrections_in_cones : T(0);
+  const T share = island.corrections_in_cones;
   const auto whole = [&](int i, int r) { return lambda(of, i, first + r) + share * of.correction[i]; };
   if (row.batch->law->load_of) return std::abs(whole(slot, 0));
   T force[3] = {};

@@ -6,6 +6,7 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/motion/motion.hpp"
+#include "runtime/solve/loads.hpp"
 #include "runtime/solve/misfits.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
@@ -188,13 +189,33 @@ void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h, boo
   forget_dampers(world, island);
 }
 
+template <class S>
+void calm_sticking_rows(Island<S>& island) {
+  using T = typename S::Scalar;
+  constexpr T theta = T(0.125), slight = T(1e-3), jump = T(3);  // slight: of the range of the force
+  bound_by_loads(island);
+  for (const LoadedRow<S>& row : island.loads) {
+    Batch<S>& batch = *row.batch;
+    if (batch.law->cone_rows > 0) continue;
+    const int i = row.place();
+    T &end = batch.lambda[i], &start = batch.correction[i];
+    const T few = slight * (batch.upper[i] - batch.lower[i]);
+    const bool sticks = std::min(end - batch.lower[i], batch.upper[i] - end) > few;
+    if (!sticks || std::abs(end - start) > std::max(few, jump * std::min(std::abs(end), std::abs(start)))) continue;
+    const T given = theta * (end - start);
+    end -= given, start += given;
+  }
+  unload(island);
+}
+
 #define CDOT_INSTANTIATE(S)                                                  \
   template bool repeats_impulses(const Island<S>&);                          \
   template S::Scalar begin_kick_drift(WorldData<S>&, Island<S>&, S::Scalar); \
   template void note_start(const WorldData<S>&, Island<S>&);                 \
   template void drift(WorldData<S>&, Island<S>&, S::Scalar);                 \
   template void drift_with_rates(WorldData<S>&, Island<S>&, S::Scalar);      \
-  template void solve_end(WorldData<S>&, Island<S>&, S::Scalar, bool);
+  template void solve_end(WorldData<S>&, Island<S>&, S::Scalar, bool);       \
+  template void calm_sticking_rows(Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -44,6 +44,14 @@ void drift_with_rates(WorldData<S>& world, Island<S>& island, typename S::Scalar
 template <class S>
 void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h, bool struck);
 
+// Where a loaded row alone sticks, the impulses s and e of both halves of a step are what stops it, s + e = P. If the
+// next step began with s' = e, an error of s would change its sign in each step and never fade, and others that it
+// moves let it grow. With s' = e - theta (e - s) the error is multiplied by 2 theta - 1; s lags by theta h / (2 - 2
+// theta), which moves a body by an error of order h^3 in a step. A row that slips has its bound, and repeats e: there
+// the lag would sum up. Nor does a row that has just stopped: the next step must not repeat a part of its s.
+template <class S>
+void calm_sticking_rows(Island<S>& island);
+
 // True if the row repeats its impulse at the start of the next step. A clutch that drives one way does not: it could
 // not take back what was too much.
 template <class S>

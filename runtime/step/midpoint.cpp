@@ -17,6 +17,7 @@
 #include "runtime/motion/momentum.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/motion/vectors.hpp"
+#include "runtime/solve/loads.hpp"
 #include "runtime/solve/misfits.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
@@ -111,9 +112,12 @@ void double_middle(WorldData<S>& world, Island<S>& island) {
 }
 
 // Softness and bounds of the rows under a law at the end of the step. The whole impulse of a limit, a motor or friction
-// keeps its bounds, and a rope never pushes. Bounds of a force are those of the middle.
+// keeps its bounds, and a rope never pushes. Bounds of a force are those of the middle, but for loads: theirs is that
+// of the whole impulses. If the end added friction for each of its own impulses, friction that makes its own load would
+// jam.
 template <class S>
 void bound_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  unload(island);
   factorize_rows(world, island);
   find_rates_of_effects(world, island);
   for (const auto& [batch, begin, end, whole] : island.segments) {

@@ -377,7 +377,8 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   if (repeats && !by_sweeps) island.at_work().choose([](const Batch<S>&, int) { return true; });  // rolling as well
   solve_end(world, island, h, struck);
   book_kick(world, island, Impulses::rattle_end, h / 2);  // the mirror image of the start
-  island.evaluated = !struck;                             // the next step does not repeat friction's share of an impact
+  if (!island.loads.empty()) calm_sticking_rows(island);
+  island.evaluated = !struck;  // the next step does not repeat friction's share of an impact
 }
 
 template <class S>

@@ -52,8 +52,19 @@ constexpr const char* ends_by_moves = R"(      for (int i = 0; i < bounded; ++i)
 )";
 constexpr const char* sums_bounds = R"(    for (int e = 0; e < bounded; ++e) s.force[e] = ({0}{1}mu[e]) / h;
 )";
-constexpr const char* notes_repeats = R"(    for (int e = 0; e < bounded; ++e)
-      s.repeats[e] = is_rate[e] ? select(magnitude(B.low[e] * B.high[e]) > T(0), mu[e], T(0)) / half : T(0);
+constexpr const char* notes_repeats = R"(    T repeated[bounded];
+    for (int e = 0; e < bounded; ++e) {{
+      repeated[e] = select(magnitude(B.low[e] * B.high[e]) > T(0), mu[e], T(0));
+{}      s.repeats[e] = is_rate[e] ? repeated[e] / half : T(0);
+    }}
+)";
+// Else round-off alternates, and may grow: calm_sticking_rows() in runtime/step/kick_drift.hpp.
+constexpr const char* calms_repeats =
+    R"(      const T few = T(1e-3) * (B.high[e] - B.low[e]), first = half * s.repeats[e], change = mu[e] - first;
+      const T least = select(magnitude(mu[e]) < magnitude(first), magnitude(mu[e]), magnitude(first));
+      const Mask sticks = {}mu[e] - B.low[e] > few && B.high[e] - mu[e] > few;
+      const Mask goes_on = sticks && magnitude(change) <= larger(few, T(3) * least);
+      repeated[e] = repeated[e] - select(goes_on, T(0.125) * change, T(0));
 )";
 constexpr const char* carries_rows = R"(    T carried[rows];
     for (int i = 0; i < rows; ++i) carried[i] = T(0.5) * (found[i] + s.lambda[i]);
@@ -168,8 +179,12 @@ std::string weighs_failures(const Contents& has) {
 
 std::string weighs_bounds(const Contents& has) {
   if (!has.weighs) return {};
+  const std::string calms =
+      has.loads ? fmt::format(calms_repeats, has.cones ? "(cone_of[e] < 0 ? is_loaded(B, e) : T(1) < T(0)) && "
+                                                       : "is_loaded(B, e) && ")
+                : "";
   return fmt::format(sums_bounds, has.repeats() ? "half * s.repeats[e] + " : "", has.ends ? "total[e] + " : "") +
-         (has.repeats() ? notes_repeats : "");
+         (has.repeats() ? fmt::format(notes_repeats, calms) : "");
 }
 
 std::string rattle_weighs(const Contents& has) {

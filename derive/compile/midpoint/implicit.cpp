@@ -70,12 +70,15 @@ constexpr const char* measures_ends = R"(      nearest($ss.q, end, off, side);
       const T worst = {};
 )";
 
-// The impulses of rows with bounds take half of the change x.
+// The impulses of rows with bounds take half of the change x. Their bounds without loads stay for the end.
+constexpr const char* keeps_plain = R"(      T plain_low[bounded], plain_high[bounded];
+      for (int i = 0; i < bounded; ++i) plain_low[i] = B.low[i], plain_high[i] = B.high[i];
+)";
 constexpr const char* settles_round = R"(      T hold[bounded];
       for (int i = 0; i < bounded; ++i) hold[i] = s.hold[i];
-{1}      for (int i = 0; i < bounded; ++i) {{
+{2}{1}      for (int i = 0; i < bounded; ++i) {{
         s.hold[i] = select(goes_on, hold[i], s.hold[i]);
-        low[i] = select(goes_on, mu[i] + T(2) * B.low[i], low[i]), high[i] = select(goes_on, mu[i] + T(2) * B.high[i], high[i]);
+        low[i] = select(goes_on, mu[i] + T(2) * {3}low[i], low[i]), high[i] = select(goes_on, mu[i] + T(2) * {3}high[i], high[i]);
         mu[i] = mu[i] + select(goes_on, T(2) * x[i], T(0));
       }}
 {0})";
@@ -218,7 +221,7 @@ constexpr const char* draws_joints = R"(      T drawn[rows];
       evaluate($s{}, s.time, s.J);
 )";
 
-constexpr std::string_view in_middle_by = "T(0.5) * ", alone = "T(0) * ";
+constexpr std::string_view in_middle_by = "T(0.5) * ", alone = "T(0) * ", at_end_by = "";
 // The size of a force in a cone is that of its whole impulse.
 constexpr const char* turns = R"(      T turned[bounded];
       for (int i = 0; i < bounded; ++i) turned[i] = {}mu[i];
@@ -253,12 +256,12 @@ std::string ending(const Contents& has) {
         "    T rate[rows];\n    rates(s.J, s.v, rate);\n"
         "    const T energy = moved_energy(s.q, s.v, before);\n    const auto stands = hardly_moves(s.v, h);\n";
   if (has.finishes)
-    text += fmt::format(finishes, has.rows ? "s.J, " : "", has.looks ? "given, at_end, " : "", has.rows ? ", y" : "",
-                        has.bounded ? ", B" : "",
-                        has.bounded
-                            ? fmt::format(settles_end, adds_bounded(has, "    "),
-                                          settles_x(has, "s.q", "s.hold", alone), has.cones ? " && cone_of[i] < 0" : "")
-                            : "");
+    text += fmt::format(
+        finishes, has.rows ? "s.J, " : "", has.looks ? "given, at_end, " : "", has.rows ? ", y" : "",
+        has.bounded ? ", B" : "",
+        has.bounded ? fmt::format(settles_end, adds_bounded(has, "    "), settles_x(has, "s.q", "s.hold", at_end_by),
+                                  has.cones ? " && cone_of[i] < 0" : "")
+                    : "");
   else if (has.rows) text += projects;
   text += shares(has, "y") + bears_at_end(has, "at_end");
   if (!has.rows) return text + "    (void)last, (void)work, (void)residual;\n";
@@ -306,7 +309,8 @@ std::string round(const Mechanism& mechanism, const Contents& has) {
   if (has.gyroscopes) text += "      find_mean_spins(at.q, s.v, h, mean);\n";
   text += "      T power;\n" + improves(has, "middle", "h");
   if (has.bounded)
-    text += fmt::format(settles_round, adds_bounded(has, "      "), settles_x(has, "middle", "hold", in_middle_by));
+    text += fmt::format(settles_round, adds_bounded(has, "      "), settles_x(has, "middle", "hold", in_middle_by),
+                        has.loads ? keeps_plain : "", has.loads ? "plain_" : "B.");
   text += loads_in_round(has);
   const auto bodies = static_cast<double>(std::ranges::count_if(mechanism.bodies, &Body::moves));
   const double goal = 0.01 * mechanism.tolerance, few = std::clamp(bodies * bodies, 1e2, 1e4);

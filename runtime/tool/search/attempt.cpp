@@ -7,7 +7,7 @@ namespace cdot {
 namespace {
 
 constexpr double round_off = 1e-15;  // of what is compared
-constexpr double far = 1;            // a size or a radian: larger distances say nothing about errors
+constexpr double far = 0.8;          // of a size or of a radian: larger distances say nothing about errors
 
 // Of the distance: an energy that is off by less says nothing about the motion. A motor keeps a wheel's energy whatever
 // its angle is.

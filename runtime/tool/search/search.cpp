@@ -229,7 +229,8 @@ std::optional<Try> Search::after_early_end(const Attempt& last, const Attempt& n
   return finer(now.knob, 1 / (jump * stricter_for(now.knob.row()) > 1 ? least_jump : jump), shorter_after(now));
 }
 
-// Fixed steps of a low order are exact for motions along a line or a parabola, and cost next to nothing. If they
+// Fixed steps of a low order are exact for motions along a line or a parabola, and cost next to nothing. Not where the
+// first run located an event: they pass it between their ends, where two runs are not compared. If they
 // agree with a first run of another method, they are delivered.
 void Search::try_even_steps(const Attempt& even) {
   const bool is_slow = stiff_at_start_ <= slow * yardstick_.mechanisms();
@@ -287,7 +288,9 @@ void Search::try_candidate(Integrator integrator, double most, double reach) {
       if (last.whole && adaptive && !now.reached && now.result.counts.rescued == 0 &&
           now.knob.parts == last.knob.parts && same_steps(last, now))
         judge_by_another_method(now, most - spent);
-      else if (runs_ == 1 && has_long_steps(now) && now.price <= even * yardstick_.mechanisms()) try_even_steps(now);
+      else if (runs_ == 1 && now.result.counts.events == 0 && has_long_steps(now) &&
+               now.price <= even * yardstick_.mechanisms())
+        try_even_steps(now);
     }
     const std::optional<double> share = next_share(last, now, idle);
     knob =

@@ -11,6 +11,7 @@
 #include "rough_rail_rk4.hpp"
 #include "tests/derive/compile/beside_world.hpp"
 #include "very_rough_pin_euler.hpp"
+#include "very_rough_pin_implicit.hpp"
 #include "very_rough_pin_rattle.hpp"
 #include "very_rough_pin_rk4.hpp"
 
@@ -36,6 +37,7 @@ TEST(CompiledLoads, MoveAsTheWorld) {
 TEST(CompiledLoads, TakeTheLeastOfTwo) {
   const std::string pin = scenes + "very_rough_pin.toml";
   runs_as_the_world<very_rough_pin_euler<double>>(pin, Integrator::euler, 1e-12, 0.01, 1e-4);
+  runs_as_the_world<very_rough_pin_implicit<double>>(pin, Integrator::implicit, 1e-12, 0.01, 1e-4);
   runs_as_the_world<very_rough_pin_rattle<double>>(pin, Integrator::rattle, 1e-12, 0.01, 1e-4);
   runs_as_the_world<very_rough_pin_rk4<double>>(pin, Integrator::rk4, 1e-12, 0.01, 1e-4);
   cdot::lanes_are_as_alone<very_rough_pin_rk4>();

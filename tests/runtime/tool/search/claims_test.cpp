@@ -115,6 +115,51 @@ TEST(Claims, HoldWhereImpactsNeverEnd) {
   expect_claims(scene, delivered(scene).rows, {1e-2, 1.78e-3});
 }
 
+// The first two runs are 0.9 rad apart, where distances do not grow with the errors any more: they tell nothing about
+// those of the second one.
+TEST(Claims, HoldWhereErrorsAreMagnified) {
+  Scene scene = read_scene((source_dir() / "tests/runtime/tool/search/magnifying.toml").string());
+  const auto by_local_error = [&](double local_error) {
+    Scene named = scene;
+    named.settings.integrator = Integrator::dop853, named.settings.local_error = local_error;
+    named.step = named.duration / 10;
+    return delivered(named).rows;
+  };
+  const std::vector<Frame> truth = by_local_error(1e-12);
+  const double coarse = largest_apart(scene, by_local_error(1e-9), truth),
+               fine = largest_apart(scene, by_local_error(1e-11), truth);
+  EXPECT_LT(fine, 0.02 * coarse);  // so it is the truth, to about a tenth of `fine`
+  EXPECT_LT(fine, 1e-5);
+  scene.accuracy = 1e-4;
+  const auto [rows, result] = delivered(scene);
+  const double off = largest_apart(scene, rows, truth);
+  fmt::print("  claims {:.1e}, is off by {:.1e}\n", result.choice->achieved, off);
+  EXPECT_TRUE(result.choice->reached);
+  EXPECT_LT(off, result.choice->achieved);
+}
+
+// A slide of 1 m/s meets its end at 0.3 s, between two of the equal steps that would be exact before and after it.
+TEST(Claims, HoldBetweenStepsWhereAnEndIsMet) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "stop.toml").string();
+  write_file(file,
+             "gravity = [0, 0]\nduration = 1\naccuracy = 1e-6\n"
+             "[[body]]\nname = \"slide\"\nmass = 1\ninertia = 1\nvelocity = [1, 0]\n"
+             "[[joint]]\ntype = \"prismatic\"\nbodies = [\"slide\", \"world\"]\nat = [0, 0]\nt = [0, 1]\n"
+             "slide.limit = { lower = -0.3, upper = 0.3 }\n");
+  RunOptions options;
+  options.row_times = every(0.002, 1);
+  double off = 0;
+  options.row = [&](const Frame& frame) {
+    off = std::max(off, std::abs(std::abs(frame.bodies[0].x) - std::min(frame.time, 0.3)));
+  };
+  std::string warnings;
+  const Choice choice = simulate(read_scene(file), options, warnings).choice.value();
+  fmt::print("  {} claims {:.1e}, is off by {:.1e}\n", name_of(integrators, choice.integrator), choice.achieved, off);
+  EXPECT_TRUE(choice.reached);
+  EXPECT_LT(off, choice.achieved);
+}
+
 // Local errors of 1e-6 and of 1e-12 promise errors of 1e6 : 1. Where events are located to 1e-9, 1e3 : 1 is left.
 TEST(Claims, CountWhatLocatedEventsLeave) {
   Attempt coarse, fine;
