@@ -9,6 +9,7 @@
 
 #include "runtime/balance/balance.hpp"
 #include "runtime/number/arbitrary.hpp"
+#include "runtime/rows/laws.hpp"
 
 namespace cdot {
 namespace {
@@ -29,22 +30,29 @@ typename S::Velocity rigid_motion(const typename S::Pose& pose, int c) {
   return velocity<S>(motion);
 }
 
-// The rows of a joint turn with the bodies, so a rotation changes them by their errors, which sweeps and soft joints
-// leave.
-template <class S>
-double turned_errors(const Batch<S>& batch, const Batch<S>& one) {
-  double most = 0;
-  for (int r = 0; r < batch.ops->rows && (!batch.law || batch.law->reported); ++r)
-    if (batch.kinds[static_cast<size_t>(r)] == RowKind::equality) most = std::max(most, std::abs(double(one.C[r])));
-  return 2 * most;
+// By which a rigid motion along, or about, the axis `c` changes a row with this J, and the sum of its parts' sizes.
+template <class S, class Real>
+std::pair<double, double> change_of_row(const Real* J, const Batch<S>& one, const Bodies<S>& at, int c) {
+  double sum = 0, size = 0;
+  for (const int body : one.body) {
+    typename S::Scalar v[S::freedom];
+    S::write(rigid_motion<S>(at.pose[body], c), v);
+    for (int i = 0; i < S::freedom; ++i, ++J) {
+      const double term = double(*J) * double(v[i]);
+      sum += term, size += std::abs(term);
+    }
+  }
+  return {sum, size};
 }
 
+enum class Rows : char { each, together };
+
 // True if no row of the slot resists rigid motions along, or about, the axes [first, last). Displacements are tried at
-// `generic` poses, where no direction vanishes by chance. The effect of one body that has no force there acts
-// elsewhere, as a liquid on a ball in the air.
+// generic poses, where no direction vanishes by chance. The effect of one body that has no force there acts elsewhere,
+// as a liquid on a ball in the air. Together: the equations may change, but the sum of the squares of C does not.
 template <class S>
 bool lets_move(const Batch<S>& batch, int slot, const Bodies<S>& at, typename S::Scalar time, int first, int last,
-               bool generic) {
+               Rows which) {
   using Real = ExactNumber<typename S::Scalar>;
   const int rows = batch.ops->rows, bodies = batch.ops->bodies, width = S::freedom * bodies;
   Batch<S> one;
@@ -59,24 +67,36 @@ bool lets_move(const Batch<S>& batch, int slot, const Bodies<S>& at, typename S:
   std::vector<Real> J(static_cast<size_t>(rows * width)), weighted(J);
   Real K[most_rows * most_rows];
   batch.ops->dense(one, 0, at, J.data(), weighted.data(), K, most_rows);
-  const double errors = generic ? 0 : turned_errors(batch, one);
+  constexpr double slight = by_precision<typename S::Scalar>(1e-3, 1e-7);
+  double change[S::freedom] = {}, most[S::freedom] = {};
   for (int r = 0; r < rows; ++r) {
     const auto row = J.begin() + r * width;
     if (bodies == 1 && std::all_of(row, row + width, [](Real entry) { return entry == Real(0); })) return false;
     for (int c = first; c < last; ++c) {
-      double sum = 0, size = 0;
-      for (int k = 0; k < bodies; ++k) {
-        typename S::Scalar v[S::freedom];
-        S::write(rigid_motion<S>(at.pose[one.body[k]], c), v);
-        for (int i = 0; i < S::freedom; ++i) {
-          const double term = double(J[static_cast<size_t>(r * width + S::freedom * k + i)]) * double(v[i]);
-          sum += term, size += std::abs(term);
-        }
-      }
-      if (std::abs(sum) > by_precision<typename S::Scalar>(1e-3, 1e-7) * size + errors) return false;
+      const auto [sum, size] = change_of_row<S>(&*row, one, at, c);
+      const bool alone = which == Rows::each || batch.kinds[static_cast<size_t>(r)] != RowKind::equality;
+      const double C = alone ? 1 : double(one.C[r]);
+      if (alone && std::abs(sum) > slight * size) return false;
+      change[c] += C * sum, most[c] += std::abs(C) * size;
     }
   }
+  for (int c = first; c < last; ++c)
+    if (std::abs(change[c]) > slight * most[c]) return false;
   return true;
+}
+
+// True if the slot lets the bodies turn as one. The vectors of a joint turn with them, so C = 0 stays: by each row
+// where it holds, or by the sum of squares, whatever gaps sweeps or springs leave. The poses of the moment must not
+// decide. Springs on the rows of one vector pull along it if they are equally stiff. Those by frequency are not.
+template <class S>
+bool lets_turn(const Batch<S>& batch, int slot, const Bodies<S>& now, const Bodies<S>& generic,
+               typename S::Scalar time) {
+  const auto turns = [&](const Bodies<S>& at, Rows rows) {
+    return lets_move(batch, slot, at, time, S::lengths, S::freedom, rows);
+  };
+  if (batch.law && batch.law->by_mass && batch.law->by_mass(batch, slot)) return turns(generic, Rows::each);
+  const bool of_joint = !batch.law || batch.law->reported || batch.law == &soft_law<S>();
+  return turns(now, Rows::each) || (of_joint && turns(generic, Rows::together));
 }
 
 // Every body of the island at another pose; the bodies keep their masses.
@@ -119,11 +139,8 @@ void find_free_motions(const WorldData<S>& world, Island<S>& island, Bodies<S>& 
   for (const Segment<S>& segment : island.segments) {
     for (int slot = segment.begin; segment.batch->ops->rows > 0 && slot < segment.end; ++slot) {
       const Batch<S>& batch = *segment.batch;
-      // Springs on the rows of one vector pull along it if they are equally stiff. Those by frequency are not.
-      const bool unequal = batch.law && batch.law->by_mass && batch.law->by_mass(batch, slot);
-      island.floats = island.floats && lets_move(batch, slot, at, T(world.time), 0, S::lengths, true);
-      island.spins_freely = island.spins_freely && lets_move(batch, slot, unequal ? at : world.bodies, T(world.time),
-                                                             S::lengths, S::freedom, unequal);
+      island.floats = island.floats && lets_move(batch, slot, at, T(world.time), 0, S::lengths, Rows::each);
+      island.spins_freely = island.spins_freely && lets_turn(batch, slot, world.bodies, at, T(world.time));
     }
   }
   for (int i : island.bodies) at.pose[i] = world.bodies.pose[i];

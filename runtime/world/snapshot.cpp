@@ -68,7 +68,7 @@ std::uint64_t hash_of_joints(const WorldData<S>& world) {
 }
 
 // Hashes the method and the order of rows. Rows of broken joints have changed slots, so it hashes the joint of each
-// block.
+// block: of the direct solver's, or of each slot's home.
 template <class S>
 std::uint64_t hash_of_order(WorldData<S>& world) {
   WordHash hash;
@@ -76,7 +76,11 @@ std::uint64_t hash_of_order(WorldData<S>& world) {
   hash.add(world.settings.solver), hash.add(world.settings.integrator), hash.add(world.settings.kernels);
   hash.add(world.island_of);
   for (Island<S>& island : world.islands) {
-    for (const Segment<S>& segment : island.segments) hash.add(segment.begin);
+    for (const auto& [batch, begin, end, whole_end] : island.segments) {
+      hash.add(begin);
+      for (int home = begin; sweeps(world.settings.solver) && home < whole_end; ++home)
+        hash.add(std::array{batch->ops->rows, batch->joint[batch->slot_of[home]]});
+    }
     if (sweeps(world.settings.solver)) continue;
     for (const auto& block : island.system.blocks) hash.add(std::array{block.batch->joint[block.slot], block.first});
   }

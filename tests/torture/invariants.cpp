@@ -70,10 +70,10 @@ class Trial {
   Laws laws_;
   RowSizes sizes_;
   Motion start_;
-  double independence_ = 1;                // at the start
-  bool in_time_ = false;                   // numbers follow functions of time
-  bool starts_beyond_ = false;             // an end of a limit, or of another effect
-  std::vector<typename S::Place> places_;  // of the scene's bodies, before the step
+  double independence_ = 1;                     // at the start
+  bool in_time_ = false, middle_lost_ = false;  // numbers follow functions of time; bodies are too far away for middle_
+  bool starts_beyond_ = false;                  // an end of a limit, or of another effect
+  std::vector<typename S::Place> places_;       // of the scene's bodies, before the step
   double start_energy_ = 0, pushes_ = 0, torques_ = 0;
   std::optional<Accounts> accounts_;
   Snapshot middle_, end_;
@@ -265,7 +265,8 @@ Verdict Trial<S>::watch(BasicWorld<S>& world) {
       return verdict(Outcome::limited, fmt::format("the World says: {}", name_of(result.problem)), "", 0, 0, k);
     }
     if (middle_at_ == 0 && (k == steps_ / 2 || world.step_counts().events > 0))
-      middle_ = world.snapshot(), middle_at_ = k;
+      middle_ = world.snapshot(), middle_at_ = k,
+      middle_lost_ = loses_arms(motion_of(world), sizes_.length, std::numeric_limits<T>::epsilon());
     if (k == steps_) end_ = world.snapshot();  // before look(): energy() changes numbers that the next step overwrites
     if (auto broken = look(world, k)) {
       if (world.step_counts().rescued > 0 && judged_by_order(broken->what)) {
@@ -305,7 +306,7 @@ Verdict Trial<S>::bits() const {
   try {
     world.restore(Snapshot::read(middle_.text()));
   } catch (const Error& error) {
-    return verdict(Outcome::broken, "a state is taken back", error.what());
+    return verdict(middle_lost_ ? Outcome::limited : Outcome::broken, "a state is taken back", error.what());
   }
   for (int k = middle_at_ + 1; k <= steps_; ++k) push(world, k), step(world, k);
   const Snapshot state = world.snapshot();
@@ -352,7 +353,7 @@ Verdict Trial<S>::run() {
   seen.judged_momentum = laws_.momentum();
   if (seen.outcome != Outcome::held || !asked_->bits) return seen;
   const Verdict same = bits();
-  return same.broken() ? same : seen;
+  return same.outcome == Outcome::held ? seen : same;
 }
 
 template <class S>

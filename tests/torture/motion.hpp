@@ -78,6 +78,14 @@ Motion motion_of(const BasicWorld<S>& world) {
   return motion;
 }
 
+// True if a body is so far away that a length at its place is less than the round-off of its pose: no analysis there
+// finds the arms of its joints.
+inline bool loses_arms(const Motion& motion, double length, double epsilon) {
+  for (const BodyMotion& body : motion.bodies)
+    if (norm(body.x) * epsilon > length) return true;
+  return false;
+}
+
 // The terms of <a, M b> for two changes of velocity, by body.
 struct VelocityChange {
   std::vector<std::array<double, 6>> bodies;

@@ -190,6 +190,7 @@ int main(int count, char** arguments) {
   app.add_flag("--effects", options.wish.effects, "effects of specs, on bodies and on coordinates");
   app.add_flag("--islands", options.wish.islands, "few joints, and effects of specs between the islands");
   app.add_flag("--own", options.wish.own, "effects whose specs are written at random, too");
+  app.add_flag("--tables", options.wish.tables, "forces, torques and loads that follow tables with kinks and jumps");
   app.add_flag("--in-time", options.wish.in_time, "numbers of joints and effects follow functions of time");
   app.add_flag("--advice", options.advice, "runs each by cdot-run, and follows its advice; judges nothing else");
   app.add_flag("--misfit", options.misfit, "mechanisms at rest with a joint that is a little off; judges nothing else");

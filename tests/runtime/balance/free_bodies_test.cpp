@@ -81,12 +81,13 @@ TEST(FreeBodies, TurnAsFastUnderEveryImplicitStep) {
 
 // A chain of three bodies turns in the air. Sweeps without drift correction leave gaps, and then the last body is let
 // go: the others still turn freely. A World that takes the state back finds the same, though its own joints are closed.
-TEST(FreeBodies, TurnAsFastBesideAGap) {
+// Soft joints open as well.
+void turn_beside_a_gap(const std::optional<Softness>& soft) {
   const Settings settings{.solver = Solver::iterative, .integrator = Integrator::implicit, .drift = Drift::none};
   const auto chain = [&] {
     World<double> world(settings);
     for (int k = 0; k < 3; ++k) world.add_body({.x = k - 0.4, .vy = 2.0 * k, .w = 2, .mass = 1.0 + k, .inertia = 0.2});
-    for (int k = 0; k < 2; ++k) world.add_joint({"revolute", {k, k + 1}, {{"pa", {0.5, 0}}, {"pb", {-0.5, 0}}}, {}});
+    for (int k = 0; k < 2; ++k) world.add_joint({"revolute", {k, k + 1}, {{"pa", {0.5, 0}}, {"pb", {-0.5, 0}}}, soft});
     return world;
   };
   const auto spin_of_two = [](const World<double>& world) {
@@ -111,6 +112,20 @@ TEST(FreeBodies, TurnAsFastBesideAGap) {
   for (int k = 0; k < 100; ++k) ASSERT_TRUE(world.step(0.02) && other.step(0.02));
   EXPECT_EQ(world.snapshot().differences(other.snapshot()), std::vector<std::string>{});
   EXPECT_NEAR(spin_of_two(world) / start, 1, 1e-2);
+}
+
+TEST(FreeBodies, TurnAsFastBesideAGap) {
+  turn_beside_a_gap({});
+  turn_beside_a_gap(Softness{.by_frequency = false, .stiffness = 50});
+}
+
+// A gear against the ground holds its wheels, however far off it starts.
+TEST(FreeBodies, AGearBesideAGapIsHeld) {
+  World<double> world(Settings{.drift = Drift::none});
+  for (int k = 0; k < 2; ++k) world.add_body({.x = 1.0 * k, .w = 1, .mass = 1, .inertia = 0.1});
+  world.add_joint({"gear", {0, 1}, {{"ratio", {-0.9}}, {"phi", {0.5}}}, {}});
+  ASSERT_TRUE(world.step(1e-3));
+  EXPECT_EQ(world.balance().angular.body, -1);
 }
 
 // A ball is held by the liquid below it, although no force acts as long as it flies.

@@ -22,6 +22,7 @@ struct Wish {
   bool islands = false;  // few joints, and many such effects between the islands
   bool own = false;      // effects whose specs are written at random
   bool in_time = false;  // numbers of joints and effects follow functions of time
+  bool tables = false;   // forces that follow tables
   int steps = 200;
 };
 

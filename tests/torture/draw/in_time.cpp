@@ -201,6 +201,68 @@ void add_numbers_in_time(Random& random, const Scales& scales, Scene& scene, std
   }
 }
 
+namespace {
+
+// A number of a force of about `size`, by a table that begins anywhere.
+double follow_table(Random& random, double size, const Scene& scene, NamedValue& value, int number,
+                    std::vector<WrittenProfile>& tables) {
+  const double start = size * random.between(-1, 1);
+  tables.push_back(random_table(random, start, size, scene.duration, false));
+  value.in_time.push_back({number, tables.back().profile});
+  return start;
+}
+
+// A push or a couple on a body.
+template <class S>
+void push_by_tables(Random& random, const Scales& scales, const std::string& name, Scene& scene,
+                    std::vector<std::string>& refused) {
+  const JointType& type = *find_joint_type(S::dimension, random.chance(0.5) ? "push" : "couple");
+  SceneJoint effect = random_effect(random, scales, scene, type);
+  effect.name = name;
+  std::vector<WrittenProfile> tables;
+  for (NamedValue& value : effect.definition.parameters) {
+    const ParameterInfo& info = *std::ranges::find(type.parameters, value.name, &ParameterInfo::name);
+    if (info.kind == ParameterKind::point) continue;
+    const double size = scale_of(info.unit, scales) * random.log_between(0.1, 10);
+    for (std::size_t k = 0; k < value.numbers.size(); ++k)
+      value.numbers[k] = follow_table(random, size, scene, value, static_cast<int>(k), tables);
+  }
+  taken<S>(scene, refused, [&](Scene& trial) {
+    trial.joints.push_back(effect);
+    trial.profiles.insert(trial.profiles.end(), tables.begin(), tables.end());
+  });
+}
+
+// A load on a coordinate that no other effect of a spec acts on.
+template <class S>
+void load_by_table(Random& random, const Scales& scales, Scene& scene, std::vector<std::string>& refused) {
+  if (scene.joints.empty()) return;
+  const auto j = static_cast<std::size_t>(random.below(static_cast<int>(scene.joints.size())));
+  const JointType& type = *find_joint_type(S::dimension, scene.joints[j].definition.type);
+  if (type.is_effect || type.coordinates.empty()) return;
+  const auto c = static_cast<std::size_t>(random.below(static_cast<int>(type.coordinates.size())));
+  const double size = scale_of(type.coordinates[c].unit == "rad" ? "N*m" : "N", scales) * random.log_between(0.1, 10);
+  NamedValue push{"push", {0}};
+  std::vector<WrittenProfile> tables;
+  push.numbers[0] = follow_table(random, size, scene, push, 0, tables);
+  taken<S>(scene, refused, [&](Scene& trial) {
+    CoordinateEffects& effects = effects_on(trial.joints[j], type, c);
+    if (!effects.specs.empty() || effects.load) return;
+    effects.specs.push_back({"load", {push}});
+    trial.profiles.push_back(tables.front());
+  });
+}
+
+}  // namespace
+
+template <class S>
+void add_tables(Random& random, const Scales& scales, Scene& scene, std::vector<std::string>& refused) {
+  for (int k = 1 + random.below(3); k > 0; --k) {
+    if (random.chance(0.5)) load_by_table<S>(random, scales, scene, refused);
+    else push_by_tables<S>(random, scales, fmt::format("t{}", k), scene, refused);
+  }
+}
+
 bool moves_in_time(const SceneJoint& joint) { return in_time(joint.definition.parameters); }
 
 bool has_numbers_in_time(const Scene& scene) {
@@ -211,8 +273,9 @@ bool has_numbers_in_time(const Scene& scene) {
   });
 }
 
-#define CDOT_INSTANTIATE(S) \
-  template void add_numbers_in_time<S>(Random&, const Scales&, Scene&, std::vector<std::string>&);
+#define CDOT_INSTANTIATE(S)                                                                        \
+  template void add_numbers_in_time<S>(Random&, const Scales&, Scene&, std::vector<std::string>&); \
+  template void add_tables<S>(Random&, const Scales&, Scene&, std::vector<std::string>&);
 CDOT_INSTANTIATE(Planar<double>)
 CDOT_INSTANTIATE(Spatial<double>)
 #undef CDOT_INSTANTIATE

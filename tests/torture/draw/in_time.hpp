@@ -9,6 +9,10 @@ namespace cdot::torture {
 template <class S>
 void add_numbers_in_time(Random& random, const Scales& scales, Scene& scene, std::vector<std::string>& refused);
 
+// Forces and torques on bodies and along coordinates that follow tables with kinks and jumps.
+template <class S>
+void add_tables(Random& random, const Scales& scales, Scene& scene, std::vector<std::string>& refused);
+
 // True if a number of the joint itself follows one.
 bool moves_in_time(const SceneJoint& joint);
 // True if a number of the scene follows one.

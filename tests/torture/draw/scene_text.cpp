@@ -160,7 +160,9 @@ void write_effects(const Scene& scene, const CoordinateEffects& effects, Lines l
     lines.raw(key("motor"), motor->max_force == unlimited
                                 ? fmt::format("{{ speed = {} }}", motor->speed)
                                 : fmt::format("{{ speed = {}, max = {} }}", motor->speed, motor->max_force));
-  for (const SpecEffect& spec : effects.specs) lines.raw(key(spec.type), table_of_numbers(scene, spec));
+  for (const SpecEffect& spec : effects.specs)
+    lines.raw(key(spec.type),
+              spec.type == "load" ? number_of(scene, spec.parameters[0], 0) : table_of_numbers(scene, spec));
   for (const CoordinateSpring& spring : effects.springs) {
     if (is_damper(spring)) lines.number(key("damper"), spring.softness.damping);
     else

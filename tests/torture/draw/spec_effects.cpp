@@ -67,17 +67,6 @@ std::vector<int> random_bodies(Random& random, const Scene& scene, int count) {
   return bodies;
 }
 
-SceneJoint random_effect(Random& random, const Scales& scales, const Scene& scene, const JointType& type) {
-  SceneJoint effect;
-  effect.definition.type = type.name;
-  effect.definition.bodies = random_bodies(random, scene, type.bodies);
-  for (const ParameterInfo& info : type.parameters)
-    if (!info.has_default || random.chance(0.15))
-      effect.definition.parameters.push_back(
-          {std::string(info.name), random_value(random, scales, info, scene.dimension == Dimension::spatial)});
-  return effect;
-}
-
 SpecEffect random_law(Random& random, const Scales& scales, const JointType& type) {
   SpecEffect effect{std::string(type.name)};
   for (std::size_t k = 0; k < type.parameters.size(); ++k) {
@@ -88,17 +77,6 @@ SpecEffect random_law(Random& random, const Scales& scales, const JointType& typ
           {std::string(type.parameters[k].name), random_value(random, scales, type.parameters[k], false)});
   }
   return effect;
-}
-
-// The effects on coordinate k of the type. They stand in the order of its coordinates, as a reader of the scene adds
-// them.
-CoordinateEffects& effects_on(SceneJoint& joint, const JointType& type, std::size_t k) {
-  auto at = joint.effects.begin();
-  for (std::size_t before = 0; before < k; ++before)
-    if (at != joint.effects.end() && at->coordinate == type.coordinates[before].name) ++at;
-  if (at == joint.effects.end() || at->coordinate != type.coordinates[k].name)
-    at = joint.effects.insert(at, CoordinateEffects{.coordinate = std::string(type.coordinates[k].name)});
-  return *at;
 }
 
 // Effects whose names are keys of a scene already.
@@ -117,6 +95,26 @@ std::vector<const JointType*> laws_for(const EffectTypes& types, const Coordinat
 bool is_compiled(const JointType& type) { return file_of_own_type(std::string(type.name)).empty(); }
 
 }  // namespace
+
+SceneJoint random_effect(Random& random, const Scales& scales, const Scene& scene, const JointType& type) {
+  SceneJoint effect;
+  effect.definition.type = type.name;
+  effect.definition.bodies = random_bodies(random, scene, type.bodies);
+  for (const ParameterInfo& info : type.parameters)
+    if (!info.has_default || random.chance(0.15))
+      effect.definition.parameters.push_back(
+          {std::string(info.name), random_value(random, scales, info, scene.dimension == Dimension::spatial)});
+  return effect;
+}
+
+CoordinateEffects& effects_on(SceneJoint& joint, const JointType& type, std::size_t k) {
+  auto at = joint.effects.begin();
+  for (std::size_t before = 0; before < k; ++before)
+    if (at != joint.effects.end() && at->coordinate == type.coordinates[before].name) ++at;
+  if (at == joint.effects.end() || at->coordinate != type.coordinates[k].name)
+    at = joint.effects.insert(at, CoordinateEffects{.coordinate = std::string(type.coordinates[k].name)});
+  return *at;
+}
 
 EffectTypes effects_of_catalogue(Dimension dimension) {
   EffectTypes types;

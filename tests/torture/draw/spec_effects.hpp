@@ -35,6 +35,13 @@ struct EffectTypes {
 // All that are compiled, but for those on coordinates whose names are keys of a scene already.
 EffectTypes effects_of_catalogue(Dimension dimension);
 
+// Between bodies of the scene, or one and the world, with random numbers.
+SceneJoint random_effect(Random& random, const Scales& scales, const Scene& scene, const JointType& type);
+
+// The effects on coordinate k of the type. They stand in the order of its coordinates, as a reader of the scene adds
+// them.
+CoordinateEffects& effects_on(SceneJoint& joint, const JointType& type, std::size_t k);
+
 // At most `most` on bodies, and others on coordinates. `refused` receives the reasons why the World took one not.
 template <class S>
 void add_spec_effects(Random& random, const Scales& scales, const EffectTypes& types, int most, Scene& scene,
