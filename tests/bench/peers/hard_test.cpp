@@ -39,11 +39,14 @@ TEST(HardCases, HaveACellForEveryCaseAndEngine) {
   std::printf("%d cells\n", cells);
 }
 
-// Length of small steps, 1/6000 s or a hundredth of a radian, and their number.
+// Length of small steps, 1/6000 s or a hundredth of a radian, also of a slider's spring, and their number.
 constexpr int moment = 120;
 double fine_step(const Problem& problem) {
   double spin = 60;
   for (const Body& body : problem.bodies) spin = std::max(spin, norm(body.start.w));
+  for (const Joint& joint : problem.joints)
+    if (joint.kind == JointKind::prismatic && joint.spring && joint.b != world)
+      spin = std::max(spin, std::sqrt(joint.spring->stiffness / problem.bodies[std::size_t(joint.b)].mass));
   return 0.01 / spin;
 }
 

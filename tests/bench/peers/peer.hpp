@@ -35,7 +35,8 @@ struct Body {
 };
 
 // `distance` is a rod, `max_distance` a string; `orientation` locks the relative rotation of two bodies. `six_dof`
-// locks slides, and rotations as given.
+// locks slides, and rotations as given. A `mount` holds b by springs alone. A
+// `contact` keeps the anchor of a above a plane of b, the world, by its anchor; its axis is the plane's normal.
 enum class JointKind {
   revolute,
   prismatic,
@@ -46,12 +47,26 @@ enum class JointKind {
   orientation,
   universal,
   six_dof,
-  pulley
+  pulley,
+  mount,
+  contact
 };
 
-// Motor and stops of a hinge, for the angle from a to b; in the plane it is 0 if both bodies' angles are equal.
+// Motor of a hinge or a slider: of b along the axis from a. Motor and stops of a hinge are for the angle from a to b,
+// which in the plane is 0 if both bodies' angles are equal.
 struct Motor {
-  double speed = 0, most = 0;  // [rad/s], [N m]
+  double speed = 0, most = 0;                     // [rad/s], [N m]; [m/s], [N]
+  std::function<double(double time)> speed_at{};  // in place of the speed
+};
+// A drive of a hinge to an angle: the torque -stiffness (angle - target) - damping rate, of at most `most`.
+struct Servo {
+  double target = 0, stiffness = 0, damping = 0, most = 0;  // [rad], [N m/rad], [N m s/rad], [N m]
+  bool saturates_smoothly = false;                          // its spring alone, and in Cdot only
+};
+// Springs of a mount: along its axis, across it, and of the turns about these. They are unstretched where the anchors
+// meet, unturned.
+struct Mount {
+  double along = 0, across = 0, twist = 0, bend = 0;  // [N/m], [N/m], [N m/rad], [N m/rad]
 };
 struct Stops {
   double lower = 0, upper = 0;  // [rad]
@@ -83,6 +98,10 @@ struct Joint {
   double ratio = 1;
   std::vector<Turn> turns;  // two for a universal joint, three for a six-degree joint
   std::optional<Motor> motor;
+  std::vector<double> brakes;  // of a hinge: dry friction up to these torques [N m]
+  std::optional<Servo> servo;
+  std::optional<Mount> mount;
+  double friction = 0;  // coefficient of a contact
   std::optional<Stops> stops;
   std::optional<Spring> spring;  // of a hinge or a slider, unstretched at the start
   std::optional<Spring> soft;    // softness of the joint itself

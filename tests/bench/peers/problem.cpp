@@ -87,82 +87,27 @@ Vec3 anchor_of(const BasicWorld<S>& built, int joint, int body, const char* name
 }
 
 JointKind kind_of(std::string_view type, Dimension dimension) {
-  static const std::map<std::string_view, JointKind> kinds{
-      {"revolute", JointKind::revolute},   {"hinge", JointKind::revolute},
-      {"prismatic", JointKind::prismatic}, {"spherical", JointKind::spherical},
-      {"weld", JointKind::fixed},          {"fixed", JointKind::fixed},
-      {"distance", JointKind::distance},   {"max_distance", JointKind::max_distance},
-      {"angle", JointKind::orientation},   {"relative_orientation", JointKind::orientation},
-      {"universal", JointKind::universal}, {"six_dof", JointKind::six_dof},
-      {"pulley", JointKind::pulley}};
+  static const std::map<std::string_view, JointKind> kinds{{"revolute", JointKind::revolute},
+                                                           {"hinge", JointKind::revolute},
+                                                           {"prismatic", JointKind::prismatic},
+                                                           {"slider", JointKind::prismatic},
+                                                           {"spherical", JointKind::spherical},
+                                                           {"weld", JointKind::fixed},
+                                                           {"fixed", JointKind::fixed},
+                                                           {"distance", JointKind::distance},
+                                                           {"max_distance", JointKind::max_distance},
+                                                           {"angle", JointKind::orientation},
+                                                           {"relative_orientation", JointKind::orientation},
+                                                           {"universal", JointKind::universal},
+                                                           {"six_dof", JointKind::six_dof},
+                                                           {"pulley", JointKind::pulley},
+                                                           {"bushing", JointKind::mount},
+                                                           {"rough_line", JointKind::contact},
+                                                           {"rough_plane", JointKind::contact}};
   const auto found = kinds.find(type);
   if (found == kinds.end() || (found->second == JointKind::spherical && dimension == Dimension::planar))
     throw CannotSay(fmt::format("{}: no adapter knows this joint", type));
   return found->second;
-}
-
-Spring spring_of(const SceneJoint& source, const Softness& softness) {
-  if (softness.by_frequency) throw CannotSay(source.name + ": no adapter knows a spring by its frequency");
-  return {softness.stiffness, softness.damping};
-}
-
-// The length of a direction in the scene; the World normalises it.
-double given_length(const SceneJoint& source) {
-  for (const NamedValue& value : source.definition.parameters)
-    if (value.name == "t" || value.name == "fa")
-      return std::hypot(value.numbers[0], value.numbers[1], value.numbers.size() > 2 ? value.numbers[2] : 0);
-  return 1;
-}
-
-bool locks(const CoordinateEffects& effects) {
-  return effects.limit && effects.limit->lower.value_or(-1) == 0 && effects.limit->upper.value_or(1) == 0;
-}
-
-// Cardan angles depend on their order and differ from twists, except if at most one rotation is free; only that case is
-// supported.
-void take_turns(const SceneJoint& source, Joint& joint) {
-  static const std::map<std::string_view, std::size_t> places{
-      {"bend_a", 0}, {"bend_b", 1}, {"twist_x", 0}, {"twist_y", 1}, {"twist_z", 2}};
-  int held_slides = 0;
-  std::ptrdiff_t held_turns = 0;
-  for (const CoordinateEffects& effects : source.effects) {
-    const bool slides = effects.coordinate.starts_with("slide"), drives = joint.kind == JointKind::universal;
-    if (effects.friction || !effects.springs.empty() || (effects.motor && !drives) ||
-        (effects.limit && !locks(effects)))
-      throw CannotSay(source.name + ": adapters hold the turns of a joint or drive those of a universal one, no more");
-    held_slides += slides;
-    if (slides) continue;
-    Turn& turn = joint.turns.at(places.at(effects.coordinate));
-    turn.held = effects.limit.has_value();
-    held_turns += turn.held;
-    if (effects.motor) turn.motor = {effects.motor->speed, effects.motor->max_force};
-  }
-  if (joint.kind == JointKind::six_dof && (held_slides != 3 || held_turns == 1))
-    throw CannotSay(source.name + ": adapters know joints of six degrees without slides and with one turn, or all");
-}
-
-// Many engines know stops at both ends only: a missing one is so far away that nothing here meets it, and within a
-// turn.
-Stops stops_of(const Limit& limit) {
-  constexpr double far = 3;  // [rad]
-  return {limit.lower.value_or(limit.upper.value_or(far) - far),
-          limit.upper.value_or(limit.lower.value_or(-far) + far)};
-}
-
-// Copies properties of a joint from the scene that the World does not report.
-void take_given(const SceneJoint& source, Joint& joint) {
-  joint.axis = given_length(source) * joint.axis;
-  if (source.definition.soft) joint.soft = spring_of(source, *source.definition.soft);
-  if (!joint.turns.empty()) return take_turns(source, joint);
-  for (const CoordinateEffects& effects : source.effects) {
-    const bool turns = joint.kind == JointKind::revolute;
-    if (effects.friction || (!turns && (effects.motor || effects.limit)) || effects.springs.size() > 1)
-      throw CannotSay(source.name + ": no adapter knows friction, two springs at once, motors or stops of a slider");
-    if (effects.load || !effects.specs.empty()) throw CannotSay(source.name + ": no adapter knows effects of specs");
-    if (effects.motor) joint.motor = {effects.motor->speed, effects.motor->max_force};
-    if (effects.limit) joint.stops = stops_of(*effects.limit);
-    for (const CoordinateSpring& spring : effects.springs) joint.spring = spring_of(source, spring.softness);
-  }
 }
 
 // An immovable body is the world.
@@ -215,11 +160,23 @@ Joint joint_of(const Problem& problem, const BasicWorld<S>& built, int number) {
   if (joint.kind == JointKind::pulley) take_rope(built, number, joint);
   if (joint.kind == JointKind::universal || joint.kind == JointKind::six_dof)
     joint.turns = turns_of(built, number, joint.kind);
-  if (planar) {
+  if (joint.kind == JointKind::contact) {
+    joint.friction = parameter(built, number, "mu")[0];
+    joint.axis = parameter(built, number, planar ? "n" : "f");
+    if (planar) joint.axis[2] = 0;
+    if (joint.b != world) throw CannotSay("no adapter knows a contact of two bodies");
+  } else if (joint.kind == JointKind::mount) {
+    const auto of = [&](const char* name) { return parameter(built, number, name)[0]; };
+    joint.mount = planar ? Mount{of("kx"), of("ky"), of("k_turn"), of("k_turn")}
+                         : Mount{of("k_along"), of("k_across"), of("k_twist"), of("k_bend")};
+    Vec3 axis = parameter(built, number, "fa");
+    if (planar) axis[2] = 0;
+    joint.axis = world_direction(built, a, axis);
+  } else if (planar) {
     joint.axis = {0, 0, 1};
     if (joint.kind == JointKind::prismatic) {
       const Vec3 normal = world_direction(built, b, parameter(built, number, "t"));
-      joint.axis = {normal[1], -normal[0], 0};
+      joint.axis = {-normal[1], normal[0], 0};  // of b from a, against which the slide of a counts
     }
   } else if (joint.kind == JointKind::revolute || joint.kind == JointKind::prismatic) {
     joint.axis = world_direction(built, a, parameter(built, number, "fa"));
@@ -278,7 +235,7 @@ Problem problem_of(const Scene& scene, const BasicWorld<S>& built) {
     const Joint joint = joint_of(problem, built, k);
     if (joint.a == world && joint.b == world) continue;  // without influence
     problem.joints.push_back(joint);
-    if (k < int(scene.joints.size())) take_given(scene.joints[std::size_t(k)], problem.joints.back());
+    if (k < int(scene.joints.size())) take_given(scene.joints[std::size_t(k)], problem, problem.joints.back());
   }
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     const SceneBody& source = scene.bodies[std::size_t(problem.bodies[k].number)];

@@ -20,6 +20,9 @@ struct ProblemRow {
 
 const std::vector<ProblemRow>& problem_rows();
 
+// Copies properties of a joint from the scene that the World does not report; throws CannotSay.
+void take_given(const SceneJoint& source, Problem& problem, Joint& joint);
+
 // Bodies and joints of a scene, as its World has them at the start; throws CannotSay. S is in doubles.
 template <class S>
 Problem problem_of(const Scene& scene, const BasicWorld<S>& built);

@@ -12,12 +12,20 @@ const State& state(const Problem& problem, int body) {
 }
 
 void check_closed(const Problem& problem, const Joint& joint) {
+  if (joint.kind == JointKind::mount) return;
   if (joint.kind == JointKind::orientation) throw CannotSay("no joint that keeps an orientation alone");
   double reach = 0;
   for (const int body : {joint.a, joint.b})
     if (body != world) reach += norm(local_point(problem, body, body == joint.a ? joint.anchor : joint.anchor_b));
   if (norm(joint.anchor_b - joint.anchor) > 1e-9 * (1 + reach))
     throw CannotSay("the joints of its trees cannot start open");
+}
+
+double angle_at_start(const Problem& problem, const Joint& joint) {
+  if (problem.planar) return angle(state(problem, joint.b).q) - angle(state(problem, joint.a).q);
+  if (angle_between(state(problem, joint.a).q, state(problem, joint.b).q) > 1e-9)
+    throw CannotSay("the adapter counts angles in the plane only");
+  return 0;
 }
 
 Vec3 velocity_at(const State& s, const Vec3& point) { return s.v + cross(s.w, point - s.x); }
@@ -64,7 +72,8 @@ Tree spanning(const Problem& problem) {
 }  // namespace
 
 bool only_closes(const Joint& joint) {
-  return joint.kind == JointKind::distance || joint.kind == JointKind::max_distance || joint.kind == JointKind::pulley;
+  return joint.kind == JointKind::distance || joint.kind == JointKind::max_distance ||
+         joint.kind == JointKind::pulley || joint.kind == JointKind::contact;
 }
 
 Tree tree_of(const Problem& problem) {
@@ -73,8 +82,8 @@ Tree tree_of(const Problem& problem) {
     if (branch.joint >= 0) check_closed(problem, problem.joints[std::size_t(branch.joint)]);
   for (const int loop : tree.loops) {
     const Joint& joint = problem.joints[std::size_t(loop)];
-    if (joint.motor || joint.stops || joint.spring || joint.soft)
-      throw CannotSay("no motors, stops or springs of a joint that closes a loop");
+    if (joint.motor || joint.servo || joint.mount || joint.stops || joint.spring || joint.soft || !joint.brakes.empty())
+      throw CannotSay("no motors, brakes, stops or springs of a joint that closes a loop");
   }
   return tree;
 }
@@ -105,11 +114,16 @@ double sense(const Problem& problem, const Branch& branch) {
   return problem.joints[std::size_t(branch.joint)].b == branch.body ? 1 : -1;
 }
 
+Servo servo_from_start(const Problem& problem, const Branch& branch) {
+  const Joint& joint = problem.joints[std::size_t(branch.joint)];
+  Servo servo = *joint.servo;
+  servo.target = sense(problem, branch) * (servo.target - angle_at_start(problem, joint));
+  return servo;
+}
+
 Stops stops_from_start(const Problem& problem, const Branch& branch) {
   const Joint& joint = problem.joints[std::size_t(branch.joint)];
-  if (!problem.planar && angle_between(state(problem, joint.a).q, state(problem, joint.b).q) > 1e-9)
-    throw CannotSay("the adapter counts angles in the plane only");
-  const double start = problem.planar ? angle(state(problem, joint.b).q) - angle(state(problem, joint.a).q) : 0;
+  const double start = angle_at_start(problem, joint);
   const double lower = joint.stops->lower - start, upper = joint.stops->upper - start;
   return sense(problem, branch) > 0 ? Stops{lower, upper} : Stops{-upper, -lower};
 }
@@ -118,8 +132,11 @@ double rate(const Problem& problem, const Branch& branch) {
   const Joint& joint = problem.joints[std::size_t(branch.joint)];
   const State &parent = state(problem, branch.parent), &child = state(problem, branch.body);
   const Vec3 along = (1 / norm(joint.axis)) * joint.axis;
+  const Vec3 apart = velocity_at(child, joint.anchor_b) - velocity_at(parent, joint.anchor);
+  if (joint.kind == JointKind::mount && norm(apart) + norm(child.w - parent.w) > 0)
+    throw CannotSay("the adapter starts mounts at rest only");
   if (joint.kind == JointKind::revolute) return dot(child.w - parent.w, along);
-  return dot(velocity_at(child, joint.anchor_b) - velocity_at(parent, joint.anchor), along);
+  return dot(apart, along);
 }
 
 std::vector<Turn> turns_of(const Problem& problem, const Branch& branch, bool free_first) {

@@ -29,8 +29,9 @@ void close_tree(Problem& problem);
 
 // The branch of a hinge between two bodies; throws CannotSay if there is none.
 const Branch& hinge_between(const Problem& problem, const Tree& tree, int a, int b);
-// The stops of its hinge, for the angle since the start, of the child relative to its parent.
+// The stops and the servo of its hinge, for the angle since the start, of the child relative to its parent.
 Stops stops_from_start(const Problem& problem, const Branch& branch);
+Servo servo_from_start(const Problem& problem, const Branch& branch);
 // 1, or -1 if the tree reverses the joint.
 double sense(const Problem& problem, const Branch& branch);
 

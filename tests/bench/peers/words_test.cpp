@@ -105,67 +105,112 @@ const std::vector<Word>& words() {
     angle.number = 3;
     if (!run.add(now, angle)) throw CannotSay("made anew");
   };
-  static const std::vector<Word> all = {{"torque",
-                                         [](Problem& p) {
-                                           p.bodies[2].torque = {0, 0, 3};
-                                         }},
-                                        {"damping",
-                                         [](Problem& p) {
-                                           for (Body& body : p.bodies) body.damping = 2;
-                                         }},
-                                        {"damper",
-                                         [](Problem& p) {
-                                           last_joint(p).spring = Spring{0, 0.5};
-                                         }},
-                                        {"slider", slide},
-                                        {"spring",
-                                         [=](Problem& p) {
-                                           slide(p);
-                                           last_joint(p).spring = Spring{50, 2};
-                                         }},
-                                        {"soft",
-                                         [](Problem& p) {
-                                           p.joints[0].soft = Spring{2000, 50};
-                                         }},
-                                        {"stops",
-                                         [](Problem& p) {
-                                           last_joint(p).stops = Stops{-0.1, 0.05};
-                                         }},
-                                        {"motor",
-                                         [](Problem& p) {
-                                           last_joint(p).motor = Motor{1, 20};
-                                         }},
-                                        {"universal", bend},
-                                        {"universal, first turn held",
-                                         [=](Problem& p) {
-                                           bend(p);
-                                           last_joint(p).turns[0].held = true;
-                                           p.bodies[2].start.w = {0, 0, 5};
-                                           p.bodies[2].start.v = {0, 2.5, 0};
-                                         }},
-                                        {"universal, second turn driven",
-                                         [=](Problem& p) {
-                                           bend(p);
-                                           last_joint(p).turns[1].motor = Motor{1, 20};
-                                         }},
-                                        {"six degrees, about y", [=](Problem& p) { turn_about(p, 1); }},
-                                        {"six degrees, about z", [=](Problem& p) { turn_about(p, 2); }},
-                                        {"distance", [=](Problem& p) { tie(p, JointKind::distance); }},
-                                        {"string", [=](Problem& p) { tie(p, JointKind::max_distance); }},
-                                        {"pulley",
-                                         [=](Problem& p) {
-                                           hang(p, JointKind::pulley);
-                                           p.bodies[2].start.w = p.bodies[2].start.v = {};
-                                         }},
-                                        {"strike", [](Problem&) {},
-                                         [](Run& run, const Problem&) {
-                                           run.strike(2, {-1, 2, 0});
-                                         }},
-                                        {"remove", [](Problem&) {},
-                                         [](Run& run, const Problem&) {
-                                           if (!run.remove(2)) throw CannotSay("made anew");
-                                         }},
-                                        {"add", [](Problem&) {}, add_angle}};
+  static const std::vector<Word> all = {
+      {"torque",
+       [](Problem& p) {
+         p.bodies[2].torque = {0, 0, 3};
+       }},
+      {"damping",
+       [](Problem& p) {
+         for (Body& body : p.bodies) body.damping = 2;
+       }},
+      {"damper",
+       [](Problem& p) {
+         last_joint(p).spring = Spring{0, 0.5};
+       }},
+      {"slider", slide},
+      {"spring",
+       [=](Problem& p) {
+         slide(p);
+         last_joint(p).spring = Spring{50, 2};
+       }},
+      {"soft",
+       [](Problem& p) {
+         p.joints[0].soft = Spring{2000, 50};
+       }},
+      {"stops",
+       [](Problem& p) {
+         last_joint(p).stops = Stops{-0.1, 0.05};
+       }},
+      {"motor",
+       [](Problem& p) {
+         last_joint(p).motor = Motor{1, 20};
+       }},
+      {"motor whose speed jumps",
+       [](Problem& p) {
+         last_joint(p).motor = Motor{0, 20, [](double t) { return t < 0.1 ? 1.0 : -2.0; }};
+       }},
+      {"motor of a slider",
+       [=](Problem& p) {
+         slide(p);
+         last_joint(p).motor = Motor{1, 40};
+       }},
+      {"brakes",
+       [](Problem& p) {
+         last_joint(p).brakes = {0.5, 0.75};
+       }},
+      {"servo",
+       [](Problem& p) {
+         last_joint(p).servo = Servo{-0.3, 1e6, 5e4, 10};
+       }},
+      {"mount",
+       [=](Problem& p) {
+         Joint& mount = last_joint(p);
+         mount.kind = JointKind::mount;
+         mount.a = world;
+         mount.axis = {0.8, 0.6, 0};
+         mount.anchor = {2.4, 0.05, 0};
+         mount.anchor_b = p.bodies[2].start.x;
+         mount.mount = Mount{4000, 500, 30, 30};
+         p.bodies[2].start.w = p.bodies[2].start.v = {};
+         p.bodies[2].torque = {0, 0, 5};
+       }},
+      {"contact",
+       [](Problem& p) {
+         Joint contact;
+         contact.kind = JointKind::contact;
+         contact.a = 2;
+         contact.b = world;
+         contact.anchor = contact.anchor_b = {3, 0, 0};
+         contact.anchor_b[1] = -0.1;
+         contact.axis = {0, 1, 0};
+         contact.friction = 0.4;
+         contact.number = 3;
+         p.joints.push_back(contact);
+         p.bodies[2].start.w = {};
+         p.bodies[2].start.v = {};
+       }},
+      {"universal", bend},
+      {"universal, first turn held",
+       [=](Problem& p) {
+         bend(p);
+         last_joint(p).turns[0].held = true;
+         p.bodies[2].start.w = {0, 0, 5};
+         p.bodies[2].start.v = {0, 2.5, 0};
+       }},
+      {"universal, second turn driven",
+       [=](Problem& p) {
+         bend(p);
+         last_joint(p).turns[1].motor = Motor{1, 20};
+       }},
+      {"six degrees, about y", [=](Problem& p) { turn_about(p, 1); }},
+      {"six degrees, about z", [=](Problem& p) { turn_about(p, 2); }},
+      {"distance", [=](Problem& p) { tie(p, JointKind::distance); }},
+      {"string", [=](Problem& p) { tie(p, JointKind::max_distance); }},
+      {"pulley",
+       [=](Problem& p) {
+         hang(p, JointKind::pulley);
+         p.bodies[2].start.w = p.bodies[2].start.v = {};
+       }},
+      {"strike", [](Problem&) {},
+       [](Run& run, const Problem&) {
+         run.strike(2, {-1, 2, 0});
+       }},
+      {"remove", [](Problem&) {},
+       [](Run& run, const Problem&) {
+         if (!run.remove(2)) throw CannotSay("made anew");
+       }},
+      {"add", [](Problem&) {}, add_angle}};
   return all;
 }
 
@@ -226,9 +271,11 @@ TEST(Words, SayWhatJointsCarry) {
   EXPECT_EQ(asked, 9);
 }
 
-// Box2D's softest pin, a mouse joint, damps the spin of its body in each step.
+// Box2D's softest pin, a mouse joint, damps the spin of its body in each step. Bullet's springs of a turn take the mass
+// of a body for its inertia.
 bool means_another(const Word& word, const Engine& engine) {
-  return engine.name == "Box2D" && word.name == std::string("soft");
+  return (engine.name == "Box2D" && word.name == std::string("soft")) ||
+         (engine.name == "Bullet" && word.name == std::string("mount"));
 }
 
 // Every feature has the same effect in every engine that supports it, and Cdot moves differently without the feature.

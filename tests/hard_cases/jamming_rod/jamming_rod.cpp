@@ -1,6 +1,7 @@
 // Friction in proportion to a load that no finite force balances. By hand, for an impulse P along the line's normal and
 // -Q along the line at the end: it stops if Q / P < mu. Afterwards the rod turns about it and conserves its energy.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tests/hard_cases/trial.hpp"
@@ -8,16 +9,26 @@
 namespace cdot::hard::jamming_rod {
 namespace {
 
+// [m/s] Of the end along the line, or along two directions of the plane.
+std::array<double, 2> slip(const Trial& t) {
+  const auto rate = [&](const char* slip) {
+    return t.ask([&](const auto& world) { return double(world.coordinate_rate(0, slip)); });
+  };
+  if (t.scene.dimension == Dimension::planar) return {rate("slip"), 0};
+  return {rate("slip_y"), rate("slip_z")};
+}
+
 void jam(Trial& t) {
   t.start();
   constexpr double c = 1, s = 2, I = 5.0 / 3;  // the end is at (c, -s) from the centre of the rod of 1 kg
+  const auto start = slip(t);
+  const double speed = std::hypot(start[0], start[1]);
   const double first = t.energy();
   double sunk = 0, last = first, gained = 0, slid = 0;
   t.run(0.1, 0, [&] {
-    const BodyState rod = t.body("rod");
-    const double y = c * std::sin(rod.angle) - s * std::cos(rod.angle);
-    sunk = std::max(sunk, -(rod.y + y));
-    slid = std::max(slid, rod.vx - rod.w * y);
+    sunk = std::max(sunk, -t.coordinate(0, "gap"));
+    const auto now = slip(t);
+    slid = std::max(slid, (now[0] * start[0] + now[1] * start[1]) / speed);
     gained = std::max(gained, t.energy() - last);
     last = t.energy();
   });
@@ -31,6 +42,7 @@ void jam(Trial& t) {
 }
 
 const Register planar({"jamming_rod", "planar", direct() + without(iterative(), {Integrator::rattle}), jam});
+const Register spatial({"jamming_rod", "spatial", direct() + without(iterative(), {Integrator::rattle}), jam});
 
 }  // namespace
 }  // namespace cdot::hard::jamming_rod

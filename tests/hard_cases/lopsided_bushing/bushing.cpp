@@ -21,8 +21,9 @@ void swing(Trial& t) {
   t.at_most("energy gained, of the swing's", w.rise / 0.5, 1e-2);
 }
 
-const Register planar({"lopsided_bushing", "planar", only(all_ways(), {Integrator::euler, Integrator::implicit}),
-                       swing});
+const auto damping_ways = only(all_ways(), {Integrator::euler, Integrator::implicit});
+const Register planar({"lopsided_bushing", "planar", damping_ways, swing});
+const Register spatial({"lopsided_bushing", "spatial", damping_ways, swing});
 
 }  // namespace
 }  // namespace cdot::hard::lopsided_bushing

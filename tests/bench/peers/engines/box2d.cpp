@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "tests/bench/peers/geometry.hpp"
+#include "tests/bench/peers/words.hpp"
 
 namespace cdot::peers {
 namespace {
@@ -36,6 +37,7 @@ class Box2dRun final : public SteppedRun {
   }
   void step(double h) override {
     for (const auto& [body, torque] : torques_) body->ApplyTorque(torque, true);
+    tune_motors(h);
     for (const auto& [hinge, damping] : dampers_) {
       const float torque = damping * hinge->GetJointSpeed();
       hinge->GetBodyA()->ApplyTorque(torque, true);
@@ -43,6 +45,7 @@ class Box2dRun final : public SteppedRun {
     }
     world_.Step(float(h), velocity_iterations_, position_iterations_);
     last_ = h;
+    time_ += h;
   }
 
   void strike(int body, const Vec3& impulse) override {
@@ -65,6 +68,12 @@ class Box2dRun final : public SteppedRun {
   }
 
  private:
+  void tune_motors(double h) {
+    for (const auto& [hinge, motor] : motors_) hinge->SetMotorSpeed(float(speed_of(motor, time_)));
+    for (const auto& [hinge, servo] : servos_)
+      hinge->SetMotorSpeed(float(speed_of(servo, hinge->GetJointAngle() + hinge->GetReferenceAngle(), h)));
+  }
+
   void add(const Body& body) {
     b2BodyDef def;
     def.type = body.moves ? b2_dynamicBody : b2_staticBody;
@@ -96,13 +105,20 @@ class Box2dRun final : public SteppedRun {
   }
 
   void connect(const Problem& problem, const Joint& joint) {
+    check(problem, {.mounts = true});
     b2Body *a = body(joint.a), *b = body(joint.b);
     const b2Vec2 at = vec(joint.anchor);
-    if (joint.soft) {
+    if (joint.kind == JointKind::contact) {
+      add_contact(problem, joint);
+    } else if (joint.soft) {
       hold_softly(joint);
     } else if (joint.kind == JointKind::prismatic) {
       b2PrismaticJointDef def;
       def.Initialize(a, b, at, vec(joint.axis));
+      if ((def.enableMotor = joint.motor.has_value())) {
+        def.motorSpeed = float(speed_of(*joint.motor, 0));
+        def.maxMotorForce = float(joint.motor->most);
+      }
       make(def, problem, joint);
       if (joint.spring) add_spring(joint);
     } else if (joint.kind == JointKind::revolute) {
@@ -134,17 +150,49 @@ class Box2dRun final : public SteppedRun {
     b2RevoluteJointDef def;
     def.Initialize(body(joint.a), body(joint.b), vec(joint.anchor));
     if ((def.enableMotor = joint.motor.has_value())) {
-      def.motorSpeed = float(joint.motor->speed);
+      def.motorSpeed = float(speed_of(*joint.motor, 0));
       def.maxMotorTorque = float(joint.motor->most);
+    }
+    if (joint.servo) {
+      if (joint.motor) throw CannotSay("one motor for a hinge");
+      def.enableMotor = true;
+      def.maxMotorTorque = float(joint.servo->most);
     }
     if ((def.enableLimit = joint.stops.has_value())) {
       def.lowerAngle = float(joint.stops->lower) - def.referenceAngle;
       def.upperAngle = float(joint.stops->upper) - def.referenceAngle;
     }
-    b2Joint* hinge = make(def, problem, joint);
+    auto* const hinge = static_cast<b2RevoluteJoint*>(make(def, problem, joint));
+    if (joint.motor && joint.motor->speed_at) motors_.emplace_back(hinge, *joint.motor);
+    if (joint.servo) servos_.emplace_back(hinge, *joint.servo);
+    for (const double torque : joint.brakes) add_brake(joint, torque);
     if (!joint.spring) return;
     if (joint.spring->stiffness != 0) throw CannotSay("no spring of a hinge");
-    dampers_.emplace_back(static_cast<b2RevoluteJoint*>(hinge), float(joint.spring->damping));
+    dampers_.emplace_back(hinge, float(joint.spring->damping));
+  }
+
+  // A disc on an edge, which has a skin.
+  void add_contact(const Problem& problem, const Joint& joint) {
+    b2CircleShape disc;
+    disc.m_radius = float(tip);
+    disc.m_p = vec(local_point(problem, joint.a, joint.anchor));
+    constexpr double half = 100;
+    const Vec3 top = joint.anchor_b - (tip + b2_polygonRadius) * joint.axis, along = cross({0, 0, half}, joint.axis);
+    b2EdgeShape edge;
+    edge.SetTwoSided(vec(top + along), vec(top - along));
+    b2FixtureDef def;
+    def.friction = float(joint.friction);
+    for (const auto& [owner, shape] : {std::pair<b2Body*, b2Shape*>{body(joint.a), &disc}, {ground_, &edge}}) {
+      def.shape = shape;
+      owner->CreateFixture(&def);
+    }
+  }
+
+  void add_brake(const Joint& joint, double torque) {
+    b2FrictionJointDef def;
+    def.Initialize(body(joint.a), body(joint.b), vec(joint.anchor));
+    def.maxTorque = float(torque);
+    make(def);
   }
 
   // The spring of a slider: a soft distance joint from a point far down its axis.
@@ -176,11 +224,14 @@ class Box2dRun final : public SteppedRun {
   int velocity_iterations_, position_iterations_;
   b2Body* ground_ = nullptr;
   double last_;  // step
+  double time_ = 0;
   std::vector<b2Body*> bodies_;
   std::map<int, std::vector<b2Joint*>> joints_;  // by number; the first is the constraint itself
   std::vector<b2Joint*>* made_ = nullptr;        // of the joint in add()
   std::vector<std::pair<b2Body*, float>> torques_;
   std::vector<std::pair<b2RevoluteJoint*, float>> dampers_;
+  std::vector<std::pair<b2RevoluteJoint*, Motor>> motors_;  // whose speed changes
+  std::vector<std::pair<b2RevoluteJoint*, Servo>> servos_;
 };
 
 std::vector<Series> series(const Problem& problem) {
@@ -198,8 +249,11 @@ std::vector<Series> series(const Problem& problem) {
 // The library still reports version 2.4.0.
 const Registration registration{
     {"Box2D", "2.4.1", "float", "#1f6feb",
-     "no shapes; continuous collision off; sleeps where the case does; a damper of a hinge is a torque put on "
-     "before each step, a spring of a slider a distance joint, a soft pin a mouse joint",
+     "no shapes but a disc of 0.1 mm where a contact is; continuous collision off; sleeps where the case does; a "
+     "damper of a hinge is a torque put on "
+     "before each step, a spring of a slider a distance joint, a soft pin a mouse joint, a brake a friction joint, a "
+     "servo a motor "
+     "whose speed is set before each step",
      series}};
 
 }  // namespace

@@ -35,9 +35,12 @@ class BulletRun final : public SteppedRun {
     if (way.sweeps > 0) info.m_numIterations = way.sweeps;
     else info.m_minimumSolverBatchSize = 1;
     for (const Body& body : problem.bodies) add(body, way, problem.sleep_after > 0);
-    for (const Joint& joint : problem.joints) add(problem, joint);
+    for (const Joint& joint : problem.joints)
+      if (joint.kind == JointKind::contact) touch(problem, joint);
+      else add(problem, joint);
   }
   ~BulletRun() override {
+    if (floor_) world_.removeRigidBody(floor_.get());
     for (const auto& [number, made] : joints_) drop(made);
     for (const auto& body : bodies_) world_.removeRigidBody(body.get());
   }
@@ -50,10 +53,13 @@ class BulletRun final : public SteppedRun {
             from(b.getAngularVelocity())};
   }
   void step(double h) override {
-    for (const auto& [hinge, motor] : motors_) hinge->enableAngularMotor(true, -motor.speed, motor.most * h);
+    for (const auto& [hinge, motor] : motors_) hinge->enableAngularMotor(true, -speed_of(motor, time_), motor.most * h);
+    for (const auto& [hinge, servo] : servos_)
+      hinge->enableAngularMotor(true, -speed_of(servo, -hinge->getHingeAngle(), h), servo.most * h);
     for (const auto& [body, torque] : torques_) body->applyTorque(torque);
     for (const auto& [hinge, damping] : dampers_) damp(*hinge, damping);
     world_.stepSimulation(h, 0, h);
+    time_ += h;
   }
 
   void strike(int body, const Vec3& impulse) override {
@@ -125,6 +131,23 @@ class BulletRun final : public SteppedRun {
     return index == peers::world ? btTypedConstraint::getFixedBody() : *bodies_[std::size_t(index)];
   }
 
+  // A ball on a plane. Coefficients of friction are multiplied.
+  void touch(const Problem& problem, const Joint& joint) {
+    if (floor_) throw CannotSay("the adapter knows one contact");
+    btRigidBody& a = body(joint.a);
+    const btTransform at(btQuaternion::getIdentity(), bt(local_point(problem, joint.a, joint.anchor)));
+    ball_about_tip_.addChildShape(at, &ball_);
+    plane_ = std::make_unique<btStaticPlaneShape>(bt(joint.axis), dot(joint.anchor_b, joint.axis) - tip);
+    floor_ = std::make_unique<btRigidBody>(0, nullptr, plane_.get());
+    floor_->setFriction(1);
+    world_.removeRigidBody(&a);
+    a.setCollisionShape(&ball_about_tip_);
+    a.setFriction(joint.friction);
+    world_.addRigidBody(&a);
+    world_.addRigidBody(floor_.get());
+    world_.collides = true;
+  }
+
   static void damp(btHingeConstraint& hinge, double damping) {
     btRigidBody &a = hinge.getRigidBodyA(), &b = hinge.getRigidBodyB();
     const btVector3 axis = a.getWorldTransform().getBasis() * hinge.getAFrame().getBasis().getColumn(2);
@@ -140,6 +163,7 @@ class BulletRun final : public SteppedRun {
         bt(local_direction(problem, joint.a, joint.axis)),
         bt(local_direction(problem, joint.b, joint.axis_b.value_or(joint.axis))));
     if (joint.motor) motors_.emplace_back(made.get(), *joint.motor);
+    if (joint.servo) servos_.emplace_back(made.get(), *joint.servo);
     if (joint.stops) made->setLimit(-joint.stops->upper, -joint.stops->lower, 0.9, 0.3, 0);  // without bouncing
     if (!joint.spring) return made;
     if (joint.spring->stiffness != 0) throw CannotSay("no spring of a hinge");
@@ -155,6 +179,35 @@ class BulletRun final : public SteppedRun {
     for (int k = 0; k < 3; ++k) made->setLimit(k, 1, -1);
     made->setLimit(3, 1, -1);
     for (int k = 4; k < 6; ++k) made->setLimit(k, 0, 0);
+    return made;
+  }
+  // All free but what is set afterwards.
+  std::unique_ptr<btGeneric6DofSpring2Constraint> six_free(const Problem& problem, const Joint& joint) {
+    auto made = six(problem, joint);
+    for (int k = 4; k < 6; ++k) made->setLimit(k, 1, -1);
+    return made;
+  }
+  std::unique_ptr<btTypedConstraint> brake(const Problem& problem, const Joint& joint, double torque) {
+    auto made = six_free(problem, joint);
+    made->enableMotor(3, true);
+    made->setTargetVelocity(3, 0);
+    made->setMaxMotorForce(3, torque);
+    return made;
+  }
+  std::unique_ptr<btTypedConstraint> mount(const Problem& problem, const Joint& joint) {
+    auto made = six_free(problem, joint);
+    const auto& [along, across, twist, bend] = *joint.mount;
+    const double stiffness[] = {along, across, across, twist, bend, bend};
+    for (int k = 0; k < 6; ++k) add_spring(*made, k, {stiffness[k], 0});
+    return made;
+  }
+  std::unique_ptr<btTypedConstraint> slider(const Joint& joint, const btTransform& in_a, const btTransform& in_b) {
+    auto made = std::make_unique<btSliderConstraint>(body(joint.a), body(joint.b), in_a, in_b, true);
+    if (!joint.motor) return made;
+    if (joint.motor->speed_at) throw CannotSay("the adapter changes the speed of hinges only");
+    made->setPoweredLinMotor(true);
+    made->setTargetLinMotorVelocity(joint.motor->speed);
+    made->setMaxLinMotorForce(joint.motor->most);
     return made;
   }
   // Rotations about x of a, y and z of b; a universal joint frees the last two, so the second may turn without bound.
@@ -194,6 +247,7 @@ class BulletRun final : public SteppedRun {
       for (int k = 0; k < 3; ++k) add_spring(*made, k, *joint.soft);
       return made;
     }
+    if (joint.kind == JointKind::mount) return mount(problem, joint);
     if (joint.kind == JointKind::orientation) {
       auto made = six(problem, joint);
       made->setLimit(3, 0, 0);
@@ -207,18 +261,18 @@ class BulletRun final : public SteppedRun {
     if (joint.kind == JointKind::revolute) return hinge(problem, joint, a, b);
     if (joint.kind == JointKind::fixed) return std::make_unique<btFixedConstraint>(a, b, in_a, in_b);
     if (norm(joint.axis) == 0) throw CannotSay("its sliders take a frame, of which no axis is zero");
-    return std::make_unique<btSliderConstraint>(a, b, in_a, in_b, true);
+    return slider(joint, in_a, in_b);
   }
 
   void connect(const Problem& problem, const Joint& joint) {
     made_->constraints.push_back(holding(problem, joint));
     made_->constraints.back()->setJointFeedback(made_->felt.get());
     if (joint.spring && joint.kind == JointKind::prismatic) {
-      auto free = six(problem, joint);
-      for (int k = 4; k < 6; ++k) free->setLimit(k, 1, -1);
+      auto free = six_free(problem, joint);
       add_spring(*free, 0, *joint.spring);
       made_->constraints.push_back(std::move(free));
     }
+    for (const double torque : joint.brakes) made_->constraints.push_back(brake(problem, joint, torque));
     for (const auto& constraint : made_->constraints) world_.addConstraint(constraint.get(), true);
   }
 
@@ -229,11 +283,17 @@ class BulletRun final : public SteppedRun {
   Untouched<btDiscreteDynamicsWorld> world_;
   bool free_first_;
   std::vector<std::unique_ptr<btRigidBody>> bodies_;
-  std::map<int, Made> joints_;  // by number
-  Made* made_ = nullptr;        // of the joint in add()
+  btSphereShape ball_{tip};
+  btCompoundShape ball_about_tip_;
+  std::unique_ptr<btStaticPlaneShape> plane_;
+  std::unique_ptr<btRigidBody> floor_;  // of a contact
+  std::map<int, Made> joints_;          // by number
+  Made* made_ = nullptr;                // of the joint in add()
   std::vector<std::pair<btRigidBody*, btVector3>> torques_;
   std::vector<std::pair<btHingeConstraint*, Motor>> motors_;
+  std::vector<std::pair<btHingeConstraint*, Servo>> servos_;
   std::vector<std::pair<btHingeConstraint*, double>> dampers_;
+  double time_ = 0;
 };
 
 std::vector<Series> series(const Problem& problem) {
@@ -253,8 +313,10 @@ std::vector<Series> series(const Problem& problem) {
 
 const Registration registration{
     {"Bullet", "3.24", "double", "#57606a",
-     "the build in doubles; collision detection skipped; springs and soft joints are "
-     "btGeneric6DofSpring2Constraint, a damper of a hinge a torque put on before each step; a stop's relaxation 0; "
+     "the build in doubles; collision detection skipped without a contact, which is a ball of 0.1 mm on a plane; "
+     "springs, soft joints and brakes are "
+     "btGeneric6DofSpring2Constraint, a servo a motor whose speed is set before each step, a damper of a hinge a "
+     "torque put on before each step; a stop's relaxation 0; "
      "sleeps where the case does",
      series}};
 

@@ -34,7 +34,8 @@ class MultibodyRun final : public SteppedRun {
         places_(problem.bodies.size()),
         h_(h),
         free_first_(way.free_first) {
-    check(problem, {.held_orientations = true, .springs = true, .soft_joints = true, .two_axes = true});
+    check(problem,
+          {.held_orientations = true, .soft_joints = true, .two_axes = true, .mounts = true, .contacts = true});
     world_.setGravity(bt(problem.gravity));
     world_.getSolverInfo().m_erp = way.erp;
     world_.getSolverInfo().m_jointFeedbackInWorldSpace = true;
@@ -72,7 +73,11 @@ class MultibodyRun final : public SteppedRun {
     }
     for (const auto& [at, impulse] : struck_) push(at, {(1 / h) * impulse, Vec3{}});
     struck_.clear();
+    for (const auto& [at, damping] : dampers_)
+      at.multibody->addJointTorque(at.link, -damping * at.multibody->getJointVel(at.link));
+    for (const Tuned& tuned : tuned_) tuned.made->setVelocityTarget(tuned.speed(time_, h));
     world_.stepSimulation(h, 0, h);
+    time_ += h;
   }
   State state(int body) const override {
     const Place at = places_[std::size_t(body)];
@@ -104,6 +109,11 @@ class MultibodyRun final : public SteppedRun {
   }
 
  private:
+  // A motor whose speed is set before each step.
+  struct Tuned {
+    btMultiBodyJointMotor* made;
+    std::function<double(double time, double h)> speed;
+  };
   struct Place {
     btMultiBody* multibody = nullptr;
     int link = -1;  // the base
@@ -266,11 +276,36 @@ class MultibodyRun final : public SteppedRun {
       const Stops stops = stops_from_start(problem, branch);
       hold(std::make_unique<btMultiBodyJointLimitConstraint>(at.multibody, at.link, stops.lower, stops.upper));
     }
-    if (!joint.motor) return;
-    move(at.multibody, at.link, sense(problem, branch) * joint.motor->speed, *joint.motor);
+    for (const double torque : joint.brakes) move(at.multibody, at.link, 0, {0, torque});
+    if (joint.servo) add_servo(at, servo_from_start(problem, branch));
+    if (joint.spring) add_damper(at, *joint.spring);
+    if (joint.motor) add_motor(problem, branch, *joint.motor);
   }
-  void move(btMultiBody* multibody, int link, double speed, const Motor& motor) {
-    constraints_.push_back(std::make_unique<btMultiBodyJointMotor>(multibody, link, speed, motor.most * h_));
+  btMultiBodyJointMotor& move(btMultiBody* multibody, int link, double speed, const Motor& motor) {
+    auto made = std::make_unique<btMultiBodyJointMotor>(multibody, link, speed, motor.most * h_);
+    btMultiBodyJointMotor& set = *made;
+    constraints_.push_back(std::move(made));
+    return set;
+  }
+  // A slider moves by its coordinate times its axis.
+  void add_motor(const Problem& problem, const Branch& branch, Motor motor) {
+    const Joint& joint = problem.joints[std::size_t(branch.joint)];
+    const double length = joint.kind == JointKind::prismatic ? norm(joint.axis) : 1,
+                 per_speed = sense(problem, branch) / length;
+    const Place at = place(branch.body);
+    motor.most *= length;
+    btMultiBodyJointMotor& made = move(at.multibody, at.link, per_speed * motor.speed, motor);
+    if (motor.speed_at)
+      tuned_.push_back({&made, [per_speed, motor](double time, double) { return per_speed * speed_of(motor, time); }});
+  }
+  void add_servo(const Place& at, const Servo& servo) {
+    btMultiBodyJointMotor& made = move(at.multibody, at.link, 0, {0, servo.most});
+    tuned_.push_back(
+        {&made, [at, servo](double, double h) { return speed_of(servo, at.multibody->getJointPos(at.link), h); }});
+  }
+  void add_damper(const Place& at, const Spring& spring) {
+    if (spring.stiffness != 0) throw CannotSay("no spring of a joint");
+    dampers_.emplace_back(at, spring.damping);
   }
 
   const Problem& problem_;
@@ -286,6 +321,9 @@ class MultibodyRun final : public SteppedRun {
   bool free_first_;
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders_;
   std::vector<std::unique_ptr<btMultiBodyConstraint>> constraints_;
+  std::vector<Tuned> tuned_;
+  std::vector<std::pair<Place, double>> dampers_;
+  double time_ = 0;
 };
 
 std::vector<Series> series(const Problem& problem) {
@@ -301,7 +339,9 @@ std::vector<Series> series(const Problem& problem) {
 const Registration registration{
     {"Bullet multibody", "3.24", "double", "#bf3989",
      "the build in doubles; a tree of links, loops closed by btMultiBodyPoint2Point; link damping 0; greatest "
-     "coordinate velocity and impulse raised; collision detection skipped; damping a force put on before each step; "
+     "coordinate velocity and impulse raised; collision detection skipped; damping a force and a "
+     "damper of a joint a torque put on before each step; a brake a motor of speed 0, a servo a motor whose speed is "
+     "set before each step; "
      "sleeps where the case does; made anew where joints come or go",
      series}};
 

@@ -25,7 +25,10 @@ template <class World>
 class Untouched final : public World {
  public:
   using World::World;
-  void performDiscreteCollisionDetection() override {}
+  bool collides = false;
+  void performDiscreteCollisionDetection() override {
+    if (collides) World::performDiscreteCollisionDetection();
+  }
 };
 
 }  // namespace cdot::peers

@@ -74,18 +74,39 @@ const char* with_length(const Joint& joint, JointDefinition& d) {
   return joint.kind == JointKind::distance ? "distance" : "max_distance";
 }
 
+// These have points in `d`.
+JointDefinition contact(NamedValue (*value)(const char*, const Vec3&), const Joint& joint, JointDefinition d) {
+  const bool in_plane = value == planar_value;
+  d.type = in_plane ? "rough_line" : "rough_plane";
+  d.parameters.push_back(value(in_plane ? "n" : "f", joint.axis));
+  d.parameters.push_back({"mu", {joint.friction}});
+  return d;
+}
+JointDefinition mount(NamedValue (*value)(const char*, const Vec3&), const Problem& problem, const Joint& joint,
+                      JointDefinition d) {
+  d.type = "bushing";
+  d.parameters.push_back(value("fa", local_direction(problem, joint.a, joint.axis)));
+  const Mount& by = *joint.mount;
+  const std::vector<NamedValue> in_plane{{"kx", {by.along}}, {"ky", {by.across}}, {"k_turn", {by.bend}}},
+      in_space{{"k_along", {by.along}}, {"k_across", {by.across}}, {"k_twist", {by.twist}}, {"k_bend", {by.bend}}};
+  for (const NamedValue& more : value == planar_value ? in_plane : in_space) d.parameters.push_back(more);
+  return d;
+}
+
 JointDefinition definition(const Planar<double>*, const Problem& problem, const Joint& joint) {
   JointDefinition d;
   d.parameters = {planar_value("pa", local_point(problem, joint.a, joint.anchor)),
                   planar_value("pb", local_point(problem, joint.b, joint.anchor_b))};
   if (joint.kind == JointKind::orientation) return {"angle", {}, {}, {}};
+  if (joint.kind == JointKind::mount) return mount(planar_value, problem, joint, std::move(d));
+  if (joint.kind == JointKind::contact) return contact(planar_value, joint, std::move(d));
   d.type = joint.kind == JointKind::prismatic  ? "prismatic"
            : joint.kind == JointKind::fixed    ? "weld"
            : joint.kind == JointKind::revolute ? "revolute"
            : joint.kind == JointKind::pulley   ? over_wheels(planar_value, joint, d)
                                                : with_length(joint, d);
   if (joint.kind == JointKind::prismatic) {
-    const Vec3 normal{-joint.axis[1], joint.axis[0], 0};
+    const Vec3 normal{joint.axis[1], -joint.axis[0], 0};
     d.parameters.push_back(planar_value("t", local_direction(problem, joint.b, normal)));
   }
   return d;
@@ -105,7 +126,9 @@ JointDefinition definition(const Spatial<double>*, const Problem& problem, const
   d.parameters = {spatial_value("pa", local_point(problem, joint.a, joint.anchor)),
                   spatial_value("pb", local_point(problem, joint.b, joint.anchor_b))};
   if (joint.kind == JointKind::orientation) return {"relative_orientation", {}, {spatial_value("fa", {1, 0, 0})}, {}};
-  const bool acted_on = joint.motor || joint.stops || joint.spring;
+  if (joint.kind == JointKind::mount) return mount(spatial_value, problem, joint, std::move(d));
+  if (joint.kind == JointKind::contact) return contact(spatial_value, joint, std::move(d));
+  const bool acted_on = joint.motor || joint.stops || joint.spring || joint.servo || !joint.brakes.empty();
   d.type = joint.kind == JointKind::prismatic   ? (acted_on ? "slider" : "prismatic")
            : joint.kind == JointKind::spherical ? "spherical"
            : joint.kind == JointKind::fixed     ? "fixed"
@@ -153,6 +176,23 @@ void add_turns(BasicWorld<S>& made, int index, const Joint& joint) {
 }
 
 template <class S>
+void add_motor(BasicWorld<S>& made, int index, const char* coordinate, const Motor& motor) {
+  if (!motor.speed_at) return cdot::add_motor(made, index, coordinate, {motor.speed, motor.most}), void();
+  const auto speed = [at = motor.speed_at](double time) { return ProfileValue{at(time)}; };
+  add_effect(made, index, coordinate,
+             SpecEffect{"motor", {in_time("speed", {Profile::function(speed)}), {"max", {motor.most}}}});
+}
+
+template <class S>
+void add_servo(BasicWorld<S>& made, int index, const Servo& servo) {
+  add_effect(
+      made, index, "angle",
+      SpecEffect{
+          servo.saturates_smoothly ? "servo" : "position_drive",
+          {{"target", {servo.target}}, {"k", {servo.stiffness}}, {"d", {servo.damping}}, {"most", {servo.most}}}});
+}
+
+template <class S>
 void add(BasicWorld<S>& made, const Problem& problem, const Joint& joint) {
   JointDefinition d = definition(static_cast<const S*>(nullptr), problem, joint);
   for (const int body : {joint.a, joint.b}) d.bodies.push_back(body == world ? made.ground() : body);
@@ -161,7 +201,10 @@ void add(BasicWorld<S>& made, const Problem& problem, const Joint& joint) {
   add_turns(made, index, joint);
   const char* coordinate = joint.kind == JointKind::prismatic ? "slide" : "angle";
   if (joint.stops) add_limit(made, index, coordinate, {joint.stops->lower, joint.stops->upper});
-  if (joint.motor) add_motor(made, index, coordinate, {joint.motor->speed, joint.motor->most});
+  if (joint.motor) add_motor(made, index, coordinate, *joint.motor);
+  if (joint.servo) add_servo(made, index, *joint.servo);
+  for (const double torque : joint.brakes)
+    add_effect(made, index, "angle", SpecEffect{"brake", {{"torque", {torque}}}});
   if (!joint.spring) return;
   const Softness softness{false, 0, 0, joint.spring->stiffness, joint.spring->damping};
   add_spring(made, index, coordinate, {softness, double(made.coordinate(index, coordinate))});

@@ -31,6 +31,10 @@ class ChipmunkRun final : public SteppedRun {
   }
   ~ChipmunkRun() override {
     for (const auto& [number, made] : joints_) drop(made);
+    for (cpShape* shape : shapes_) {
+      cpSpaceRemoveShape(space_, shape);
+      cpShapeFree(shape);
+    }
     for (cpBody* body : bodies_) {
       cpSpaceRemoveBody(space_, body);
       cpBodyFree(body);
@@ -42,8 +46,11 @@ class ChipmunkRun final : public SteppedRun {
 
   void step(double h) override {
     for (const auto& [body, torque] : torques_) cpBodySetTorque(body, torque);
+    for (const auto& [made, motor] : motors_) cpSimpleMotorSetRate(made, -speed_of(motor, time_));
+    for (const auto& [made, servo] : servos_) cpSimpleMotorSetRate(made, -speed_of(servo, angle_of(made), h));
     cpSpaceStep(space_, h);
     last_ = h;
+    time_ += h;
   }
   State state(int body) const override {
     const cpBody* b = bodies_[std::size_t(body)];
@@ -108,7 +115,18 @@ class ChipmunkRun final : public SteppedRun {
     if (left_after_a_second_ >= 0) cpConstraintSetErrorBias(constraint, left_after_a_second_);
   }
 
+  static double angle_of(const cpConstraint* made) {
+    return cpBodyGetAngle(cpConstraintGetBodyB(made)) - cpBodyGetAngle(cpConstraintGetBodyA(made));
+  }
+
+  cpConstraint* make_motor(const Joint& joint, double speed, double most) {
+    make(cpSimpleMotorNew(body(joint.a), body(joint.b), -speed));
+    cpConstraintSetMaxForce(made_->back(), most);
+    return made_->back();
+  }
+
   void connect(const Problem& problem, const Joint& joint) {
+    check(problem, {.mounts = true});
     cpBody *a = body(joint.a), *b = body(joint.b);
     const cpVect pa = vec(local_point(problem, joint.a, joint.anchor)),
                  pb = vec(local_point(problem, joint.b, joint.anchor_b));
@@ -116,6 +134,7 @@ class ChipmunkRun final : public SteppedRun {
       if (joint.kind != JointKind::revolute) throw CannotSay("no joint that gives like a spring but a spring");
       return make(cpDampedSpringNew(a, b, pa, pb, 0, joint.soft->stiffness, joint.soft->damping));
     }
+    if (joint.kind == JointKind::contact) return touch(problem, joint);
     if (joint.kind == JointKind::pulley) throw no_such(joint);
     if (joint.kind == JointKind::distance) {
       cpConstraint* rod = cpPinJointNew(a, b, pa, pb);
@@ -130,9 +149,24 @@ class ChipmunkRun final : public SteppedRun {
       make(cpGearJointNew(a, b, cpBodyGetAngle(b) - cpBodyGetAngle(a), 1));
     if (joint.spring) add_spring(problem, joint);
     if (joint.stops) make(cpRotaryLimitJointNew(a, b, joint.stops->lower, joint.stops->upper));
+    if (joint.servo) servos_.emplace_back(make_motor(joint, 0, joint.servo->most), *joint.servo);
+    for (const double torque : joint.brakes) make_motor(joint, 0, torque);
     if (!joint.motor) return;
-    make(cpSimpleMotorNew(a, b, -joint.motor->speed));
-    cpConstraintSetMaxForce(made_->back(), joint.motor->most);
+    if (joint.kind == JointKind::prismatic) throw CannotSay("no motor of a slider");
+    cpConstraint* const made = make_motor(joint, joint.motor->speed, joint.motor->most);
+    if (joint.motor->speed_at) motors_.emplace_back(made, *joint.motor);
+  }
+
+  // A disc on a segment. Coefficients of friction are multiplied.
+  void touch(const Problem& problem, const Joint& joint) {
+    constexpr double half = 100;
+    const Vec3 top = joint.anchor_b - tip * joint.axis, along = cross({0, 0, half}, joint.axis);
+    cpShape* const disc = cpCircleShapeNew(body(joint.a), tip, vec(local_point(problem, joint.a, joint.anchor)));
+    cpShape* const line = cpSegmentShapeNew(body(joint.b), vec(top + along), vec(top - along), 0);
+    cpShapeSetFriction(disc, joint.friction);
+    cpShapeSetFriction(line, 1);
+    for (cpShape* shape : {disc, line}) shapes_.push_back(cpSpaceAddShape(space_, shape));
+    cpSpaceSetCollisionSlop(space_, 0);
   }
 
   // The spring of a slider, from a point far down its axis.
@@ -155,11 +189,15 @@ class ChipmunkRun final : public SteppedRun {
 
   cpSpace* space_;
   std::vector<cpBody*> bodies_;
+  std::vector<cpShape*> shapes_;                      // of contacts
   std::map<int, std::vector<cpConstraint*>> joints_;  // by number; the first is the constraint itself
   std::vector<cpConstraint*>* made_ = nullptr;        // of the joint in add()
   std::vector<std::pair<cpBody*, double>> torques_;
   double left_after_a_second_ = -1;  // of a joint's error; below 0: the default
   double last_;                      // step
+  double time_ = 0;
+  std::vector<std::pair<cpConstraint*, Motor>> motors_;  // whose speed changes
+  std::vector<std::pair<cpConstraint*, Servo>> servos_;
 };
 
 std::vector<Series> series(const Problem& problem) {
@@ -183,11 +221,13 @@ std::vector<Series> series(const Problem& problem) {
   return all;
 }
 
-const Registration registration{
-    {"Chipmunk", cpVersionString, "double", "#8250df",
-     "no shapes; a slider is a groove and a gear, a weld a pivot and a gear, a soft pin a damped spring; sleeps "
-     "where the case does",
-     series}};
+const Registration registration{{"Chipmunk", cpVersionString, "double", "#8250df",
+                                 "no shapes but a disc of 0.1 mm where a contact is, which may not sink in, collision "
+                                 "slop 0; a slider is a groove and a gear, a weld a pivot and a gear, a soft pin a "
+                                 "damped spring, a brake a motor of speed 0, "
+                                 "a servo a motor whose speed is set before each step; sleeps "
+                                 "where the case does",
+                                 series}};
 
 }  // namespace
 }  // namespace cdot::peers

@@ -9,177 +9,15 @@
 #include <string>
 #include <utility>
 
-#include "tests/bench/peers/tree.hpp"
+#include "tests/bench/peers/engines/mujoco_model.hpp"
 #include "tests/bench/peers/words.hpp"
 
 namespace cdot::peers {
 namespace {
 
-std::string text(const Vec3& a) { return fmt::format("{} {} {}", a[0], a[1], a[2]); }
-std::string text(const Quaternion& q) { return fmt::format("{} {} {} {}", q[0], q[1], q[2], q[3]); }
-
-std::string name_of(int body) { return body == peers::world ? "world" : fmt::format("b{}", body); }
-
-std::string text(const Spring& spring) {
-  return fmt::format(" stiffness='{}' damping='{}'", spring.stiffness, spring.damping);
-}
-
-// Soft slides in all directions, before the hinge.
-std::string soft_text(const Problem& problem, const Branch& branch, const Spring& soft) {
-  std::string out;
-  for (const Vec3& axis : {Vec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
-    out +=
-        fmt::format("<joint type='slide' axis='{}'{}/>", text(local_direction(problem, branch.body, axis)), text(soft));
-  return out;
-}
-
-// A series of hinges.
-std::string turns_text(const Problem& problem, const Branch& branch, const std::vector<Turn>& turns) {
-  std::string out;
-  for (std::size_t k = 0; k < turns.size(); ++k)
-    out += fmt::format("<joint name='j{}t{}' type='hinge' pos='{}' axis='{}'/>", branch.joint, k,
-                       text(local_point(problem, branch.body, problem.joints[std::size_t(branch.joint)].anchor)),
-                       text(local_direction(problem, branch.body, turns[k].axis)));
-  return out;
-}
-
-std::string joint_text(const Problem& problem, const Branch& branch, bool free_first) {
-  if (branch.joint < 0) return problem.bodies[std::size_t(branch.body)].moves ? "<freejoint/>" : "";
-  const Joint& joint = problem.joints[std::size_t(branch.joint)];
-  if (!joint.turns.empty()) return turns_text(problem, branch, turns_of(problem, branch, free_first));
-  if (joint.kind == JointKind::fixed) return "";  // part of its parent
-  if (joint.soft && joint.kind != JointKind::revolute) throw CannotSay("the adapter makes hinges soft only");
-  const char* type = joint.kind == JointKind::revolute    ? "hinge"
-                     : joint.kind == JointKind::prismatic ? "slide"
-                                                          : "ball";
-  std::string out = joint.soft ? soft_text(problem, branch, *joint.soft) : "";
-  out += fmt::format("<joint name='j{}' type='{}' pos='{}'", branch.joint, type,
-                     text(local_point(problem, branch.body, joint.anchor)));
-  if (joint.kind != JointKind::spherical)
-    out += fmt::format(" axis='{}'", text(local_direction(problem, branch.body, joint.axis)));
-  if (joint.spring) out += text(*joint.spring);
-  if (joint.stops) {
-    const Stops stops = stops_from_start(problem, branch);
-    out += fmt::format(" limited='true' range='{} {}'", stops.lower, stops.upper);
-  }
-  return out + "/>";
-}
-
-double rope_at_start(const Joint& joint) {
-  if (joint.kind != JointKind::pulley) return norm(joint.anchor_b - joint.anchor);
-  return norm(joint.anchor - joint.wheel) + joint.ratio * norm(joint.anchor_b - joint.wheel_b);
-}
-
-// The ends and wheels of ropes on a body or in the world.
-std::string sites_text(const Problem& problem, int body) {
-  std::string out;
-  const auto add = [&](char side, std::size_t joint, const Vec3& at) {
-    out += fmt::format("<site name='{}{}' pos='{}'/>", side, joint, text(local_point(problem, body, at)));
-  };
-  for (std::size_t k = 0; k < problem.joints.size(); ++k) {
-    const Joint& joint = problem.joints[k];
-    if (!only_closes(joint)) continue;
-    if (joint.a == body) add('a', k, joint.anchor);
-    if (joint.b == body) add('b', k, joint.anchor_b);
-    if (joint.kind != JointKind::pulley || body != world) continue;
-    add('v', k, joint.wheel);
-    add('w', k, joint.wheel_b);
-  }
-  return out;
-}
-
-std::string ropes_text(const Problem& problem) {
-  std::string out;
-  for (std::size_t k = 0; k < problem.joints.size(); ++k) {
-    const Joint& joint = problem.joints[k];
-    if (!only_closes(joint)) continue;
-    out += fmt::format("<spatial name='r{}'", k);
-    if (joint.kind == JointKind::max_distance) out += fmt::format(" limited='true' range='0 {}'", joint.length);
-    out += fmt::format("><site site='a{}'/>", k);
-    if (joint.kind == JointKind::pulley)
-      out += fmt::format("<site site='v{0}'/><pulley divisor='{1}'/><site site='w{0}'/>", k, 1 / joint.ratio);
-    out += fmt::format("<site site='b{}'/></spatial>", k);
-  }
-  return out;
-}
-
-// Equality constraints of locked hinges.
-std::string holds_text(const Problem& problem, const Tree& tree, bool free_first) {
-  std::string out;
-  for (const Branch& branch : tree.branches) {
-    if (branch.joint < 0) continue;
-    const std::vector<Turn> turns = turns_of(problem, branch, free_first);
-    for (std::size_t k = 0; k < turns.size(); ++k)
-      if (turns[k].held) out += fmt::format("<joint joint1='j{}t{}' polycoef='0 0 0 0 0'/>", branch.joint, k);
-  }
-  return out;
-}
-
-std::string motor_text(const std::string& joint, const Motor& motor) {
-  std::string out = fmt::format("<velocity joint='{}'", joint);
-  if (std::isfinite(motor.most)) out += fmt::format(" forcelimited='true' forcerange='{} {}'", -motor.most, motor.most);
-  return out + "/>";
-}
-// Motors and their speeds.
-std::string motors_text(const Problem& problem, const Tree& tree, bool free_first, std::vector<double>& speeds) {
-  std::string out;
-  for (const Branch& branch : tree.branches) {
-    if (branch.joint < 0) continue;
-    const Joint& joint = problem.joints[std::size_t(branch.joint)];
-    const std::vector<Turn> turns = turns_of(problem, branch, free_first);
-    for (std::size_t k = 0; k < turns.size(); ++k) {
-      if (!turns[k].motor) continue;
-      out += motor_text(fmt::format("j{}t{}", branch.joint, k), *turns[k].motor);
-      speeds.push_back(turns[k].motor->speed);
-    }
-    if (!joint.motor) continue;
-    out += motor_text(fmt::format("j{}", branch.joint), *joint.motor);
-    speeds.push_back(sense(problem, branch) * joint.motor->speed);
-  }
-  return out;
-}
-
-std::string loop_text(const Problem& problem, const Tree& tree, const Joint& joint) {
-  const std::size_t k = std::size_t(&joint - problem.joints.data());
-  if (joint.kind == JointKind::max_distance) return "";  // its tendon's limit
-  if (only_closes(joint))
-    return fmt::format("<tendon tendon1='r{}' polycoef='{} 1 0 0 0'/>", k, joint.length - rope_at_start(joint));
-  if (joint.kind == JointKind::orientation)
-    return fmt::format("<joint joint1='j{}' polycoef='0 0 0 0 0'/>",
-                       hinge_between(problem, tree, joint.a, joint.b).joint);
-  return fmt::format("<connect body1='{}' body2='{}' anchor='{}'/>", name_of(joint.a), name_of(joint.b),
-                     text(local_point(problem, joint.a, joint.anchor)));
-}
-
-std::string body_text(const Problem& problem, const Tree& tree, const Branch& branch, bool free_first) {
-  const Body& body = problem.bodies[std::size_t(branch.body)];
-  Quaternion q = body.start.q;
-  if (branch.parent != world) q = conjugate(problem.bodies[std::size_t(branch.parent)].start.q) * q;
-  std::string out =
-      fmt::format("<body name='b{}' pos='{}' quat='{}'><inertial pos='0 0 0' mass='{}' diaginertia='{}'/>{}{}\n",
-                  branch.body, text(local_point(problem, branch.parent, body.start.x)), text(q), body.mass,
-                  text(body.inertia), joint_text(problem, branch, free_first), sites_text(problem, branch.body));
-  for (const Branch& child : tree.branches)
-    if (child.parent == branch.body) out += body_text(problem, tree, child, free_first);
-  return out + "</body>\n";
-}
-
-std::string model_text(const Problem& problem, const Tree& tree, bool free_first, std::vector<double>& speeds) {
-  std::string out = fmt::format(
-      "<mujoco><compiler inertiafromgeom='false' angle='radian'/><option gravity='{}'><flag contact='disable'/>"
-      "</option><worldbody>",
-      text(problem.gravity));
-  for (const Branch& branch : tree.branches)
-    if (branch.parent == world) out += body_text(problem, tree, branch, free_first);
-  out += sites_text(problem, world) + "</worldbody><tendon>" + ropes_text(problem) + "</tendon><equality>";
-  for (const int loop : tree.loops) out += loop_text(problem, tree, problem.joints[std::size_t(loop)]);
-  out += holds_text(problem, tree, free_first) + "</equality><actuator>";
-  return out + motors_text(problem, tree, free_first, speeds) + "</actuator></mujoco>";
-}
-
 struct Model {
   std::shared_ptr<mjModel> made;
-  std::vector<double> speeds;  // of its motors
+  std::vector<Drive> drives;
 };
 
 Model model_of(const Problem& problem, bool free_first) {
@@ -187,7 +25,7 @@ Model model_of(const Problem& problem, bool free_first) {
   mju_user_error = [](const char* message) { throw std::runtime_error(message); };
   check(problem, {.held_orientations = true, .sleep = true, .two_axes = true});
   Model of;
-  const std::string xml = model_text(problem, tree_of(problem), free_first, of.speeds);
+  const std::string xml = model_text(problem, tree_of(problem), free_first, of.drives);
   const auto files = std::make_unique<mjVFS>();
   mj_defaultVFS(files.get());
   mj_makeEmptyFileVFS(files.get(), "model.xml", int(xml.size()));
@@ -220,6 +58,7 @@ class MujocoRun final : public SteppedRun {
         problem_(problem),
         model_(mj_copyModel(nullptr, model.made.get())),
         data_(mj_makeData(model_)),
+        drives_(model.drives),
         free_first_(way.free_first) {
     model_->opt.timestep = h;
     model_->opt.integrator = way.integrator;
@@ -227,14 +66,16 @@ class MujocoRun final : public SteppedRun {
       model_->opt.disableflags |= mjDSBL_REFSAFE;
       for (int k = 0; k < model_->neq; ++k)
         harden(way.solref * h, model_->eq_solref + mjNREF * k, model_->eq_solimp + mjNIMP * k);
+      for (int k = 0; k < model_->ngeom; ++k)
+        harden(way.solref * h, model_->geom_solref + mjNREF * k, model_->geom_solimp + mjNIMP * k);
       for (int k = 0; k < model_->ntendon; ++k)
         harden(way.solref * h, model_->tendon_solref_lim + mjNREF * k, model_->tendon_solimp_lim + mjNIMP * k);
     }
     const Tree tree = tree_of(problem);
-    std::copy(model.speeds.begin(), model.speeds.end(), data_->ctrl);
     int equality = 0;
     for (const int loop : tree.loops)
-      if (const Joint& joint = problem.joints[std::size_t(loop)]; joint.kind != JointKind::max_distance)
+      if (const Joint& joint = problem.joints[std::size_t(loop)];
+          joint.kind != JointKind::max_distance && joint.kind != JointKind::contact)
         open(problem, joint, equality++);
     for (const Branch& branch : tree.branches) {
       bodies_.push_back(0);
@@ -296,8 +137,8 @@ class MujocoRun final : public SteppedRun {
       for (const Turn& turn : turns_of(problem, branch, free_first_)) *qvel++ = dot(spin(problem, branch), turn.axis);
     } else if (problem.joints[std::size_t(branch.joint)].kind == JointKind::spherical) {
       put(qvel, turned(conjugate(s.q), spin(problem, branch)));
-    } else {
-      qvel[model_->body_dofnum[b] - 1] = rate(problem, branch);  // after the coordinates of its softness
+    } else if (const double along = rate(problem, branch); along != 0) {
+      qvel[model_->body_dofnum[b] - 1] = along;  // after the coordinates of its softness
     }
   }
 
@@ -319,19 +160,21 @@ class MujocoRun final : public SteppedRun {
     }
   }
 
-  // A motor is a velocity servo; its gain reaches the speed within a step.
-  void tune_motors(double h) {
+  // Motors are velocity servos, whose gain reaches the speed within a step; servos have their own gains.
+  void tune_drives(double h) {
     for (int k = 0; k < model_->nu; ++k) {
+      const Drive& drive = drives_[std::size_t(k)];
       const int dof = model_->jnt_dofadr[model_->actuator_trnid[2 * k]];
-      const double gain = 1 / (h * model_->dof_invweight0[dof]);
-      model_->actuator_gainprm[mjNGAIN * k] = gain;
-      model_->actuator_biasprm[mjNBIAS * k + 2] = -gain;
+      double &gain = model_->actuator_gainprm[mjNGAIN * k], *const bias = model_->actuator_biasprm + mjNBIAS * k;
+      if (drive.servo) gain = drive.servo->stiffness, bias[1] = -gain, bias[2] = -drive.servo->damping;
+      else gain = 1 / (h * model_->dof_invweight0[dof]), bias[2] = -gain;
+      data_->ctrl[k] = drive.servo ? drive.servo->target : drive.forth * speed_of(drive.motor, data_->time);
     }
   }
 
   void step(double h) override {
     model_->opt.timestep = h;
-    tune_motors(h);
+    tune_drives(h);
     push(h);
     mj_step(model_, data_);
     for (const int bad : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})
@@ -341,6 +184,7 @@ class MujocoRun final : public SteppedRun {
   const Problem& problem_;
   mjModel* model_;
   mjData* data_;
+  std::vector<Drive> drives_;
   bool free_first_;
   std::vector<int> bodies_;
   std::map<int, int> held_by_;  // bodies, by the numbers of the joints that they hang from
@@ -372,8 +216,10 @@ std::vector<Series> series(const Problem& problem) {
 
 const Registration registration{
     {"MuJoCo", mj_versionString(), "double", "#1a7f37",
-     "a tree of joints, loops closed by connect, distances and ropes kept by tendons; contacts disabled; a soft pin is "
-     "three sprung slides and a hinge; a motor a velocity servo; damping a force put on before each step; made anew "
+     "a tree of joints, loops closed by connect, distances and ropes kept by tendons; a contact is a ball of 0.1 mm on "
+     "a plane; a soft pin is "
+     "three sprung slides and a hinge; a motor a velocity servo; a brake a joint's frictionloss; damping a force put "
+     "on before each step; made anew "
      "where joints come or go",
      series}};
 

@@ -36,7 +36,7 @@ class OdeRun final : public SteppedRun {
  public:
   OdeRun(const Problem& problem, const Way& way, double h)
       : SteppedRun(h), world_(made()), sweeps_(way.sweeps), h_(h), free_first_(way.free_first) {
-    check(problem, {.held_orientations = true, .two_axes = true});
+    check(problem, {.held_orientations = true, .two_axes = true, .mounts = true});
     dWorldSetAutoDisableFlag(world_, problem.sleep_after > 0);
     dWorldSetAutoDisableTime(world_, problem.sleep_after);
     dWorldSetGravity(world_, problem.gravity[0], problem.gravity[1], problem.gravity[2]);
@@ -46,12 +46,19 @@ class OdeRun final : public SteppedRun {
     for (const Body& body : problem.bodies) add(body, way.finite_rotation);
     for (const Joint& joint : problem.joints) add(problem, joint);
   }
-  ~OdeRun() override { dWorldDestroy(world_); }
+  ~OdeRun() override {
+    dJointGroupDestroy(touching_);
+    dWorldDestroy(world_);
+  }
   OdeRun(const OdeRun&) = delete;
   OdeRun& operator=(const OdeRun&) = delete;
 
   void step(double h) override {
     for (const auto& [body, torque] : torques_) dBodyAddTorque(body, torque[0], torque[1], torque[2]);
+    dJointGroupEmpty(touching_);
+    for (const Contact& contact : contacts_) touch(contact);
+    for (const Tuned& tuned : tuned_) tuned.set(time_, h);
+    time_ += h;
     const int done = sweeps_ > 0 ? dWorldQuickStep(world_, h) : dWorldStep(world_, h);
     if (!done) throw std::runtime_error("ODE: no memory for the step");
   }
@@ -75,8 +82,31 @@ class OdeRun final : public SteppedRun {
     joints_.erase(joint);
     return true;
   }
+  // Of a body's point on a plane, as an application makes one before each step.
+  struct Contact {
+    dBodyID body;
+    Vec3 point, normal;  // of the body, of the world
+    double height, friction;
+  };
+  void touch(const Contact& contact) {
+    dContact made{};
+    dBodyGetRelPointPos(contact.body, contact.point[0], contact.point[1], contact.point[2], made.geom.pos);
+    const Vec3 at{made.geom.pos[0], made.geom.pos[1], made.geom.pos[2]};
+    made.geom.depth = contact.height - dot(at, contact.normal);
+    if (made.geom.depth < 0) return;
+    std::copy(contact.normal.begin(), contact.normal.end(), made.geom.normal);
+    made.surface.mode = dContactApprox1;
+    made.surface.mu = contact.friction;
+    dJointAttach(dJointCreateContact(world_, touching_, &made), contact.body, nullptr);
+  }
+
   // ODE places a joint once for both bodies. For a joint that starts open the second body is first moved to fit.
-  bool add(const Problem&, const Joint& joint) override {
+  bool add(const Problem& problem, const Joint& joint) override {
+    if (joint.kind == JointKind::contact) {
+      contacts_.push_back({body(joint.a), local_point(problem, joint.a, joint.anchor), joint.axis,
+                           dot(joint.anchor_b, joint.axis), joint.friction});
+      return true;
+    }
     const bool meets = joint.kind != JointKind::orientation && joint.kind != JointKind::distance;
     const Vec3 gap = meets ? joint.anchor_b - joint.anchor : Vec3{};
     Made& made = joints_[joint.number];
@@ -85,6 +115,9 @@ class OdeRun final : public SteppedRun {
     move(body(joint.b), gap);
     dJointSetFeedback(made.ids[0], made.felt.get());
     if (joint.kind == JointKind::revolute && joint.spring) made.ids.push_back(damper(joint));
+    for (const double torque : joint.brakes) made.ids.push_back(brake(joint, torque));
+    if (joint.kind == JointKind::revolute) tune(made.ids[0], joint);
+    if (joint.kind == JointKind::prismatic && joint.motor) made.ids.push_back(belt(joint));
     if (joint.kind == JointKind::six_dof) made.ids.push_back(turns(joint));
     return true;
   }
@@ -92,6 +125,10 @@ class OdeRun final : public SteppedRun {
   bool asleep(int body) const override { return !dBodyIsEnabled(bodies_[std::size_t(body)]); }
 
  private:
+  // What is set before each step.
+  struct Tuned {
+    std::function<void(double time, double h)> set;
+  };
   struct Made {
     std::vector<dJointID> ids;  // the first is the constraint itself
     std::unique_ptr<dJointFeedback> felt = std::make_unique<dJointFeedback>();
@@ -133,7 +170,8 @@ class OdeRun final : public SteppedRun {
   static void drive(dJointID hinge, const Joint& joint) {
     const bool forth = joint.a == peers::world;
     if (joint.motor) {
-      dJointSetHingeParam(hinge, dParamVel, forth ? joint.motor->speed : -joint.motor->speed);
+      const double speed = speed_of(*joint.motor, 0);
+      dJointSetHingeParam(hinge, dParamVel, forth ? speed : -speed);
       dJointSetHingeParam(hinge, dParamFMax, joint.motor->most);
     }
     if (joint.stops) {
@@ -142,15 +180,47 @@ class OdeRun final : public SteppedRun {
     }
   }
 
-  // An angular motor of speed 0 with the softness of a damper.
-  dJointID damper(const Joint& joint) {
-    if (joint.spring->stiffness != 0) throw CannotSay("no spring of a hinge");
+  // A motor whose speed changes, and a servo by a motor.
+  void tune(dJointID hinge, const Joint& joint) {
+    const double forth = joint.a == peers::world ? 1 : -1;
+    const auto set = [=](double speed) { dJointSetHingeParam(hinge, dParamVel, forth * speed); };
+    if (joint.motor && joint.motor->speed_at)
+      tuned_.push_back({[=, motor = *joint.motor](double time, double) { set(speed_of(motor, time)); }});
+    if (!joint.servo) return;
+    if (joint.motor) throw CannotSay("one motor for a hinge");
+    dJointSetHingeParam(hinge, dParamFMax, joint.servo->most);
+    tuned_.push_back(
+        {[=, servo = *joint.servo](double, double h) { set(speed_of(servo, -dJointGetHingeAngle(hinge), h)); }});
+  }
+
+  // An angular motor of speed 0, up to a torque.
+  dJointID brake(const Joint& joint, double torque) {
     const dJointID made = dJointCreateAMotor(world_, nullptr);
     dJointAttach(made, body(joint.a), body(joint.b));
     dJointSetAMotorNumAxes(made, 1);
     dJointSetAMotorAxis(made, 0, joint.a == peers::world ? 2 : 1, joint.axis[0], joint.axis[1], joint.axis[2]);
-    dJointSetAMotorParam(made, dParamFMax, dInfinity);
+    dJointSetAMotorParam(made, dParamFMax, torque);
+    return made;
+  }
+
+  // The same with the softness of a damper.
+  dJointID damper(const Joint& joint) {
+    if (joint.spring->stiffness != 0) throw CannotSay("no spring of a hinge");
+    const dJointID made = brake(joint, dInfinity);
     dJointSetAMotorParam(made, dParamCFM, 1 / joint.spring->damping);
+    return made;
+  }
+
+  // A linear motor along a slider, whose own motor does not act beside a spring.
+  dJointID belt(const Joint& joint) {
+    if (joint.motor->speed_at) throw CannotSay("the adapter changes the speed of hinges only");
+    const dJointID made = dJointCreateLMotor(world_, nullptr);
+    attach(made, joint);
+    dJointSetLMotorNumAxes(made, 1);
+    const Vec3 axis = (1 / norm(joint.axis)) * joint.axis;
+    dJointSetLMotorAxis(made, 0, 1, axis[0], axis[1], axis[2]);
+    dJointSetLMotorParam(made, dParamVel, forth(joint) ? joint.motor->speed : -joint.motor->speed);
+    dJointSetLMotorParam(made, dParamFMax, joint.motor->most);
     return made;
   }
 
@@ -281,6 +351,10 @@ class OdeRun final : public SteppedRun {
   std::vector<dBodyID> bodies_;
   std::map<int, Made> joints_;  // by number
   std::vector<std::pair<dBodyID, Vec3>> torques_;
+  std::vector<Tuned> tuned_;
+  std::vector<Contact> contacts_;
+  dJointGroupID touching_ = dJointGroupCreate(0);  // of a step
+  double time_ = 0;
 };
 
 std::vector<Series> series(const Problem& problem) {
@@ -299,11 +373,13 @@ std::vector<Series> series(const Problem& problem) {
   return all;
 }
 
-const Registration registration{
-    {"ODE", "0.16.2", "double", "#0a7ea4",
-     "CFM 1e-10 is its default; no geometry; springs and dampers by ERP and CFM, a soft pin is a soft ball; sleeps "
-     "where the case does",
-     series}};
+const Registration registration{{"ODE", "0.16.2", "double", "#0a7ea4",
+                                 "CFM 1e-10 is its default; no geometry, a contact is made of depth 0 or more; springs "
+                                 "and dampers by ERP and CFM, a soft "
+                                 "pin is a soft ball; a brake is an angular "
+                                 "motor, a servo a motor whose speed is set before each step; sleeps "
+                                 "where the case does",
+                                 series}};
 
 }  // namespace
 }  // namespace cdot::peers

@@ -37,7 +37,7 @@ class SimbodyRun final : public Run {
         free_first_(way.free_first),
         most_steps_(most_steps(problem)) {
     Lacks lacks;
-    lacks.held_orientations = lacks.sleep = lacks.two_axes = true;
+    lacks.held_orientations = lacks.sleep = lacks.two_axes = lacks.brakes = lacks.servos = lacks.contacts = true;
     check(problem, lacks);
     const Tree tree = tree_of(problem);
     for (const Branch& branch : tree.branches) {
@@ -138,6 +138,11 @@ class SimbodyRun final : public Run {
     } else if (joint.kind == JointKind::spherical) {
       const auto [in, out] = both(SimTK::Rotation());
       made = SimTK::MobilizedBody::Ball(parent, in, rigid, out);
+    } else if (joint.kind == JointKind::mount) {
+      if (joint.b != branch.body) throw CannotSay("the adapter knows mounts of leaves only");
+      const SimTK::Rotation axes(SimTK::UnitVec3(vec(joint.axis)), SimTK::XAxis);
+      made = SimTK::MobilizedBody::Bushing(parent, frame(problem, branch.parent, axes, joint.anchor_b), rigid,
+                                           frame(problem, branch.body, axes, joint.anchor_b));
     } else if (joint.soft) {
       if (joint.kind != JointKind::revolute || !problem.planar) throw CannotSay("the adapter makes pins soft only");
       const auto [in, out] = both(SimTK::Rotation());
@@ -185,6 +190,7 @@ class SimbodyRun final : public Run {
       SimTK::Force::MobilityLinearDamper(forces_, made, coordinate, spring.damping);
     };
     if (joint.spring) add_spring(0, *joint.spring);
+    if (joint.mount) hold_in_mount(joint, made);
     if (joint.soft) add_spring(1, *joint.soft);  // after the angle
     if (joint.soft) add_spring(2, *joint.soft);
     if (joint.stops) {
@@ -194,6 +200,16 @@ class SimbodyRun final : public Run {
     }
     if (joint.motor)
       add_motor(bodies_[std::size_t(branch.body)], 0, sense(problem, branch) * joint.motor->speed, *joint.motor);
+  }
+
+  // Springs of its turns, then of its slides.
+  void hold_in_mount(const Joint& joint, const SimTK::MobilizedBody& made) {
+    const auto& [along, across, twist, bend] = *joint.mount;
+    const SimTK::Rotation axes(SimTK::UnitVec3(vec(joint.axis)), SimTK::XAxis);
+    const SimTK::Vec3 off = ~axes * vec(joint.anchor_b - joint.anchor);
+    const double stiffness[] = {twist, bend, bend, along, across, across};
+    for (int k = 0; k < 6; ++k)
+      SimTK::Force::MobilityLinearSpring(forces_, made, k, stiffness[k], k < 3 ? 0 : -off[k - 3]);
   }
 
   // A right angle between directions of two bodies across a hinge.

@@ -99,8 +99,7 @@ class Stand final : public hard::Mover {
     WorldData<S>& state = world_->data();
     told_->time = state.time += by;
     for (std::size_t k = 0; k < problem().bodies.size(); ++k) take(int(k), by);
-    for (const auto& [joint, load] : state.breaking_loads)
-      if (!world_->broken(joint) && run_->force(joint) > load) world_->remove_joint(joint);
+    break_overloaded();
   }
 
   double force(int joint) const override {
@@ -173,6 +172,16 @@ class Stand final : public hard::Mover {
   void remember_joints() {
     parameters_.clear();
     for (int k = 0; k < world_->joint_count(); ++k) parameters_.push_back(world_->joint_parameters(k));
+  }
+
+  // Joints that carry more than their effects allow.
+  void break_overloaded() {
+    const std::vector<Bond> bonds = world_->data().bonds;  // of which removed joints take theirs along
+    for (const Bond& bond : bonds) {
+      if (world_->broken(bond.joint)) continue;
+      const double load = run_->force(bond.joint);
+      if (bond.distance(bond.parameters.data(), told_->time, load) <= 0) world_->remove_joint(bond.joint);
+    }
   }
 
   static Vec3 linear(const planar::Velocity<double>& v) { return {v.x, v.y, 0}; }

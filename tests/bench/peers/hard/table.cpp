@@ -13,11 +13,15 @@ constexpr const char* head = R"(# Hard cases beside today's engines
 Results of Cdot and of today's engines on the [hard cases](../../hard_cases/README.md). One criterion per case, the code
 of that folder, judges all of them. It reads poses and velocities after every step and computes gaps, angles and
 energies. Loads of joints are judged only for chains at rest. Bodies, joints, start and step (1/60 s unless the case
-states otherwise) are the same for all; there is no contact, and no damping or sleep unless the case has them. Planar
-engines get the planar scene, spatial engines the spatial one or, if the case has only a planar scene, that scene in
-space. Changes during a run (an impulse, a joint that is added, removed or moved) also change the engine's run. Bullet's
+states otherwise) are the same for all; there is no contact, damping or sleep unless the case has them. Planar engines
+get the planar scene, spatial engines the spatial one or, if the case has only a planar scene, that scene in space. Changes during a run (an impulse, a joint that is added, removed or moved) also change the engine's run. Bullet's
 multibodies, MuJoCo and Simbody build their trees once, so they restart from the present state when joints change. A
 joint breaks by the load that the engine reports.
+
+An effect is what the engine has for it: a brake its dry friction or a motor of speed 0, a belt the motor of a slider, a
+bushing its springs, a rough line or plane its contact. Where an engine has no servo with a greatest torque, its motor
+gets the speed that reaches the target in the step; where it has no table, the motor gets the table's speed before each
+step. A motor of direct current is a constant torque and a damper for all.
 
 Every engine runs with its defaults and with every useful series of settings from [results](results/README.md), at the
 same step. **holds**: with its defaults. *holds, tuned*: with another setting, named below. A number: the number of the
@@ -108,6 +112,9 @@ struct Remark {
 constexpr Remark remarks[] = {
     {"angle_past_half_a_turn", "Box2D", "turns a body by a quarter turn in a step at most, b2_maxRotation"},
     {"angle_past_half_a_turn", "ODE", "a stop below -180 degrees does not act, as its manual says"},
+    {"brake_against_motor", "MuJoCo", "the friction of a joint is as soft as a loop, and creeps"},
+    {"lopsided_bushing", "Bullet",
+     "its springs act by the pose before the step, so the energy of the swing rises and falls by a twelfth"},
     {"axis_not_unit", "Chipmunk",
      "moves bodies before it speeds them up: half a step short of the way, where others are half a step beyond it"},
     {"long_chains_and_trees, chain", "MuJoCo", "its models are XML, which may not be nested so deep"},
