@@ -23,6 +23,7 @@ void add_joint(BasicWorld<S>& world, const SceneJoint& source) {
 template <class S>
 void add_spring(BasicWorld<S>& world, SpringDefinition spring) {
   for (int* body : {&spring.body_a, &spring.body_b}) *body = *body == world_body ? world.ground() : *body;
+  if (world.is_static(spring.body_a) && world.is_static(spring.body_b)) return;  // moves nothing; no length is wrong
   world.add_spring(spring);
 }
 

@@ -17,7 +17,7 @@ constexpr double witness = 1e-5;
 constexpr double least_sure = 1e-12;  // below it, smaller steps gain nothing for sure
 // Between two looks the error may be so many local errors. Beyond this share of the accuracy they still count in a
 // claim, but refuse no run.
-constexpr double local_errors = 10, unseen = 0.1;
+constexpr double local_errors = 30, unseen = 0.1;
 // Up to the accuracy asked for, a claim is so many times the error that seems sure.
 constexpr double margin = 1.5;
 constexpr double unlike = 2;  // the error in units of the distance of two methods of different kind
@@ -35,6 +35,12 @@ constexpr double tells = 0.25, most_growth = 2, further_growth = 0.5;
 
 std::size_t stride_of(const Attempt& coarse, const Attempt& fine) {
   return static_cast<std::size_t>(fine.knob.intervals / coarse.knob.intervals);
+}
+
+// The error that a run may have between the times at which it was compared. Equal steps are compared where they end: a
+// damped motion may be over before.
+double unseen_error(const Yardstick& yardstick, const Attempt& attempt) {
+  return attempt.knob.adaptive() ? local_errors * attempt.knob.local_error : yardstick.asked();
 }
 
 }  // namespace
@@ -87,15 +93,16 @@ void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse
   fine.reached = known && seems_to_converge && balanced(scene, fine) &&
                  std::max(fine.achieved, rescued ? apart : 0) <= yardstick.asked();
   if (fine.reached) fine.holds_until = scene.duration;
-  const double claim = rescued ? std::max(apart, coarse.apart) : std::max(margin * fine.achieved, between_looks);
+  const double claim =
+      rescued ? std::max(apart, coarse.apart) : std::max(margin * fine.achieved, unseen_error(yardstick, fine));
   fine.claimed = std::max(fine.achieved, std::min(claim, yardstick.asked()));
 }
 
 void judge_unlike(const Scene& scene, const Yardstick& yardstick, const Attempt& other, Attempt& now) {
   const auto [apart, agree_until] = distance(yardstick, other, now);
   now.achieved = std::max(least_sure, unlike * apart), now.holds_until = agree_until;
-  now.claimed = std::max(now.achieved, local_errors * now.knob.local_error);
   now.reached = balanced(scene, now) && now.achieved <= yardstick.asked();
+  now.claimed = std::max(now.achieved, unseen_error(yardstick, now));
   if (now.reached) now.holds_until = scene.duration;
 }
 

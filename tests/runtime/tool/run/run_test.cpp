@@ -41,6 +41,16 @@ TEST(Run, InconsistentStartIsReportedPerJointAndRow) {
   EXPECT_EQ(result.time, 1);
 }
 
+// A spring between a post and the ground moves nothing, and has no joint whose start it could violate.
+TEST(Run, ASpringBetweenPostsIsNoInconsistency) {
+  const std::string post = "[[body]]\nname = \"post\"\nstatic = true\nposition = [2, 0]\n";
+  const std::string spring = "[[spring]]\nbodies = [\"post\", \"world\"]\nstiffness = 1\nrest = 1\n";
+  std::string warnings;
+  const RunResult result = simulate(scene_of(std::string(pendulum) + post + spring), {}, warnings);
+  EXPECT_EQ(warnings, "");
+  EXPECT_EQ(failure(scene_of(pendulum), result), "");
+}
+
 // Two pins 1.25 m apart hold a rod at points 1 m apart. To project is no fix where the scene does so.
 TEST(Run, AProjectionInVainIsNoAdvice) {
   std::string warnings;
