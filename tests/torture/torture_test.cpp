@@ -23,9 +23,11 @@ void run(std::uint64_t seed, const Wish& wish, Tally& tally) {
   const Mechanism mechanism = generate(seed, wish);
   const Verdict verdict = judge(mechanism.scene);
   tally.add(mechanism, verdict);
-  const std::string wish_text = wish.joint.empty() ? ""
-                                                   : fmt::format(" --joint {} --dimension {}", wish.joint,
-                                                                 wish.dimension == Dimension::planar ? 2 : 3);
+  std::string wish_text = wish.joint.empty() ? ""
+                                             : fmt::format(" --joint {} --dimension {}", wish.joint,
+                                                           wish.dimension == Dimension::planar ? 2 : 3);
+  if (wish.own) wish_text += " --own";
+  if (wish.tables) wish_text += " --tables";
   EXPECT_FALSE(verdict.broken())
       << fmt::format("torture --count 1 --steps {} --seed {}{}, {}: {} {} is {:.3g}, at most {:.3g}, after step {}\n",
                      steps, seed, wish_text, way_of(mechanism.scene), verdict.what, verdict.detail, verdict.value,
@@ -49,6 +51,15 @@ TEST(Torture, Bounded) {
       }
   EXPECT_GT(tally.count(Outcome::held), tally.mechanisms() * 3 / 4);
   fmt::print("{}", tally.text());
+}
+
+TEST(Torture, EffectsOfOnesOwnAndForcesByTables) {
+  Tally tally;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    run(seed, {.own = true, .steps = steps}, tally);
+    run(seed, {.tables = true, .steps = steps}, tally);
+  }
+  EXPECT_GT(tally.count(Outcome::held), 60);
 }
 
 // Mechanisms whose sweeps made energy up: springs of open joints threw bodies about, stiff springs were far from
