@@ -184,7 +184,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     next_diagnosis = due;
     result.counts = world.step_counts(), result.solves = data.solves;
     result.stopped = (options.look && !options.look(after, result)) ||
-                     static_cast<double>(result.counts.evaluations) > options.most_evaluations;
+                     static_cast<double>(result.counts.evaluations + result.solves) > options.most_evaluations;
     if (result.stopped && !options.diagnose_times.empty()) look(scene, world, result);
     if (Interrupt::asked() && options.save_at && result.state.empty()) result.state = world.snapshot();
     if (k == steps.count() || result.stopped || Interrupt::asked()) break;

@@ -162,6 +162,8 @@ std::string named_with(const Scene& scene, const Candidate& candidate) {
 }  // namespace
 
 std::optional<TriedFix> find_advice(const Scene& scene, const RunOptions& options, const RunResult& result) {
+  // A search in vain that took its whole budget: trials, which get less, would end in vain as well.
+  if (result.choice && result.choice->ended_by_budget) return {};
   const std::vector<Candidate> candidates = result.choice ? finer_accuracies(scene, result.choice->reached)
                                                           : candidates_for(scene, result.failed_step.has_value());
   if (candidates.empty()) return {};

@@ -33,6 +33,14 @@ constexpr double noise_of_events = 1e-9;
 // of time with which it grew over the second half up to then. The run that comes next expects a little more.
 constexpr double tells = 0.25, most_growth = 2, further_growth = 0.5;
 
+// --- The next run.
+constexpr int shorter_for_rescued = 4, shorter_for_others = 2;
+constexpr double long_step = 0.4;  // of the duration
+// After a run that ends early, since its distance from the run before will be too large, the next one aims at a local
+// error that is smaller by this factor at least, and by that of a second run at most. Where that is not enough, the run
+// before measures nothing: the next one is a plain refinement.
+constexpr double least_jump = 10;
+
 std::size_t stride_of(const Attempt& coarse, const Attempt& fine) {
   return static_cast<std::size_t>(fine.knob.intervals / coarse.knob.intervals);
 }
@@ -115,6 +123,22 @@ double foreseen_distance(const Yardstick& yardstick, double duration, const Atte
   const auto at_end = [&](double power) { return now / std::pow(share, std::clamp(power, 1.0, most_growth)); };
   const double foreseen = at_end(growth), allowed = yardstick.asked() * sure_gain(coarse, fine, foreseen);
   return foreseen > allowed ? at_end(growth + further_growth) : 0;
+}
+
+bool has_long_steps(const Attempt& now, double duration) {
+  return now.knob.adaptive() && now.result.counts.longest > long_step * duration;
+}
+
+int shorter_after(const Attempt& now, double duration) {
+  if (now.result.counts.rescued > 0) return shorter_for_rescued;
+  return has_long_steps(now, duration) ? shorter_for_others : 1;
+}
+
+std::optional<Try> after_early_end(double aim, double duration, const Attempt& last, const Attempt& now) {
+  const double before = last.knob.local_error / now.knob.local_error;
+  const double jump = std::max(least_jump, gain_for(now.knob.row(), now.foreseen / aim) / before);
+  return finer(now.knob, 1 / (jump * stricter_for(now.knob.row()) > 1 ? least_jump : jump),
+               shorter_after(now, duration));
 }
 
 }  // namespace cdot

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "runtime/tool/run/simulate.hpp"
@@ -21,6 +22,7 @@ struct Attempt {
   std::shared_ptr<const Paces> paced_by;  // of the run that it follows; empty: of none
   double energy_share = 0;                // the largest error of the energy so far, see EnergyWatch
   double price = 0;
+  long long left_steps = 0;                                   // to another method, within its bounds
   bool full = false;                                          // it has the outputs asked for
   bool whole = false;                                         // it has ended in time and well
   double apart = std::numeric_limits<double>::infinity();     // distance from a coarser run
@@ -51,5 +53,14 @@ void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse
 void judge_unlike(const Scene& scene, const Yardstick& yardstick, const Attempt& other, Attempt& now);
 // The distance at the end, foreseen from that up to now, if it shows that the two runs will not agree; else 0.
 double foreseen_distance(const Yardstick& yardstick, double duration, const Attempt& coarse, const Attempt& fine);
+
+// A step took a large part of the time.
+bool has_long_steps(const Attempt& now, double duration);
+// Of the interval in which the next run may take one step. An implicit method takes over at events without end, and
+// what seems to be a line or a parabola gets steps of any length, whatever the local error: only shorter intervals make
+// these steps shorter.
+int shorter_after(const Attempt& now, double duration);
+// The knob after a run that ended early by its distance from the run before: the next one aims at an error.
+std::optional<Try> after_early_end(double aim, double duration, const Attempt& last, const Attempt& now);
 
 }  // namespace cdot

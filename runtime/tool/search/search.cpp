@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include <cdot/methods.hpp>
 
@@ -21,16 +22,9 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 constexpr double aim = 0.5;  // share of the accuracy that a further run aims at
-constexpr int shorter_for_rescued = 4, shorter_for_others = 2;
-constexpr double long_step = 0.4;  // of the duration
 // Of Paces. Steps that are shorter than the usual 0.9 err by (0.9 / 0.8)^8 = 2.6 times less, so local errors may be
 // twice as large (knobs.cpp), and fewer steps are rejected.
 constexpr double safety = 0.8;
-
-// --- After a run that ends early, since its distance from the run before will be too large, the next one aims at a
-// local error that is smaller by this factor at least, and by that of a second run at most. Where that is not enough,
-// the run before measures nothing: the next one is a plain refinement.
-constexpr double least_jump = 10;
 
 // --- Even motions: steps have grown without bound, in so few evaluations. They get explicit steps of equal length if
 // stable ones cost at most `slow`.
@@ -52,6 +46,10 @@ constexpr double unasked_work = 7e7, unasked_work_of_others = 5e6, most_unasked_
 // that price. Then methods for stiff scenes get such a share to be cheaper.
 constexpr double suspicious = 600, dear = 4000, share_of_stiff = 0.33, share_of_surely_stiff = 0.5;
 constexpr double steps_of_collocation = 10;  // half of its first run, or less
+// If nobody asked for the accuracy: work of collocation before the lowest order goes on, and of that then. In large
+// mechanisms a unit takes a microsecond. A run of collocation that has left a step to another method, which ends few
+// searches, ends after less.
+constexpr double first_work_of_collocation = 2e6, work_of_lowest_order = 5e6, work_if_rescued = 5e5;
 
 class Search {
  public:
@@ -69,12 +67,10 @@ class Search {
   std::optional<double> next_share(const Attempt& last, const Attempt& now, int& idle);
   void try_candidate(Integrator integrator, double most, double reach = 0);
   void try_stiff(double most);
-  void try_even_steps(const Attempt& even);
-  bool has_long_steps(const Attempt& now) const {
-    return now.knob.adaptive() && now.result.counts.longest > long_step * scene_.duration;
+  bool explicit_steps_are_too_dear(double most) const {
+    return yardstick_.of_size() && first_price_ > std::min(left_, most);
   }
-  int shorter_after(const Attempt& now) const;
-  std::optional<Try> after_early_end(const Attempt& last, const Attempt& now) const;
+  void try_even_steps(const Attempt& even);
   Attempt attempt(const Try& knob, double most, const Attempt& last, bool judged);
   void judge_by_another_method(Attempt& now, double most);
   void keep(Attempt&& attempt);
@@ -89,8 +85,22 @@ class Search {
   double price_of_fixed(const Try& knob, const RunResult& so_far) const {
     return std::max(price_of(knob), static_cast<double>(so_far.solves));
   }
+  static double price_of_adaptive(const RunResult& so_far) {
+    return static_cast<double>(so_far.counts.evaluations + so_far.solves);
+  }
   double price_of(const Try& knob) const { return price_of_step(knob.row()) * knob.steps() * all_; }
   Choice choice_of(const Attempt& attempt) const;
+
+  // So much work, in evaluations, if nobody asked for the accuracy; else without a bound.
+  double unless_asked(double work) const { return yardstick_.of_size() ? work / work_of_evaluation(scene_) : infinity; }
+
+  // A candidate that may go on with a larger budget.
+  struct Begun {
+    Attempt last;
+    std::optional<Try> next;
+    int idle = 0;
+    bool promises(double duration, double most) const;
+  };
 
   const Scene& scene_;
   const RunOptions& options_;
@@ -101,12 +111,7 @@ class Search {
   double unasked_ = infinity;  // for all runs, if nobody asked for the accuracy
   double least_left_;          // for all other candidates, when the first has a price
   Attempt best_;
-  // The last candidate, which may go on with a larger budget.
-  struct {
-    Attempt last;
-    std::optional<Try> next;
-    int idle = 0;
-  } begun_;
+  Begun begun_;  // the last candidate
   double stiff_at_start_ = 0;
   double first_price_ = 0;  // foreseen, of explicit steps that became dear; while stiff candidates run
   double stiff_price_ = 0;  // the part of it that stiffness explains
@@ -144,7 +149,9 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool 
     attempt.energy_share = so_far.balance.energy.share();
     if (!knob.adaptive()) return (attempt.price = price_of_fixed(knob, so_far)) <= most;
     if (judged && (attempt.foreseen = foreseen_distance(yardstick_, solved.duration, last, attempt)) > 0) return false;
-    attempt.price = static_cast<double>(so_far.counts.evaluations);
+    attempt.price = price_of_adaptive(so_far);
+    const bool is_stiff = first_price_ > 0, rescued = so_far.counts.rescued > 0;
+    if (is_stiff && rescued && attempt.price > unless_asked(work_if_rescued)) return false;
     const double foreseen = frame.time > 0 ? attempt.price * solved.duration / frame.time : 0;
     const double mechanisms = yardstick_.mechanisms();
     if (!may_be_dear_ || attempt.price < suspicious * mechanisms || foreseen < dear * mechanisms)
@@ -155,7 +162,9 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool 
   std::string ignored;
   attempt.result = run_once(solved, options, runs_ == 0 ? warnings_ : ignored);
   const RunResult& result = attempt.result;
-  attempt.price = knob.adaptive() ? static_cast<double>(result.counts.evaluations) : price_of_fixed(knob, result);
+  attempt.price = knob.adaptive() ? price_of_adaptive(result) : price_of_fixed(knob, result);
+  // A bound that is met within a step leaves that one to another method.
+  attempt.left_steps = result.counts.rescued - (attempt.price > options.most_evaluations ? 1 : 0);
   stiff_price_ = stiff_price(scene_, result.diagnosis);
   attempt.whole = result.finite && !result.failed_step && !result.stopped && !result.interrupted;
   stopped_ = result.interrupted;
@@ -213,25 +222,9 @@ bool Search::in_reach(const Attempt& now, double most) const {
   return shorter * now.price <= most;
 }
 
-// Of the interval in which the next run may take one step. An implicit method takes over at events without end, and
-// what seems to be a line or a parabola gets steps of any length, whatever the local error: only shorter intervals make
-// these steps shorter.
-int Search::shorter_after(const Attempt& now) const {
-  if (now.result.counts.rescued > 0) return shorter_for_rescued;
-  return has_long_steps(now) ? shorter_for_others : 1;
-}
-
-// The knob after a run that ended early by its distance from the run before.
-std::optional<Try> Search::after_early_end(const Attempt& last, const Attempt& now) const {
-  const double before = last.knob.local_error / now.knob.local_error;
-  const double jump =
-      std::max(least_jump, gain_for(now.knob.row(), now.foreseen / (aim * yardstick_.asked())) / before);
-  return finer(now.knob, 1 / (jump * stricter_for(now.knob.row()) > 1 ? least_jump : jump), shorter_after(now));
-}
-
 // Fixed steps of a low order are exact for motions along a line or a parabola, and cost next to nothing. Not where the
-// first run located an event: they pass it between their ends, where two runs are not compared. If they
-// agree with a first run of another method, they are delivered.
+// first run located an event: they pass it between their ends, where two runs are not compared. If they agree with a
+// first run of another method, they are delivered.
 void Search::try_even_steps(const Attempt& even) {
   const bool is_slow = stiff_at_start_ <= slow * yardstick_.mechanisms();
   Attempt now = attempt({is_slow ? Integrator::rattle : Integrator::implicit}, infinity, {}, false);
@@ -278,7 +271,7 @@ void Search::try_candidate(Integrator integrator, double most, double reach) {
     spent += now.price;
     if (now.foreseen > 0) {
       may_end_early = false;
-      knob = after_early_end(last, now);
+      knob = after_early_end(aim * yardstick_.asked(), scene_.duration, last, now);
       continue;
     }
     bound_budget(now);
@@ -288,31 +281,49 @@ void Search::try_candidate(Integrator integrator, double most, double reach) {
       if (last.whole && adaptive && !now.reached && now.result.counts.rescued == 0 &&
           now.knob.parts == last.knob.parts && same_steps(last, now))
         judge_by_another_method(now, most - spent);
-      else if (runs_ == 1 && now.result.counts.events == 0 && has_long_steps(now) &&
+      else if (runs_ == 1 && now.result.counts.events == 0 && has_long_steps(now, scene_.duration) &&
                now.price <= even * yardstick_.mechanisms())
         try_even_steps(now);
     }
     const std::optional<double> share = next_share(last, now, idle);
-    knob =
-        share && in_reach(now, std::max(most, reach) - spent) ? finer(*knob, *share, shorter_after(now)) : std::nullopt;
     keep(Attempt(now));
+    if (now.result.stopped && last.whole) break;  // it may go on from the last one
+    const bool goes_on = share && in_reach(now, std::max(most, reach) - spent);
+    knob = goes_on ? finer(*knob, *share, shorter_after(now, scene_.duration)) : std::nullopt;
     last = std::move(now);
   }
   begun_ = {std::move(last), knob, idle};
 }
 
-// Those that take stiffness implicitly, high orders first. But what stands still costs the lowest order next to
+// After a run that ended well, or that would have ended for this price.
+bool Search::Begun::promises(double duration, double most) const {
+  return most > 0 && last.left_steps == 0 && (last.whole || last.price * duration <= most * last.result.time);
+}
+
+// Those that take stiffness implicitly, the high order first. But what stands still costs the lowest order next to
 // nothing: its first two runs, of equal and of twice as many steps as intervals. In large mechanisms it goes on for the
-// price of some steps of the highest order, while it promises to get there.
+// price of some steps of the high order, while it promises to get there. Where impacts make the high order dear, the
+// lowest takes over; then the high one goes on if it promises an end.
 void Search::try_stiff(double most) {
   const double of_collocation = steps_of_collocation * price_of_derivatives(scene_);
   try_candidate(Integrator::implicit, std::max(3 * price_of({Integrator::implicit}), std::min(most, of_collocation)),
                 most);
-  auto begun = std::move(begun_);
-  for (auto row = integrator_rows.rbegin(); row != integrator_rows.rend(); ++row) {
-    if (row->integrator == Integrator::implicit) begun_ = std::move(begun);
-    if ((row->stiffens || row->stable_radians == always) && !done()) try_candidate(row->integrator, most);
-  }
+  if (done()) return;
+  Begun lowest = std::exchange(begun_, {});
+  const double first = std::min(most, unless_asked(first_work_of_collocation));
+  try_candidate(Integrator::radau5, first);
+  Begun high = std::exchange(begun_, std::move(lowest));
+  const double rest = std::min(most, unless_asked(unasked_work) - price_) - first;
+  const bool goes_on = high.promises(scene_.duration, rest);
+  // Where collocation leaves steps to another method, or events make it that dear, explicit ones get no further.
+  const bool in_vain = high.last.left_steps > 0 || (first < most && !goes_on);
+  const bool others = !explicit_steps_are_too_dear(unless_asked(in_vain ? unasked_work_of_others : unasked_work));
+  // Where nothing else is left, a finer run is worth its price even if it does not get there.
+  const double reach = goes_on || others ? 0 : infinity;
+  if (!done()) try_candidate(Integrator::implicit, std::min(most, unless_asked(work_of_lowest_order)), reach);
+  begun_ = std::move(high);
+  if (goes_on && !done()) try_candidate(Integrator::radau5, rest);
+  if (!done() && best_.whole && !others) left_ = 0;
 }
 
 RunResult Search::run() {
@@ -359,7 +370,8 @@ Choice Search::choice_of(const Attempt& attempt) const {
   Choice choice;
   choice.integrator = attempt.knob.integrator;
   choice.local_error = attempt.knob.local_error;
-  choice.step = scene_.duration / intervals_of_own_steps / attempt.knob.parts;
+  const bool adaptive = attempt.knob.adaptive();
+  choice.step = scene_.duration / (adaptive ? intervals_of_own_steps * attempt.knob.parts : attempt.knob.steps());
   choice.asked = yardstick_.asked();
   choice.of_size = yardstick_.of_size();
   choice.achieved = attempt.claimed;

@@ -1,0 +1,119 @@
+// What searches and trials may cost, in evaluations and solves: no clock decides.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "runtime/tool/search/advice.hpp"
+#include "runtime/tool/search/work.hpp"
+#include "tests/runtime/tool/support.hpp"
+
+namespace cdot::test::budgets_test {
+namespace {
+
+// A plate that hangs from the world, with fingers of two links below. They rattle between their limits, and the damper
+// of the first one decays at 1e5 1/s.
+Scene rattling_fingers(int fingers, const char* method) {
+  std::string text = fmt::format(
+      "duration = 1\n{}\n"
+      "[[body]]\nname = \"plate\"\nmass = 10\ninertia = 1\nposition = [0.5, -0.2]\n"
+      "[[joint]]\ntype = \"revolute\"\nbodies = [\"world\", \"plate\"]\nat = [0, 0]\n",
+      method);
+  const auto add = [&](const std::string& above, const std::string& link, double mass, double x, double y, double half,
+                       double damping) {
+    text += fmt::format(
+        "[[body]]\nname = \"{1}\"\nmass = {2}\ninertia = {3}\nposition = [{4}, {5}]\n"
+        "[[joint]]\ntype = \"revolute\"\nbodies = [\"{0}\", \"{1}\"]\nat = [{4}, {6}]\n"
+        "angle.limit = {{ lower = -0.05, upper = 0.05 }}\n"
+        "angle.spring = {{ stiffness = 0, damping = {7} }}\n",
+        above, link, mass, mass * half * half / 3, x, y - half, y, damping);
+  };
+  for (int k = 0; k < fingers; ++k) {
+    const double x = 0.1 * k, half = 0.05 + 0.002 * k, damping = k == 0 ? 1 : 1e-4;
+    add("plate", fmt::format("upper{}", k), 0.01, x, -0.2, half, damping);
+    add(fmt::format("upper{}", k), fmt::format("lower{}", k), 0.0025, x, -0.2 - 2 * half, half, damping);
+  }
+  return read_scene(text, "fingers.toml");
+}
+
+// Each impact costs collocation two evaluations for each component of velocity. It ends after a little work, and fixed
+// steps go on; explicit ones, which the damper makes as dear, are not tried. All of these took 1e6 evaluations.
+TEST(Budgets, OfCollocationEndWhereImpactsMakeItDear) {
+  const Scene scene = rattling_fingers(12, "");
+  std::string warnings;
+  const RunResult result = simulate(scene, {}, warnings);
+  const Choice& choice = result.choice.value();
+  EXPECT_FALSE(choice.reached);
+  EXPECT_TRUE(choice.ended_by_budget);
+  EXPECT_EQ(choice.integrator, Integrator::implicit);
+  EXPECT_NEAR(result.time, 1, 1e-9);
+  EXPECT_LE(static_cast<double>(choice.evaluations + choice.evaluations_before), 7e6 / work_of_evaluation(scene));
+  EXPECT_NE(summary_text(scene, result).find("the search ended at its budget, after "), std::string::npos);
+}
+
+// Where rows press on each other, a step by fixed steps takes many factorisations. These count as evaluations do.
+TEST(Budgets, CountTheSolvesOfFixedSteps) {
+  const Scene scene = rattling_fingers(3, "integrator = \"implicit\"\nstep = 0.01");
+  std::string warnings;
+  RunOptions options;
+  options.estimates_error = false;
+  const RunResult whole = simulate(scene, options, warnings);
+  EXPECT_FALSE(whole.stopped);
+  EXPECT_EQ(whole.counts.evaluations, 0);
+  ASSERT_GT(whole.solves, 200);
+  EXPECT_EQ(work_of(scene, whole), work_of_evaluation(scene) * static_cast<double>(whole.solves));
+  options.most_evaluations = 100;
+  const RunResult bounded = simulate(scene, options, warnings);
+  EXPECT_TRUE(bounded.stopped);
+  EXPECT_GT(bounded.solves, 100);
+  EXPECT_LT(bounded.time, whole.time / 2);
+}
+
+// The same in a search: its first run takes 16 steps of `implicit`, and is stopped.
+TEST(Budgets, PriceFixedStepsByTheirSolves) {
+  std::string warnings;
+  RunOptions options;
+  options.most_evaluations = 200;
+  const RunResult result = simulate(rattling_fingers(12, ""), options, warnings);
+  const Choice& choice = result.choice.value();
+  EXPECT_EQ(choice.integrator, Integrator::implicit);
+  EXPECT_EQ(choice.runs_before, 0);
+  EXPECT_TRUE(result.stopped);
+  EXPECT_GT(choice.evaluations, 200);
+}
+
+// Twenty bodies on hinges, and twenty free ones: an evaluation is mostly that of the twenty.
+TEST(Budgets, CountEvaluationsOfTheMeanBodysMechanism) {
+  std::string text = "duration = 1\n";
+  for (int k = 0; k < 40; ++k)
+    text += fmt::format("[[body]]\nname = \"b{}\"\nmass = 1\ninertia = 1\nposition = [{}, 0]\n", k, k);
+  for (int k = 1; k < 20; ++k)
+    text += fmt::format("[[joint]]\ntype = \"revolute\"\nbodies = [\"b{}\", \"b{}\"]\nat = [{}, 0]\n", k - 1, k, k);
+  const Scene scene = read_scene(text, "twenty.toml");
+  const double of_one = overhead + (20 * 20 + 20 * 1) / 40.0, of_all = overhead * 21 + 40;
+  EXPECT_EQ(work_of_evaluation(scene), of_one);
+  EXPECT_EQ(evaluations_of_all(scene), of_all / of_one);
+}
+
+// Runs of a search are judged by each other. An estimate of their error would cost half as much again.
+TEST(Budgets, PayForNoEstimateInASearch) {
+  const Scene scene = scene_named("pulley_ratio1");
+  std::string warnings;
+  const RunResult found = simulate(scene, {}, warnings);
+  ASSERT_TRUE(found.choice.value().reached);
+  EXPECT_EQ(found.error.samples, 0);
+  EXPECT_GT(simulate(solved_by(*found.choice, scene), {}, warnings).error.samples, 0);
+}
+
+// A trial gets less than the search had.
+TEST(Budgets, LeaveNoTrialsAfterASearchThatTookItsOwn) {
+  const Scene scene = rattling_fingers(1, "");
+  RunResult result;
+  result.finite = false;  // so that it fails
+  result.choice.emplace();
+  result.time = 1;
+  EXPECT_FALSE(find_advice(scene, {}, result)->tried.empty());
+  result.choice->ended_by_budget = true;
+  EXPECT_FALSE(find_advice(scene, {}, result));
+}
+
+}  // namespace
+}  // namespace cdot::test::budgets_test
