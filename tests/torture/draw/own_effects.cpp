@@ -12,7 +12,7 @@
 namespace cdot::torture {
 namespace {
 
-// What the law of a spec is about.
+// The subject of a spec.
 enum class About { bodies_in_plane, bodies_in_space, lengths, angles };
 
 bool of_bodies(About about) { return about == About::bodies_in_plane || about == About::bodies_in_space; }
@@ -160,12 +160,6 @@ const char* word_of(About about) {
   }
 }
 
-std::string folder() {
-  static const auto path = std::filesystem::temp_directory_path() / fmt::format("cdot_torture_{}_own", getpid());
-  std::filesystem::create_directories(path);
-  return path.string();
-}
-
 std::string text_of_spec(About about, int number) {
   Random random(static_cast<std::uint64_t>(number) * 4 + static_cast<std::uint64_t>(about));
   return Writer(random, about).text(fmt::format("own_{}_{}", word_of(about), number));
@@ -173,12 +167,15 @@ std::string text_of_spec(About about, int number) {
 
 // The name of the type, derived at its first use.
 std::string registered(About about, int number) {
-  const std::string name = fmt::format("own_{}_{}", word_of(about), number), file = folder() + "/" + name + ".effect";
+  const std::string name = fmt::format("own_{}_{}", word_of(about), number);
   static std::set<std::string> known;
   if (!known.insert(name).second) return name;
+  const auto folder = std::filesystem::temp_directory_path() / fmt::format("cdot_torture_{}_own", getpid());
+  const std::string file = folder / (name + ".effect");
+  std::filesystem::create_directories(folder);
   std::ofstream(file) << text_of_spec(about, number);
   const OwnType own = add_own_type(file);
-  std::filesystem::remove(file);
+  std::filesystem::remove_all(folder);
   if (own.name != name) throw Error(own.problems + text_of_spec(about, number));
   return name;
 }
