@@ -1,5 +1,6 @@
 // Opens the accounts of a World, and books what changes it from outside.
 #include <algorithm>
+#include <tuple>
 
 #include <cdot/spaces.hpp>
 
@@ -8,16 +9,38 @@
 namespace cdot {
 namespace {
 
-// Finds segments that may do work: those of exact rows do not, nor of constant forces, which an energy stores.
+// Whether energies of these rows may change with K. Of rows that are springs the numbers alone decide, and these only
+// follow the time or change from outside; of an effect its C decides as well.
+template <class S>
+bool stiffens(const Segment<S>& segment) {
+  const Batch<S>& batch = *segment.batch;
+  if (!batch.law || !batch.law->by_mass || batch.law->is_of_effect() || batch.driven())
+    return batch.law && batch.law->by_mass;
+  for (int slot = segment.begin; slot < segment.end; ++slot)
+    if (batch.law->by_mass(batch, slot)) return true;
+  return false;
+}
+
+template <class S>
+void find_stiffening(Island<S>& island) {
+  island.by_mass = std::any_of(island.segments.begin(), island.segments.end(), stiffens<S>);
+}
+
+// True if an energy stores all work of these forces: of constant ones, and of effects that nothing damps or drives.
+template <class S>
+bool stores_all(const Batch<S>& batch) {
+  if (!batch.law || !batch.law->force || batch.explicit_time() || batch.driven()) return false;
+  const Law<S>& law = *batch.law;
+  return law.is_of_effect() ? law.energy && !law.stores_part && !law.by_mass : !law.spring;
+}
+
+// Finds segments that may do work: those of exact rows do not.
 template <class S>
 void list_working(Island<S>& island) {
   island.working.clear();
-  island.by_mass = false;
   for (size_t k = 0; k < island.segments.size(); ++k) {
     const Batch<S>& batch = *island.segments[k].batch;
-    const bool constant = batch.law && batch.law->force && !batch.law->spring && !batch.law->is_of_effect();
-    if (batch.explicit_time() || (batch.law && !constant)) island.working.push_back(k);
-    island.by_mass |= batch.law && batch.law->by_mass;
+    if (batch.explicit_time() || (batch.law && !stores_all(batch))) island.working.push_back(k);
   }
 }
 
@@ -47,6 +70,7 @@ void prepare_accounts(WorldData<S>& world) {
   Bodies<S> at = world.bodies;
   for (Island<S>& island : world.islands) {
     list_working(island);
+    find_stiffening(island);
     island.rows_work = !island.working.empty() || !island.drags.empty();
     island.works = island.rows_work || S::has_gyroscopes;
     island.driven = is_driven(island);
@@ -88,7 +112,7 @@ void begin_accounts(WorldData<S>& world) {
     if (accounts.open) put_in(world, Source::outside, energy - accounts.before_change);
     else accounts.start = energy;
     accounts.open = true, accounts.changed = false;
-    for (Island<S>& island : world.islands) island.levelled = false;
+    for (Island<S>& island : world.islands) island.levelled = false, find_stiffening(island);
   }
   for (int index : world.awake) {
     Island<S>& island = world.islands[index];
@@ -105,16 +129,11 @@ Balance balance_of(const WorldData<S>& world, const Energy& now, bool with_momen
   balance.kinetic = now.kinetic, balance.potential = now.potential, balance.start = energy;
   if (with_momenta) balance.small = small_energy(world);
   if (!accounts.open) return balance;
-  balance.put_in = accounts.put_in, balance.taken = accounts.taken;
   balance.start = accounts.start;
+  std::tie(balance.put_in, balance.taken) = work_so_far(world);
   if (accounts.changed) balance.put_in += energy - accounts.before_change;
-  for (const Island<S>& island : world.islands) {
-    if (!island.flow.work.empty()) {
-      balance.put_in += double(island.flow.work[0]);
-      balance.taken += double(island.flow.work[1]);
-    }
+  for (const Island<S>& island : world.islands)
     if (with_momenta) compare_momentum(world, island, balance);
-  }
   return balance;
 }
 

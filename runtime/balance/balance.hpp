@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <utility>
 
 #include <cdot/balance.hpp>
 
@@ -72,6 +73,14 @@ bool works_now(const WorldData<S>& world, const Island<S>& island) {
 // that looks after each step leaves them out of most.
 template <class S>
 Balance balance_of(const WorldData<S>& world, const Energy& now, bool with_momenta);
+// Put in, and taken.
+template <class S>
+std::pair<double, double> work_so_far(const WorldData<S>& world) {
+  double put_in = world.accounts.put_in, taken = world.accounts.taken;
+  for (const Island<S>& island : world.islands)
+    if (!island.flow.work.empty()) put_in += double(island.flow.work[0]), taken += double(island.flow.work[1]);
+  return {put_in, taken};
+}
 // Books work that is done at once.
 template <class S>
 void put_in(WorldData<S>& world, Source source, double work);

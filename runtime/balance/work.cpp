@@ -31,7 +31,7 @@ enum class Rows : char { all, springs, others };
 // first kick.
 template <int most, class S>
 void work_of_bounded(const Batch<S>& batch, int slot, const typename S::Scalar* lambda, Kick kick, Work& work) {
-  const int rows = batch.ops->rows;
+  const int rows = most == 1 ? 1 : batch.ops->rows;
   double done[most];
   bool idle = true;
   for (int r = 0; r < rows; ++r) {
@@ -58,7 +58,7 @@ void work_of_bounded(const Batch<S>& batch, int slot, const typename S::Scalar* 
 
 // True if no row of a segment has an impulse.
 template <class S>
-bool idle(const Segment<S>& segment, const typename S::Scalar* lambda) {
+[[gnu::always_inline]] inline bool idle(const Segment<S>& segment, const typename S::Scalar* lambda) {
   const int rows = segment.batch->ops->rows;
   return std::all_of(lambda + segment.begin * rows, lambda + segment.end * rows, [](auto x) { return x == 0; });
 }

@@ -39,6 +39,14 @@ int System<S>::factor() {
 }
 
 template <class S>
+bool System<S>::factored_as_selected() const {
+  if (dependent_ > 0 || softened_ != Softened::no) return false;
+  for (int r = 0; r < rows_; ++r)
+    if (out_[r] != (fixed[r] | broken[r])) return false;
+  return true;
+}
+
+template <class S>
 void System<S>::solve_rows() {
   if (softened_ == Softened::no) {
     solve_kept_rows();

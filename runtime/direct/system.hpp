@@ -112,6 +112,9 @@ class System {
 
   // Factors K without the rows marked in `fixed` or `broken`. Returns the number of redundant rows.
   int factor();
+  // True if it would find the factor that there is: K, the softness of the rows and the selection are those of the last
+  // factor(), and no row was redundant, as these are counted each time.
+  bool factored_as_selected() const;
   // lambda of the free rows from b and from lambda of the fixed rows. Contradicting rows are satisfied in the sense of
   // least squares.
   void solve();

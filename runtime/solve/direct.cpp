@@ -275,7 +275,7 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
       renewed |= slow;
     }
     if (round == 0 && (fresh || other_rows || slips))
-      factor_rows_with_errors(system, slips ? Rates::free : Rates::kept);
+      factor_rows_with_errors(system, slips ? Rates::free : Rates::kept, Factor::anew);
     else if (more || slow) system.factor();
     if (fresh && !island.acceleration_level) drop_rows_that_move_far(world, island, system, worst);
     before = worst;
@@ -307,12 +307,12 @@ void project_relaxed(WorldData<S>& world, Island<S>& island) {
 }  // namespace
 
 template <class S>
-void factor_rows_with_errors(System<S>& system, Rates rates) {
+void factor_rows_with_errors(System<S>& system, Rates rates, Factor last) {
   system.choose([rates](const Batch<S>& batch, int i) {
     const bool of_rate = batch.kinds[static_cast<size_t>(i % batch.ops->rows)] == RowKind::velocity;
     return (rates == Rates::kept || !of_rate) && has_error(batch, i);
   });
-  system.factor();
+  if (last == Factor::anew || !system.factored_as_selected()) system.factor();
 }
 
 // At acceleration level the projection corrects the method's error, so it is not part of the joints' impulses.
@@ -342,7 +342,7 @@ const RowSolver<S>& direct_solver() {
 }
 
 #define CDOT_INSTANTIATE(S)                                                                        \
-  template void factor_rows_with_errors(System<S>&, Rates);                                        \
+  template void factor_rows_with_errors(System<S>&, Rates, Factor);                                \
   template void exert_correction(const WorldData<S>&, const Island<S>&, System<S>&, S::Velocity*); \
   template const RowSolver<S>& direct_solver();
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)

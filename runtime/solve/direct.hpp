@@ -40,11 +40,13 @@ template <class S>
   if (!island.acceleration_level) world.solves += system.rounds();
 }
 
-// Selects the rows that have an error to correct and factors them. Velocity rows have none: they take part if the
-// correction is to change no rate of theirs.
+// Selects the rows that have an error to correct and factors them, unless the last factor is `kept`, that of the same
+// K, and of the same rows. Velocity rows have no error: they take part if the correction is to change no rate of
+// theirs.
 enum class Rates : char { free, kept };
+enum class Factor : char { anew, kept };
 template <class S>
-void factor_rows_with_errors(System<S>& system, Rates rates);
+void factor_rows_with_errors(System<S>& system, Rates rates, Factor last);
 
 // Stores the solution as the batches' impulse of this projection round, adds it to their correction and applies it to
 // `to`.

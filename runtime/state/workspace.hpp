@@ -128,6 +128,8 @@ struct Workspace {
   // Of steps that the local error chooses: those of an earlier run, to follow; and where to note those of this one.
   const Paces* paced_by = nullptr;
   Paces* paces = nullptr;
+  // [m], [rad] of C: RATTLE's rounds may leave so much in a step that is only compared with others.
+  double enough = 0;
   // Of islands' rows by steps on velocities, by the direct solver: their price where rows press on each other.
   long long solves = 0;
   std::vector<int> awake;  // islands, in order

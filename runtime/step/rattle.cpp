@@ -141,7 +141,7 @@ bool closed_to_round_off(WorldData<S>& world, Island<S>& island) {
   System<S>& system = island.at_work();
   auto& moves = world.bodies.increment;
   load_errors(system, T(-1));
-  if (system.lawful()) factor_rows_with_errors(system, Rates::free);
+  if (system.lawful()) factor_rows_with_errors(system, Rates::free, Factor::kept);
   system.solve();
   system.store([](Batch<S>& batch, int i, auto lambda) { batch.impulse[i] = T(lambda); });
   exert(world, island, system, &BatchWorkspace<S>::impulse, moves.data());
@@ -173,7 +173,8 @@ void begin_search(Island<S>& island) {
 // such a row with one of C, and 1 at a loss of rank.
 template <class S>
 void choose_rows_of_drift(System<S>& system, bool rolling, int round) {
-  if (system.lawful() || (rolling && round == 0)) factor_rows_with_errors(system, Rates::free);
+  if (system.lawful() || (rolling && round == 0))
+    factor_rows_with_errors(system, Rates::free, round == 0 ? Factor::anew : Factor::kept);
 }
 
 // Repeats K lambda = -C / h with the factor of the start and Broyden's updates, velocity += M^-1 J^T lambda, and the
@@ -184,6 +185,7 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
   using T = typename S::Scalar;
   System<S>& system = island.at_work();
   const T near = std::max(converged<T> * island.scale, of_long_arms<T> * T(island.size));
+  const T goal = std::max(round_off<T> * island.scale, T(world.enough));
   begin_search(island);
   T least = std::numeric_limits<T>::infinity(), at_first = 0;
   const bool rolling = rolls(island);
@@ -198,7 +200,7 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
     island.residual = error;
     const bool smaller = error < T(0.7) * least, rounded = std::min(least, error) <= near;
     if (!smaller && rounded && error > least) take_back_last_round(world, island, h);
-    if (!(island.residual > round_off<T> * island.scale) ||
+    if (!(island.residual > goal) ||
         (!smaller && (rounded || closed_to_round_off(world, island))))  // round-off may end them early
       return !astray || !turned_round(world, island);
     if (smaller) least = error, vain = 0;
@@ -332,7 +334,7 @@ void book_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
       std::swap(world.bodies.pose[island.bodies[k]], island.flow.pose[k]);
   };
   const bool in_time = any_force(island, [](const Batch<S>& batch) { return batch.explicit_time(); });
-  const bool at_poses = in_time || any_force(island, [](const Batch<S>& batch) { return batch.law->by_mass; });
+  const bool at_poses = in_time || island.by_mass;
   if (at_poses) swap_poses();
   if (in_time) look_at_effects(world, island, T(world.time));
   book_kick(world, island, Impulses::rattle_start, h);
@@ -371,7 +373,7 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   expect_end_velocities(world, island);
   find_rates_of_effects(world, island);
   weigh_springs(world, island);
-  begin_kick(world, island);
+  if (island.by_mass || !island.drags.empty()) begin_kick(world, island);  // else the books of the end take no start
   kick(world, island, h / 2);
   note_impulses_of_forces(island, h / 2, false);
   if (repeats && !by_sweeps) island.at_work().choose([](const Batch<S>&, int) { return true; });  // rolling as well

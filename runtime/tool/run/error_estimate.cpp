@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <cdot/rotation.hpp>
 #include <cdot/spaces.hpp>
 
+#include "runtime/state/world_data.hpp"
 #include "runtime/tool/run/error_report.hpp"
 #include "runtime/tool/scene/extent.hpp"
 
@@ -20,8 +22,12 @@ constexpr int more_substeps = 3, more_iterations = 4;
 // going back as one more each. The search for a sample goes on in shorter runs too: where a crank passes its dead
 // centre, all of a run's error may be made in one step.
 constexpr double affordable = 0.05, free_steps = 20, price_of_return = 1;
-// A run of some hundred steps has at most this many samples. A longer run has one within some steps.
-constexpr long long usual_samples = 7, most_spacing = 140;
+// Samples by parts are twice as dear: in shorter runs they cost at most so many steps and this share more.
+constexpr double free_parts = 6, free_share = 0.1;
+// A run of up to some thousand steps has at most this many samples. A longer run has one within some steps.
+constexpr long long usual_samples = 7, most_spacing = 560;
+// Of the difference in the sample before: what RATTLE's rounds may leave of C in a step that is taken to be compared.
+constexpr double hardly = 0.03;
 // Of the share that warns: an estimate by longer steps that promises more by the end of the run is made anew.
 constexpr double doubted = 0.25;
 constexpr double half_turn = 3.141592653589793;  // a larger error of an angle has no meaning
@@ -64,9 +70,10 @@ ErrorEstimate<S>::ErrorEstimate(const Scene& scene, long long steps)
     : scene_(scene), steps_(steps), warned_(warned_trajectory_share(scene)), size_(extents_of(scene).of_body) {
   for (const double size : size_) is_point_.push_back(size == 0);
   total_.sums.resize(size_.size()), sample_.resize(size_.size());
-  budget_ = affordable * static_cast<double>(steps) + free_steps;
   // The midpoint rule divides long steps unseen.
   const bool divides = scene.settings.integrator == Integrator::implicit;
+  const double few = divides ? free_parts + free_share * static_cast<double>(steps) : free_steps;
+  budget_ = affordable * static_cast<double>(steps) + std::min(few, free_steps);
   parts_ = divides ? parts_of_halved : parts_of_one;
   const bool whole = steps >= steps_as_one && !divides;
   choose(sweeps(scene.settings.solver) ? By::more_sweeps : whole ? By::longer_steps : By::shorter_steps);
@@ -114,8 +121,11 @@ void ErrorEstimate<S>::before_step(BasicWorld<S>& run, long long k, double h) {
 template <class S>
 bool ErrorEstimate<S>::take_instead(BasicWorld<S>& world, int steps) {
   const long long divided = world.step_counts().retried;
-  for (int k = 0; k < steps; ++k)
-    if (!world.step(window_ * length_ / steps)) return false;
+  world.data().enough = by_ == By::longer_steps ? hardly * difference_ : 0;
+  bool stepped = true;
+  for (int k = 0; stepped && k < steps; ++k) stepped = bool(world.step(window_ * length_ / steps));
+  world.data().enough = 0;
+  if (!stepped) return false;
   instead_ = states_of(world, static_cast<int>(total_.sums.size()));
   return by_ != By::longer_steps || world.step_counts().retried == divided;
 }
@@ -176,6 +186,19 @@ void ErrorEstimate<S>::add(const Frame& before, const Frame& after, long long k)
   }
   ++total_.error.samples, window_of_sample_ = window_;
   add_sums(after, k);
+  find_difference();
+}
+
+template <class S>
+void ErrorEstimate<S>::find_difference() {
+  double largest = 0, least_size = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < sample_.size(); ++i) {
+    largest = std::max(largest, norm(sample_[i].angle));
+    if (!(size_[i] > 0)) continue;
+    largest = std::max(largest, norm(sample_[i].position) / size_[i]);
+    least_size = std::min(least_size, size_[i]);
+  }
+  difference_ = std::isfinite(least_size) ? largest * least_size / std::abs(share_of_difference()) : 0;
 }
 
 template <class S>

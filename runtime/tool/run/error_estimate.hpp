@@ -66,6 +66,7 @@ class ErrorEstimate {
   // False if one of them fails, or is divided.
   bool take_instead(BasicWorld<S>& world, int steps);
   void add(const Frame& before, const Frame& after, long long k);
+  void find_difference();
   // The last sample stands for the steps since the one before it, and at the end of the run for those that follow.
   void add_sums(const Frame& after, long long k);
   void judge(const Frame& after, std::size_t body, double linear, double angular);
@@ -85,6 +86,7 @@ class ErrorEstimate {
   std::vector<BodyState> instead_;        // at the end of the steps taken instead
   std::vector<Sums> sample_;              // the last one: errors of a window
   int window_of_sample_ = 1;
+  double difference_ = 0;  // in the last sample, as a share of its mechanism, times the size of the smallest [m]
   Total total_;
   std::vector<double> size_;  // of the mechanism of each body [m]; of a single point the distance that it travels
   std::vector<bool> is_point_;

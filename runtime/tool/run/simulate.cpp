@@ -135,9 +135,6 @@ void look(const Scene& scene, BasicWorld<S>& world, RunResult& result) {
   ++result.diagnoses;
 }
 
-// Steps between looks at momenta, which change slowly. For a free body one costs a quarter of a step.
-constexpr long long steps_of_momenta = 32;
-
 template <class S>
 RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string& warnings) {
   RunResult result;
@@ -169,8 +166,8 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     judge(scene, after, result);
     if (k > 0) rank.look(after.time, world.weakest_row());
     if (!result.finite) break;
-    result.balance.look(balance_of(data, energy, k % steps_of_momenta == 0));
-    if (k > 0) worst_step.look(world, result.balance);
+    if (k == 0) worst_step.begin(world, energy, result.balance);
+    else worst_step.look(world, energy, k, bool(options.look), result.balance);
     if (result.first_rescue < 0 && world.step_counts().rescued > 0)
       result.first_rescue = after.time, result.at_rescue = largest_force(world);
     if (every_step) options.row(after);
@@ -208,6 +205,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
       progress.show(fmt::format("{}{:3.0f} %  {:.4g} s of {:.4g} s", options.doing, 100 * after.time / scene.duration,
                                 after.time, scene.duration));
   }
+  worst_step.tell(result.balance);
   if (result.finite) result.balance.look(world.balance());
   result.work = world.work_by_source();
   if (std::isnan(result.energy_end)) result.without_energy = effect_without_energy(data);

@@ -1,10 +1,15 @@
-// The step of a run in which the method's own share of the energy changed most, and its largest force of a joint.
+// The balance of a run, and the step in which the method's own share of the energy changed most, with the largest force
+// of a joint there.
 #pragma once
+
+#include <limits>
 
 #include <cdot/balance.hpp>
 #include <cdot/world.hpp>
 
 namespace cdot {
+
+struct Energy;  // runtime/balance/balance.hpp
 
 struct LargestForce {
   int joint = -1;    // -1: no joint carried one
@@ -25,13 +30,26 @@ class WorstStepWatch {
   // Of a run of `steps` steps that reports errors of the energy above `told` of its scale: one of these steps then errs
   // by told / steps at least.
   WorstStepWatch(double told, long long steps) : least_(told / static_cast<double>(steps)) {}
-  // After every step. Queries the joints where the change exceeds that and the largest so far by a tenth, so that they
-  // are queried at some dozen steps of a run at most.
-  void look(const BasicWorld<S>& world, const BalanceWatch& balance);
+  void begin(BasicWorld<S>& world, const Energy& energy, BalanceWatch& balance);
+  // After step k, with the energy there. Queries the joints where the change exceeds that and the largest so far by a
+  // tenth, so that they are queried at some dozen steps of a run at most. `balance` follows with some steps' delay,
+  // unless it is asked for `at_once`.
+  void look(BasicWorld<S>& world, const Energy& energy, long long k, bool at_once, BalanceWatch& balance);
+  // Tells the extremes of the steps so far.
+  void tell(BalanceWatch& balance) const;
   const WorstStep& found() const { return worst_; }
 
  private:
-  double least_, method_ = 0;
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  struct Extreme {
+    double method, time;  // [J], [s]
+  };
+  void note(const Energy& energy, double method, double time);
+
+  double least_, told_ = 0;  // of the energy's scale, and in J
+  double method_ = 0;
+  double fastest_ = 0, lowest_ = infinity, highest_ = -infinity;  // kinetic and potential energies
+  Extreme risen_{-infinity, 0}, fallen_{infinity, 0};
   WorstStep worst_;
 };
 

@@ -18,7 +18,7 @@ STEP, COUNTS, MOST = 0.002, (5, 20, 60, 200, 1000), 5
 # Of these, each with all that it calls. Templates name their callers in their arguments; only what follows `void` counts.
 PARTS = {
     "estimate": r"ErrorEstimate<.*>::(ErrorEstimate|before_step|after_step)\(",
-    "balance": r":cdot::Balance cdot::balance_of<|WorstStepWatch<.*>::look\(|BalanceWatch::look\(cdot::Balance const",
+    "balance": r"WorstStepWatch<.*>::look\(",
     "booking": r":void cdot::(begin_accounts|begin_kick|note_at_rest|book_kick|book_work|book_stiffness|find_power"
                r"|look_at_effects)<",
 }

@@ -165,6 +165,30 @@ TEST(ErrorEstimate, OfTheLastSampleStandsForTheRest) {
   EXPECT_NEAR(said.position, exact, 1e-9 * exact);
 }
 
+// A run tells its balance after some steps. By looks at each of them the extremes are the same.
+TEST(ErrorEstimate, OfTheEnergyIsTheWorstOfAllSteps) {
+  for (const Integrator integrator : {Integrator::rattle, Integrator::rk4}) {
+    Scene scene = mechanism("machine", integrator, 0.01);
+    std::string warnings;
+    scene.duration = 0.75;
+    auto world = world_at_start<Planar<double>>(scene, warnings);
+    BalanceWatch each;
+    each.look(world.balance());
+    for (int k = 1; k <= 75; ++k) {
+      ASSERT_TRUE(world.step(scene.step));
+      each.look(world.balance());
+    }
+    const BalanceWatch told = simulate(scene, {}, warnings).balance;
+    const auto expect_same = [](const BalanceWatch::Worst& a, const BalanceWatch::Worst& b) {
+      EXPECT_NEAR(a.amount, b.amount, 1e-12 * a.scale);
+      EXPECT_NEAR(a.scale, b.scale, 1e-12 * a.scale);
+      EXPECT_NEAR(a.time, b.time, 1e-12);
+    };
+    EXPECT_NE(each.energy.time, scene.duration) << "no worst moment within the run";
+    expect_same(told.energy, each.energy), expect_same(told.risen, each.risen);
+  }
+}
+
 // Momenta are looked at every 32 steps, and at the end.
 TEST(ErrorEstimate, OfMomentaIsKnownOfShortRuns) {
   Scene scene = mechanism("spatial/torque_free_body", Integrator::rk4, 0.1);
