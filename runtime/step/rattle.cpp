@@ -173,7 +173,7 @@ void begin_search(Island<S>& island) {
 // such a row with one of C, and 1 at a loss of rank.
 template <class S>
 void choose_rows_of_drift(System<S>& system, bool rolling, int round) {
-  if (system.lawful() || (rolling && round == 0))
+  if (system.lawful() || rolling)
     factor_rows_with_errors(system, Rates::free, round == 0 ? Factor::anew : Factor::kept);
 }
 
@@ -188,7 +188,6 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
   const T goal = std::max(round_off<T> * island.scale, T(world.enough));
   begin_search(island);
   T least = std::numeric_limits<T>::infinity(), at_first = 0;
-  const bool rolling = rolls(island);
   bool astray = false;
   for (int round = 0, vain = 0;; ++round) {
     drift(world, island, h);
@@ -209,7 +208,7 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
                                           std::min(slight<T> * at_first, foreign<T> * island.scale)});
     astray |= vain > 0;
     load_errors(system, T(-1) / h);
-    choose_rows_of_drift(system, rolling, round);
+    choose_rows_of_drift(system, round == 0 && rolls(island), round);
     system.solve();
     if (at_ends) {  // updates would not know which ends hold
       let_go_of_pulling_ends(system);

@@ -25,7 +25,7 @@ constexpr double affordable = 0.05, free_steps = 20, price_of_return = 1;
 // Samples by parts are twice as dear: in shorter runs they cost at most so many steps and this share more.
 constexpr double free_parts = 6, free_share = 0.1;
 // A run of up to some thousand steps has at most this many samples. A longer run has one within some steps.
-constexpr long long usual_samples = 7, most_spacing = 560;
+constexpr long long usual_samples = 7, most_spacing = 700;
 // Of the difference in the sample before: what RATTLE's rounds may leave of C in a step that is taken to be compared.
 constexpr double hardly = 0.03;
 // Of the share that warns: an estimate by longer steps that promises more by the end of the run is made anew.

@@ -165,6 +165,26 @@ TEST(ErrorEstimate, OfTheLastSampleStandsForTheRest) {
   EXPECT_NEAR(said.position, exact, 1e-9 * exact);
 }
 
+// Steps that are only compared close joints less than those of the run.
+TEST(ErrorEstimate, LeavesTheBitsOfTheRunAlone) {
+  const Scene scene = mechanism("four_bar", Integrator::rattle, 0.01);
+  std::vector<BodyState> ends[2];
+  for (const bool estimates : {false, true}) {
+    RunOptions options;
+    options.estimates_error = estimates;
+    options.row = [&](const Frame& frame) { ends[estimates] = frame.bodies; };
+    std::string warnings;
+    EXPECT_EQ(simulate(scene, options, warnings).error.samples > 1, estimates);
+  }
+  ASSERT_EQ(ends[0].size(), ends[1].size());
+  for (std::size_t k = 0; k < ends[0].size(); ++k) {
+    EXPECT_EQ(ends[0][k].x, ends[1][k].x);
+    EXPECT_EQ(ends[0][k].angle, ends[1][k].angle);
+    EXPECT_EQ(ends[0][k].vy, ends[1][k].vy);
+    EXPECT_EQ(ends[0][k].w, ends[1][k].w);
+  }
+}
+
 // A run tells its balance after some steps. By looks at each of them the extremes are the same.
 TEST(ErrorEstimate, OfTheEnergyIsTheWorstOfAllSteps) {
   for (const Integrator integrator : {Integrator::rattle, Integrator::rk4}) {
