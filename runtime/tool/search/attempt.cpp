@@ -94,8 +94,10 @@ void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse
       std::max({std::min(apart, least_sure), apart / gained, std::min(between_looks, unseen * yardstick.asked())});
   const bool known = fine.knob.parts > coarse.knob.parts || !fine.knob.adaptive() ||
                      (fine.result.counts.rescued == 0 && !same_steps(coarse, fine));
+  // Where a fast oscillation is not resolved, distances fall less than the errors should.
+  const bool falls = coarse.apart >= gained * apart;
   const bool seems_to_converge = fine.knob.adaptive() || fine.achieved < surely * yardstick.asked() ||
-                                 (std::isfinite(coarse.achieved) && converges(coarse, fine));
+                                 (std::isfinite(coarse.achieved) && converges(coarse, fine) && falls);
   // Two runs may agree by chance on steps that were left to another method: no gain is sure there.
   const bool rescued = fine.result.counts.rescued > 0;
   fine.reached = known && seems_to_converge && balanced(scene, fine) &&
