@@ -8,6 +8,7 @@
 #include "derive/compile/borne/shares.hpp"
 #include "derive/compile/foresight/aim.hpp"
 #include "derive/compile/midpoint/middle.hpp"
+#include "derive/compile/readings/readings.hpp"
 #include "derive/compile/rows/bounds.hpp"
 #include "derive/compile/rows/dampers.hpp"
 #include "derive/compile/rows/joint_rows.hpp"
@@ -58,6 +59,8 @@ class EquationWriter {
     // pull beside the joints. Rows of velocities have no error by which a wrong guess is taken back.
     if (system().size() > 0 && foresees()) write_foreseen();
     drop_unread();
+    out_.coordinates = read_coordinates(blocks_, out_.constants);
+    if (system().size() > 0) out_.reactions = read_reactions(blocks_, joints_, out_.constants);
     out_.apart = stages_read_no_centre();
     check_inputs();
     return std::move(out_);
@@ -281,6 +284,7 @@ std::set<std::string> functions_of(const Program& program) {
 std::set<std::string> functions_of(const Equations& equations) {
   std::set<std::string> functions;
   for (const Program* program : programs_of_equations(equations)) functions.merge(functions_of(*program));
+  for (const Program* program : {&equations.coordinates, &equations.reactions}) functions.merge(functions_of(*program));
   return functions;
 }
 

@@ -31,6 +31,9 @@ struct Equations {
   Program kick;       // q, v, time, J, h -> next: v after an Euler step with effects; lambda of the joints
   Program potential;  // q, time -> E of the effects
   Program angles;     // q, time -> angle, turns: angles that count whole turns
+  // For who asks (readings/readings.hpp); no step calls them:
+  Program coordinates;  // q, v, time -> value, rate
+  Program reactions;    // q, time, lambda -> load
   // Of effects and rows with bounds by RATTLE and by the midpoint rule:
   bool finishes = false;       // the end of a step solves for more than the joints
   bool exerts = false;         // so does the start of a run
@@ -70,6 +73,7 @@ struct Equations {
   Program carry;                         // q, time, J, lambda, force -> load: the forces with which bounds grow
   Program resolve;                       // q, v, time, a, force, h -> of_value, of_rate, of_force: resolutions
 };
+// Of steps.
 std::vector<const Program*> programs_of_equations(const Equations& equations);
 // The functions that it calls, beside those of every header.
 std::set<std::string> functions_of(const Program& program);

@@ -20,6 +20,7 @@
 #include "derive/compile/methods/tables.hpp"
 #include "derive/compile/midpoint/implicit.hpp"
 #include "derive/compile/midpoint/tension.hpp"
+#include "derive/compile/readings/readings.hpp"
 #include "derive/compile/steps.hpp"
 #include "derive/compile/texts.hpp"
 #include "derive/compile/types.hpp"
@@ -40,6 +41,7 @@ class HeaderWriter {
     for (const Effect& effect : mechanism.effects) names_.effects.push_back(unused(identifier(effect.name), joints));
     for (const Effect& effect : mechanism.bounded) names_.bounded.push_back(unused(identifier(effect.name), joints));
     equations_ = equations_of(mechanism, names_, specs);
+    name_readings();
   }
 
   Header write() {
@@ -72,11 +74,14 @@ class HeaderWriter {
                                                      has().gyroscopes, pose_argument(mechanism_)});
   }
   void line(const std::string& line = {}) { text_ += line + "\n"; }
-  // f(body, its name) for those that move.
-  template <class F>
-  void each_body(F f) const {
-    for (std::size_t i = 0; i < mechanism_.bodies.size(); ++i)
-      if (mechanism_.bodies[i].moves) f(mechanism_.bodies[i], names_.bodies[i]);
+
+  // After all constants and joints of the scene.
+  void name_readings() {
+    std::set<std::string> taken = used_;
+    for (const auto& [constant, value] : equations_.constants.named) taken.insert(constant);
+    taken.insert(names_.joints.begin(), names_.joints.end());
+    for (const std::string& name : coordinates_of(mechanism_)) coordinates_.push_back(unused(identifier(name), taken));
+    for (const auto* names : {&coordinates_, &names_.joints}) used_.insert(names->begin(), names->end());
   }
 
   void write_head() {
@@ -92,52 +97,27 @@ class HeaderWriter {
     line("struct " + name_ + " {");
   }
 
+  void write_enum(const std::string& type, const std::vector<std::string>& names, const std::string& count) {
+    if (names.empty()) return;
+    const std::string text = fmt::format("  enum {} {{ {}, {} }};", type, fmt::join(names, ", "), count);
+    for (const std::string& wrapped : derive::wrapped(text)) line(wrapped);
+  }
+
   void write_types() {
-    std::string bodies;
-    each_body([&](const Body&, const std::string& name) { bodies += name + ", "; });
-    for (const std::string& wrapped : derive::wrapped("  enum Body { " + bodies + "bodies };")) line(wrapped);
+    std::vector<std::string> bodies;
+    for (std::size_t i = 0; i < mechanism_.bodies.size(); ++i)
+      if (mechanism_.bodies[i].moves) bodies.push_back(names_.bodies[i]);
+    write_enum("Body", bodies, "bodies");
     line(fmt::format("  static constexpr int rows = {};", equations_.rows.size()));
-    if (has().bounded) {
-      std::string rows;
-      for (const std::string& name : names_.bounded) rows += name + ", ";
-      for (const std::string& wrapped : derive::wrapped("  enum Bound { " + rows + "bounded };")) line(wrapped);
-    }
+    write_enum("Bound", names_.bounded, "bounded");
+    write_enum("Reaction", joints_of(mechanism_, names_), "reactions");
+    write_enum("Coordinate", coordinates_, "coordinates");
     if (has().exerts || (has().events && has().pulls())) text_ += equations_.group_lists;
     line(fmt::format("  static constexpr double default_step = {};  // [s]", mechanism_.step));
     for (const auto& [name, value] : equations_.constants.named)
       line(fmt::format("  static constexpr double {} = {};", name, value));
     text_ += types_of(mechanism_, name_, has().apart);
-    if (has().rows) {
-      line("  // The numbers of J, and K = J M^-1 J^T = L D L^T with the rows numbered in the order of elimination.");
-      line("  struct Jacobian {");
-      for (const std::string& member : equations_.stored) line("    T " + member + ";");
-      line("  };");
-    }
-    if (has().foresees) {
-      line("  // J' M^-1 J^T = L D U, J' of the end of a step, numbered as K.\n  struct Aim {");
-      for (const std::string& member : equations_.aimed) line("    T " + member + ";");
-      line("  };");
-    }
-    if (has_inputs()) {
-      line("  // Numbers that may be set before any step.\n  struct Inputs {");
-      for (const auto& [name, value] : equations_.constants.inputs_read) line("    T " + name + ";");
-      line("  };");
-    }
-    if (has().angles) {
-      line("  // Angles of effects, with their whole turns, at the end of the last step.");
-      line("  struct Angles {");
-      line(fmt::format("    T angle[{0}], turns[{0}];", mechanism_.angles));
-      line("  };");
-    }
-    if (has().midpoint)
-      line(fmt::format("  using Inertia = {};  // its inverse", mechanism_.spatial() ? "Tensor<T>" : "T"));
-    if (has().taut) text_ += taut_type(equations_.taut, equations_.taut_numbers);
-    if (has().foresees) line("  struct Multipliers {\n    T of[rows];\n  };");
-    if (has().events) {
-      line("  // Of rows with bounds: 1 if they have begun, if they have ended, if they act.");
-      line("  struct Events {\n    T began[bounded], ended[bounded], acts[bounded];\n  };");
-    }
-    if (has().bonds) text_ += bonds_type(mechanism_, equations_.first_borne.back(), has());
+    text_ += number_types_of(mechanism_, equations_, has());
     text_ += state_of(mechanism_, has(), has_inputs());
   }
 
@@ -231,10 +211,30 @@ class HeaderWriter {
                        "share(const Jacobian& J, const T (&lambda)[rows], T (&shared)[rows])", equations_.share);
       text_ += snap_of(mechanism_, {equations_.first_rows, equations_.first_borne}, has());
     }
+    write_readings(at, moving);
     if (has().angles)
       write_function("Angles with their whole turns",
                      fmt::format("count({}, T (&angle)[{}], T (&turns)[{}])", at, mechanism_.angles, mechanism_.angles),
                      equations_.angles);
+  }
+
+  void write_readings(const std::string& at, const std::string& moving) {
+    const std::string values = "T (&value)[coordinates], T (&rate)[coordinates])",
+                      loads = "Velocity (&load)[reactions])";
+    const auto of_state = [&](const std::string& name, const std::string& results, const std::string& call) {
+      line("  static void " + name + "(const State& s, " + results + " {");
+      line(with_arguments("    " + name + "(" + call + ");\n  }"));
+    };
+    if (!coordinates_.empty()) {
+      const char* const angles = mechanism_.spatial() ? ", angles within half a turn" : "";
+      write_function(fmt::format("Coordinates that joints leave free{}, and their rates", angles),
+                     "coordinates_of(" + at + ", " + moving + ", " + values, equations_.coordinates);
+      of_state("coordinates_of", values, "$ss.q, s.time, s.v, value, rate");
+    }
+    if (!has().rows) return;
+    write_function("J^T lambda of each joint on its last body, torques about its centre of mass",
+                   "reactions_of(" + at + ", const T (&lambda)[rows], " + loads, equations_.reactions);
+    of_state("reactions_of", loads, "$ss.q, s.time, s.lambda, load");
   }
 
   void write_bear(const std::string& at, const std::string& moving) {
@@ -388,6 +388,7 @@ class HeaderWriter {
   std::string name_;
   Names names_;
   Equations equations_;
+  std::vector<std::string> coordinates_;  // in C++
   std::string text_;
 };
 

@@ -35,7 +35,9 @@ std::set<std::string> taken_names() {
       "cone_of in_cone size_in_cone most_in_cone may_go instead begin_corners find_corners aim_cones share turns "
       "turned drift_of_ends moves of_ends "
       "by_velocity body_of begins ends widest begin_of end_of set_difference take_difference side_at_start off "
-      "side_at_end settle_share settle_loads change_loads beyond");
+      "Coordinate coordinates coordinates_of Reaction reactions reactions_of value side_at_end settle_share "
+      "settle_loads "
+      "change_loads beyond");
   std::set<std::string> names;
   for (std::string word; words >> word;) names.insert(word);
   return names;

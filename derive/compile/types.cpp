@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "derive/compile/gyroscopes.hpp"
+#include "derive/compile/methods/bonds.hpp"
+#include "derive/compile/midpoint/tension.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -205,6 +207,36 @@ std::string slope_of(bool spatial) {
 }
 
 }  // namespace
+
+std::string number_types_of(const Mechanism& mechanism, const Equations& equations, const Contents& has) {
+  std::string text;
+  const auto add = [&](const std::string& comment, const std::string& name, const std::vector<std::string>& members) {
+    text += fmt::format("  // {}\n  struct {} {{\n", comment, name);
+    for (const std::string& member : members) text += "    T " + member + ";\n";
+    text += "  };\n";
+  };
+  if (has.rows)
+    add("The numbers of J, and K = J M^-1 J^T = L D L^T with the rows numbered in the order of elimination.",
+        "Jacobian", equations.stored);
+  if (has.foresees) add("J' M^-1 J^T = L D U, J' of the end of a step, numbered as K.", "Aim", equations.aimed);
+  if (!equations.constants.inputs.empty()) {
+    std::vector<std::string> inputs;
+    for (const auto& [name, value] : equations.constants.inputs_read) inputs.push_back(name);
+    add("Numbers that may be set before any step.", "Inputs", inputs);
+  }
+  if (has.angles)
+    add("Angles of effects, with their whole turns, at the end of the last step.", "Angles",
+        {fmt::format("angle[{0}], turns[{0}]", mechanism.angles)});
+  if (has.midpoint)
+    text += fmt::format("  using Inertia = {};  // its inverse\n", mechanism.spatial() ? "Tensor<T>" : "T");
+  if (has.taut) text += taut_type(equations.taut, equations.taut_numbers);
+  if (has.foresees) text += "  struct Multipliers {\n    T of[rows];\n  };\n";
+  if (has.events)
+    add("Of rows with bounds: 1 if they have begun, if they have ended, if they act.", "Events",
+        {"began[bounded], ended[bounded], acts[bounded]"});
+  if (has.bonds) text += bonds_type(mechanism, equations.first_borne.back(), has);
+  return text;
+}
 
 SlopeSize slope_size(const Mechanism& mechanism, bool apart) {
   const auto moving = static_cast<std::size_t>(std::ranges::count_if(mechanism.bodies, &Body::moves));

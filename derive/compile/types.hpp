@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "derive/compile/equations.hpp"
+#include "derive/compile/methods/contents.hpp"
 #include "derive/compile/scene/mechanism.hpp"
 
 namespace cdot::compile {
@@ -10,6 +12,9 @@ namespace cdot::compile {
 // Pose, Velocity and Rate, that of a pose; choose(), move(), rate_of(), in the struct of that name.
 // `apart`: stages of a Runge-Kutta method read no centre of mass.
 std::string types_of(const Mechanism& mechanism, const std::string& name, bool apart);
+
+// What a State consists of beside them: Jacobian, Inputs, Angles and others, as far as the scene has them.
+std::string number_types_of(const Mechanism& mechanism, const Equations& equations, const Contents& has);
 
 // Bodies that move, and numbers of a slope of a Runge-Kutta method: rates that each stage sums, and accelerations of
 // centres of mass that are summed at the end alone.

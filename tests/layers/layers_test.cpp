@@ -87,6 +87,7 @@ const std::vector<std::string> rooms = {
     "derive/compile/scene", // a scene as numbers
     "derive/compile/rows", // its rows and laws as programs
     "derive/compile/borne", // forces of effects that may break
+    "derive/compile/readings", // coordinates and what joints carry
     "derive/compile/foresight", // rounds of Newton that begin close to the end
     "derive/compile/methods",  // its steps as text
     "derive/compile/midpoint", // the implicit midpoint rule, in programs and text

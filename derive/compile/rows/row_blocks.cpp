@@ -32,6 +32,7 @@ RowBlocks::RowBlocks(const Mechanism& mechanism, const Names& names, const deriv
   for (const Joint& joint : mechanism.joints) {
     std::set<std::string>& of_type = coordinates[joint.type];
     if (!joint.coordinate.empty()) of_type.insert(joint.coordinate);
+    of_type.insert(joint.coordinates.begin(), joint.coordinates.end());
     for (const CountedTurns& turns : joint.turns) of_type.insert(turns.coordinate);
   }
   for (const std::vector<Effect>* list : {&mechanism.effects, &mechanism.bounded})

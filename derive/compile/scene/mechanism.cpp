@@ -139,6 +139,8 @@ Joint joint_of(const Scene& scene, const BasicWorld<S>& world, int index) {
   const SceneJoint& source = scene.joints[static_cast<std::size_t>(index)];
   Joint joint{source.name, source.definition.type, {}, world.joint_parameters(index)};
   const int ground = static_cast<int>(scene.bodies.size());
+  for (const CoordinateInfo& coordinate : world.joint_type(index).coordinates)
+    joint.coordinates.emplace_back(coordinate.name);
   for (const RowKind kind : world.joint_type(index).row_kinds) joint.is_rate.push_back(kind == RowKind::velocity);
   for (const int body : source.definition.bodies) joint.bodies.push_back(body == world_body ? ground : body);
   return joint;

@@ -67,6 +67,7 @@ struct Joint {
   int holds = -1;                           // of a joint that may break: its number among these
   int tensions = 0;                         // rows of the stiffness of tension (midpoint/tensions.hpp)
   std::vector<CountedTurns> turns{};
+  std::vector<std::string> coordinates{};  // that its spec leaves free
 };
 
 // A force along each row of a spec, or along one of its coordinates; a row with bounds on a coordinate.
