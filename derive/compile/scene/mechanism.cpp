@@ -287,7 +287,9 @@ Mechanism read_mechanism(const std::string& file, const Wishes& wishes) {
   mechanism.tolerance = tolerance_of(mechanism.size);
   if (scene.settings.sleep_after > 0)
     mechanism.notes.emplace_back("Compiled bodies do not sleep: sleep_after is left out.");
-  mechanism.inputs = wishes.inputs;
+  mechanism.inputs = scene.inputs;
+  for (const std::string& input : wishes.inputs)
+    if (std::ranges::find(scene.inputs, input) == scene.inputs.end()) mechanism.inputs.push_back(input);
   mechanism.foresees = !wishes.plain;
   mechanism.open = scene.settings.drift != Drift::projection;
   if (scene.settings.drift == Drift::baumgarte) mechanism.fed_back = scene.settings.baumgarte;

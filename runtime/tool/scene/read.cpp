@@ -45,6 +45,18 @@ Vec3 turned(const SceneBody& body, Dimension dimension, const Vec3& v, bool to_w
   return {to.x, to.y, to.z};
 }
 
+// Each begins with the joint that has it; `cdot compile` knows the numbers of joints.
+void check_inputs(Entry& top, const Scene& scene) {
+  std::vector<std::string> joints;
+  for (const SceneJoint& joint : scene.joints) joints.push_back(joint.name);
+  for (std::size_t k = 0; k < scene.inputs.size() && scene.springs.empty(); ++k) {
+    const std::string& input = scene.inputs[k];
+    if (std::ranges::any_of(joints, [&](const std::string& joint) { return input.starts_with(joint + "."); })) continue;
+    const std::string joint = input.substr(0, input.find('.'));
+    top.error(top.element("inputs", k), fmt::format("no joint is called \"{}\"", joint), did_you_mean(joint, joints));
+  }
+}
+
 void read_all(const toml::table& table, Mistakes& mistakes, Scene& scene) {
   Entry top(table, {}, "the scene", mistakes);
   read_settings(top, scene);
@@ -53,6 +65,7 @@ void read_all(const toml::table& table, Mistakes& mistakes, Scene& scene) {
   read_joints(top, names, scene);
   find_forces_in_time(scene);
   read_springs(top, names, scene);
+  check_inputs(top, scene);
   if (mistakes.none()) read_sensors(top, scene);
   else top.has("sensor");  // their words need joints without mistakes
   top.close();

@@ -146,6 +146,7 @@ struct Scene {
   std::vector<SceneSpring> springs;
   std::vector<Sensor> sensors;
   std::vector<WrittenProfile> profiles;    // the functions of time that its numbers follow
+  std::vector<std::string> inputs;         // numbers that a compiled step may change: "hinge.angle.motor.speed"
   std::shared_ptr<const Mistakes> source;  // to report errors of the World in its lines
 };
 

@@ -49,6 +49,9 @@ void read_integrator(Entry& top, const char* key, Scene& scene) {
   name_integrator(scene, top.choice(key, integrator_choices()).value_or(picked_integrator));
 }
 
+// Their joints are not read yet.
+void read_inputs(Entry& top, const char* key, Scene& scene) { scene.inputs = top.texts(key).value_or(scene.inputs); }
+
 constexpr auto settings = &Scene::settings;
 
 // clang-format off
@@ -75,6 +78,7 @@ constexpr Key<Scene> top_keys[] = {
     {"energy_tolerance", "share of the motion's energies and momenta that the method may lose; of energies that it makes up a tenth", "0.1", read_number<Sign::positive, &Scene::energy_tolerance>},
     {"trajectory_tolerance", "share of each mechanism's size, and [rad]: of fixed steps, the estimated error of the trajectory above which the run has failed; a tenth of it warns", "none: 0.1 warns", read_number<Sign::positive, &Scene::trajectory_tolerance>},
     {"project", "project an inconsistent start onto C = 0", "false", read_flag<&Scene::project>},
+    {"inputs", "numbers that a step compiled by `cdot compile` may change, as [\"hinge.angle.motor.speed\"]", "none", read_inputs},
     {"on_failure", "reaction to a step that fails", "stop", read_choice<failure_answers, &Scene::on_failure>, Where::everywhere, choices_of<failure_answers>},
 };
 // clang-format on

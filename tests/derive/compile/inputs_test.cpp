@@ -1,7 +1,9 @@
 // Numbers of a compiled scene that a run may change: the step is then that of a scene with these numbers.
+#include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <iterator>
+#include <unistd.h>
 
 #include "arm_with_inputs.hpp"
 #include "tailgate_with_inputs.hpp"
@@ -10,6 +12,7 @@
 
 namespace {
 
+namespace fs = std::filesystem;
 using cdot::Integrator;
 using namespace cdot::scenes;
 
@@ -55,6 +58,30 @@ TEST(CompiledInputs, MoveAsASceneWithTheseNumbers) {
   tailgate_with_inputs<double>::begin(gate);
   const cdot::Scene other_gate = changed("specs/scenes/tailgate.toml", {{"= 1000", "= 400"}});
   EXPECT_LT(farthest<tailgate_with_inputs<double>>(gate, cdot::world_of(other_gate, Integrator::rk4)), 1e-10);
+}
+
+// The same header as by the option, but for the command in its first lines.
+TEST(CompiledInputs, AreMarkedByTheScene) {
+  const auto lines = [](const cdot::ShellResult& header) {
+    EXPECT_EQ(header.status, 0) << header.text;
+    return header.text.substr(header.text.find("#pragma once"));
+  };
+  const fs::path folder = fs::temp_directory_path() / ("cdot_marked_inputs_" + std::to_string(getpid()));
+  fs::create_directory(folder);
+  const std::string marked = folder / "robot_arm.toml";
+  std::ifstream in(CDOT_SOURCE_DIR "/specs/scenes/robot_arm.toml");
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::ofstream(marked) << "inputs = [\"shoulder.angle.servo.target\"]\n" << text;
+  const std::string header = lines(cdot::compile(marked + " --integrator euler"));
+  EXPECT_NE(header.find("T shoulder_angle_servo_target;"), std::string::npos);
+  EXPECT_EQ(header, lines(cdot::compile("specs/scenes/robot_arm.toml --integrator euler --input "
+                                        "shoulder.angle.servo.target")));
+  std::ofstream(marked) << "inputs = [\"shulder.angle.servo.target\"]\n" << text;
+  const cdot::ShellResult wrong = cdot::compile(marked);
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.text.find(":1:11: error: no joint is called \"shulder\""), std::string::npos) << wrong.text;
+  EXPECT_NE(wrong.text.find("did you mean `shoulder`?"), std::string::npos) << wrong.text;
+  fs::remove_all(folder);
 }
 
 TEST(CompiledInputs, MisspeltNamesAreToldTheRightOne) {
