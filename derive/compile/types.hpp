@@ -13,7 +13,7 @@ namespace cdot::compile {
 // `apart`: stages of a Runge-Kutta method read no centre of mass.
 std::string types_of(const Mechanism& mechanism, const std::string& name, bool apart);
 
-// What a State consists of beside them: Jacobian, Inputs, Angles and others, as far as the scene has them.
+// The other types of a State: Jacobian, Inputs, Angles and more, as far as the scene has them.
 std::string number_types_of(const Mechanism& mechanism, const Equations& equations, const Contents& has);
 
 // Bodies that move, and numbers of a slope of a Runge-Kutta method: rates that each stage sums, and accelerations of

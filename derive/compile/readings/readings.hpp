@@ -1,4 +1,4 @@
-// What a header tells of a state beside its poses: the coordinates that joints leave free, and what the joints carry.
+// Readings of a state: the coordinates that joints leave free, and the loads that joints carry.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What a scene says of a joint and the World does not report: its springs, motors, stops and effects of specs.
+// Properties of joints that the scene has and the World does not report: springs, motors, stops, effects of specs.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>

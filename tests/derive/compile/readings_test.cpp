@@ -1,4 +1,4 @@
-// What a compiled struct tells beside its poses: coordinates of joints with their rates, and reactions.
+// Readings of a compiled struct: coordinates of joints with their rates, and reactions.
 #include <cmath>
 #include <gtest/gtest.h>
 

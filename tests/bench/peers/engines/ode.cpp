@@ -125,7 +125,7 @@ class OdeRun final : public SteppedRun {
   bool asleep(int body) const override { return !dBodyIsEnabled(bodies_[std::size_t(body)]); }
 
  private:
-  // What is set before each step.
+  // A number of a joint that is set before each step.
   struct Tuned {
     std::function<void(double time, double h)> set;
   };

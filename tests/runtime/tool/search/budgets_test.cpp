@@ -1,4 +1,4 @@
-// What searches and trials may cost, in evaluations and solves: no clock decides.
+// Bounds on the cost of searches and trials, in evaluations and solves: no clock decides.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
