@@ -128,10 +128,7 @@ class HeaderWriter {
     text_ += BodyTexts{mechanism_, names_.bodies}.start();
     for (const auto& [name, value] : equations_.constants.inputs_read)
       line(fmt::format("    s.p.{} = T({});", name, value));
-    text_ += reset_of(has());
-    line("    begin(s);");
-    line("  }");
-    text_ += begin_of(mechanism_.method, has());
+    text_ += reset_of(has()) + "    begin(s);\n  }\n" + begin_of(mechanism_.method, has());
   }
 
   void write_function(const std::string& comment, const std::string& head, const Program& program) {
