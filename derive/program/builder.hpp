@@ -16,8 +16,8 @@ inline std::size_t index_of(std::span<const int> args, int arg) {
 
 // coefs[0] args[0] + coefs[1] args[1] + ...
 struct Summands {
-  std::vector<int> args;
-  std::vector<Rational> coefs;
+  Operands args;
+  Coefs coefs;
   void add(Rational coef, int arg) { args.push_back(arg), coefs.push_back(coef); }
 };
 
@@ -28,11 +28,11 @@ class Builder {
   int number(Rational value);
   // Numeric coefficients of operands move into sums and out of products; nothing is flattened.
   int sum(Summands terms, SharedText name = {});
-  int product(std::vector<int> args, std::vector<int> exponents, SharedText name = {});
-  int function(Fn fn, std::vector<int> args, SharedText name = {});
+  int product(Operands args, Operands exponents, SharedText name = {});
+  int function(Fn fn, Operands args, SharedText name = {});
   int leaf(const Operation& op);  // an input or a factor
   // The same operation with other operands.
-  int rebuild(const Operation& op, std::vector<int> args);
+  int rebuild(const Operation& op, Operands args);
 
   virtual const Operation& at(int op) const = 0;
 

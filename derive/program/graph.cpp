@@ -96,7 +96,7 @@ void Graph::use(int op, int user) {
 }
 
 void Graph::release(int op, int user) {
-  std::vector<int>& users = users_[index(op)];
+  Users& users = users_[index(op)];
   *std::ranges::find(users, user) = users.back();
   users.pop_back();
   if (--uses_[index(op)] == 0) without_use_.push_back(op);
@@ -121,7 +121,7 @@ std::vector<int> Graph::begin(const std::vector<int>& ops) {
     first = std::min(first, i);
     state_[index(op)] = State::gone;
     for (const int arg : at(op).args) {
-      std::vector<int>& users = users_[index(arg)];
+      Users& users = users_[index(arg)];
       *std::ranges::find(users, op) = users.back();
       users.pop_back();
     }
@@ -159,7 +159,7 @@ void Graph::settle(int op, const Rewrite& rewrite) {
   std::optional<int> made;
   if (state_[index(op)] == State::marked) made = rewrite(*this, at(op));
   if (!made) {
-    std::vector<int> args = at(op).args;
+    Operands args = at(op).args;
     for (int& arg : args) arg = now(arg);
     made = rebuild(at(op), std::move(args));
   }

@@ -31,8 +31,9 @@ class Graph final : public Builder {
   int uses(int op) const { return uses_[index(op)]; }
   int place(int op) const { return place_[index(op)]; }
   int size() const { return static_cast<int>(ops_.size()); }
+  using Users = Few<int, 4>;
   // The users of an operation, those included that the last rewriting left without use.
-  const std::vector<int>& users(int op) const { return users_[index(op)]; }
+  const Users& users(int op) const { return users_[index(op)]; }
   // All operations from front to back, those included that the last rewriting left without use.
   const std::vector<int>& order() const { return order_; }
 
@@ -76,7 +77,7 @@ class Graph final : public Builder {
   std::vector<State> state_;
   std::vector<int> uses_, place_, now_, next_;  // next_: the next operation in the same slot
   std::vector<std::size_t> hash_;
-  std::vector<std::vector<int>> users_;
+  std::vector<Users> users_;
   std::vector<int> slots_;  // hash table: the first operation in each slot, or -1
   std::vector<int> order_;
   std::map<int, SharedText> late_names_;  // of operations that moved to the front: given at their old place

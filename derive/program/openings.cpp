@@ -79,7 +79,7 @@ Openings beside_squares(const Program& program) {
 // k (t_x u_x) as (t_x k) u_x: a gradient has t_x k as well.
 int opened_term(ProgramBuilder& builder, const Operation& product, const Operation& term, const Opening& opening,
                 const Moved& at) {
-  std::vector<int> args, powers;
+  Operands args, powers;
   int square = -1;
   const auto add = [&](int arg, int power) {
     if (power > 0) args.push_back(at(arg)), powers.push_back(power);
@@ -114,8 +114,7 @@ std::optional<Program> with_numbers_as_factors(const Program& program) {
       const int factor = builder.leaf(number), arg = at(op.args[i]);
       const Operation& product = builder.at(arg);
       const bool open = product.kind == OpKind::product && product.name.empty();
-      std::vector<int> args = open ? product.args : std::vector{arg},
-                       exponents = open ? product.exponents : std::vector{1};
+      Operands args = open ? product.args : Operands{arg}, exponents = open ? product.exponents : Operands{1};
       args.push_back(factor), exponents.push_back(1);
       terms.add(op.coefs[i] / size, builder.product(std::move(args), std::move(exponents)));
     }
@@ -134,13 +133,13 @@ std::optional<Program> distributed(const Program& program) {
     const Operation& sum = program.at(op.args[i]);
     Summands terms;
     for (std::size_t k = 0; k < sum.args.size(); ++k) {
-      std::vector<int> factors = op.args, exponents = op.exponents;
+      Operands factors = op.args, exponents = op.exponents;
       factors[i] = sum.args[k];
       const Operation& term = program.at(sum.args[k]);
       if (term.kind == OpKind::product && term.name.empty()) {
         factors[i] = term.args[0], exponents[i] = term.exponents[0];
-        factors.insert(factors.end(), term.args.begin() + 1, term.args.end());
-        exponents.insert(exponents.end(), term.exponents.begin() + 1, term.exponents.end());
+        factors.append(term.args.begin() + 1, term.args.size() - 1);
+        exponents.append(term.exponents.begin() + 1, term.exponents.size() - 1);
       }
       for (int& factor : factors) factor = at(factor);
       terms.add(sum.coefs[k], builder.product(std::move(factors), std::move(exponents)));

@@ -43,12 +43,12 @@ class PairTable {
     Key key;
     int count = 0;
     std::size_t slot = 0;  // in its bucket
-    std::vector<Occurrence> in;
+    Few<Occurrence, 2> in;
   };
   // The operands of an operation when it was last counted.
   struct Counted {
-    std::vector<int> args, exponents;
-    std::vector<Rational> coefs;
+    Operands args, exponents;
+    Coefs coefs;
   };
   struct Rank;
 

@@ -119,12 +119,11 @@ Rational Builder::pull_coefficient(int& arg) const {
 // from the origin, r + x_a - x_b does not.
 Summands Builder::ordered(Summands terms, std::size_t n) const {
   auto& [args, coefs] = terms;
-  args.resize(n), coefs.resize(n);
+  args.shorten(n), coefs.shorten(n);
   const auto is_late = [&](int arg) { return !at(arg).is_position; };
   const bool none_is_zero = std::ranges::none_of(coefs, &Rational::is_zero);
   if (none_is_zero && std::ranges::is_sorted(args, {}, is_late)) return terms;
   Summands sorted;
-  sorted.args.reserve(n), sorted.coefs.reserve(n);
   for (const bool late : {false, true})
     for (std::size_t i = 0; i < n; ++i)
       if (is_late(args[i]) == late && !coefs[i].is_zero()) sorted.add(coefs[i], args[i]);
@@ -153,7 +152,7 @@ int Builder::sum(Summands terms, SharedText name) {
   return intern(std::move(op));
 }
 
-int Builder::product(std::vector<int> args, std::vector<int> exponents, SharedText name) {
+int Builder::product(Operands args, Operands exponents, SharedText name) {
   Rational coef(1);
   std::size_t n = 0;  // factors so far
   for (std::size_t i = 0; i < args.size(); ++i) {
@@ -170,7 +169,7 @@ int Builder::product(std::vector<int> args, std::vector<int> exponents, SharedTe
   }
   if (coef.is_zero()) return number(0);
   if (n == 0) return number(coef);
-  args.resize(n), exponents.resize(n);
+  args.shorten(n), exponents.shorten(n);
   Operation op;
   op.kind = OpKind::product;
   op.args = std::move(args);
@@ -181,7 +180,7 @@ int Builder::product(std::vector<int> args, std::vector<int> exponents, SharedTe
   return coef == Rational(1) ? core : sum({{core}, {coef}}, std::move(name));
 }
 
-int Builder::function(Fn fn, std::vector<int> args, SharedText name) {
+int Builder::function(Fn fn, Operands args, SharedText name) {
   Operation op;
   op.kind = OpKind::function;
   op.fn = fn;
@@ -200,7 +199,7 @@ int Builder::function(Fn fn, std::vector<int> args, SharedText name) {
   return intern(std::move(op));
 }
 
-int Builder::rebuild(const Operation& op, std::vector<int> args) {
+int Builder::rebuild(const Operation& op, Operands args) {
   switch (op.kind) {
     case OpKind::number: return number(op.value);
     case OpKind::factor:
@@ -220,7 +219,7 @@ Program assemble(const std::vector<NamedExpr>& outputs) {
   for (const Expr e : topological(roots)) {
     Operation op;
     op.name = e->name;
-    std::vector<int> args;
+    Operands args;
     for (const Expr arg : e->args) args.push_back(done.at(&*arg));
     switch (e->kind) {
       case Kind::number: op.value = e->value; break;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "derive/expression/functions.hpp"
+#include "derive/program/few.hpp"
 
 namespace cdot::derive {
 
@@ -40,6 +41,9 @@ class SharedText {
   std::shared_ptr<const std::string> text_;
 };
 
+using Operands = Few<int, 4>;
+using Coefs = Few<Rational, 2>;
+
 // Operands come before their users. Sums and products have any number of operands.
 struct Operation {
   OpKind kind = OpKind::number;
@@ -47,10 +51,10 @@ struct Operation {
   SharedText input;          // input: the symbol's name
   bool is_position = false;  // input: a coordinate of a centre of mass (large, so differences come first)
   Fn fn{};                   // function
-  std::vector<int> args;
-  std::vector<Rational> coefs;  // sum
-  std::vector<int> exponents;   // product, positive
-  SharedText name;              // from the spec, or empty
+  Operands args;
+  Coefs coefs;         // sum
+  Operands exponents;  // product, positive
+  SharedText name;     // from the spec, or empty
   friend bool operator==(const Operation&, const Operation&) = default;
 };
 

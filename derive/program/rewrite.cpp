@@ -11,7 +11,7 @@ Program rewritten(const Program& program, const Rewrite& rewrite) {
     const Operation& op = program.ops[i];
     Made made = rewrite(builder, op, static_cast<int>(i), at);
     if (!made) {
-      std::vector<int> args = op.args;
+      Operands args = op.args;
       for (int& arg : args) arg = at(arg);
       made = builder.rebuild(op, std::move(args));
     }

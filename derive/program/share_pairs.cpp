@@ -82,12 +82,12 @@ Program share_factors(const Program& program, Effort& effort) {
     graph.rewrite(users_of(graph, *pair, factors_in), [&](Graph& builder, const Operation& op) -> Made {
       const auto [x, y] = *factors_in(op, *pair);
       const int times = times_in(op, x, y);
-      std::vector<int> exponents = op.exponents;
+      Operands exponents = op.exponents;
       exponents[x] -= times;
       exponents[y] -= times;
       const auto mapped = [&](std::size_t i) { return builder.now(op.args[i]); };
-      std::vector<int> args{builder.product({mapped(x), mapped(y)}, {1, 1})};
-      std::vector<int> powers{times};
+      Operands args{builder.product({mapped(x), mapped(y)}, {1, 1})};
+      Operands powers{times};
       for (std::size_t i = 0; i < op.args.size(); ++i) {
         if (exponents[i] == 0) continue;
         args.push_back(mapped(i));

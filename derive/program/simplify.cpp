@@ -92,7 +92,7 @@ Program flatten_products(Program program) {
   if (std::ranges::none_of(program.ops, absorbs) && all_needed(uses)) return program;
   return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
     if (!absorbs(op)) return std::nullopt;
-    std::vector<int> args, exponents;
+    Operands args, exponents;
     const auto add = [&](auto&& self, const Operation& product) -> void {
       for (std::size_t i = 0; i < product.args.size(); ++i) {
         if (absorbed(product.args[i], product.exponents[i])) self(self, program.at(product.args[i]));

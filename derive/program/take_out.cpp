@@ -103,7 +103,7 @@ int taken_out(Graph& graph, const Operation& sum, int factor) {
       outer.add(sum.coefs[i], arg);
       continue;
     }
-    std::vector<int> args, exponents;
+    Operands args, exponents;
     if (arg != factor) {
       for (std::size_t k = 0; k < term.args.size(); ++k) {
         const int left = term.exponents[k] - (term.args[k] == factor ? 1 : 0);

@@ -128,7 +128,7 @@ int Algebra::by_time(int op) {
   } else if (o.kind == OpKind::product) {
     Summands terms;
     for (std::size_t i = 0; i < o.args.size(); ++i) {
-      std::vector<int> factors = o.args, exponents = o.exponents;
+      derive::Operands factors = o.args, exponents = o.exponents;
       exponents[i] -= 1;
       if (exponents[i] == 0) factors[i] = value(1), exponents[i] = 1;
       factors.push_back(by_time(o.args[i])), exponents.push_back(1);
@@ -196,8 +196,8 @@ int Algebra::sum(const Summands& terms, const std::string& name) {
   return builder_.sum(std::move(rest), name);
 }
 
-int Algebra::product(const std::vector<int>& args, const std::vector<int>& exponents, const std::string& name) {
-  std::vector<int> rest, powers;
+int Algebra::product(const derive::Operands& args, const derive::Operands& exponents, const std::string& name) {
+  derive::Operands rest, powers;
   Rational whole(1);
   double real = 1;
   int reals = 0, last = -1, last_power = 1;
@@ -228,7 +228,7 @@ int Algebra::product(const std::vector<int>& args, const std::vector<int>& expon
   return builder_.product(std::move(rest), std::move(powers), name);
 }
 
-int Algebra::function(Fn fn, const std::vector<int>& args, const std::string& name) {
+int Algebra::function(Fn fn, const derive::Operands& args, const std::string& name) {
   std::vector<double> values;
   for (const int arg : args) {
     const std::optional<double> known = constant(arg);
@@ -245,7 +245,7 @@ std::map<std::string, int> Algebra::inlined(const Program& program, const std::f
   for (std::size_t i = 0; i < program.ops.size(); ++i) {
     if (uses[i] == 0) continue;
     const Operation& op = program.ops[i];
-    std::vector<int> args;
+    derive::Operands args;
     for (const int arg : op.args) args.push_back(to[static_cast<std::size_t>(arg)]);
     const std::string name = op.name.empty() ? "" : prefix + "_" + op.name.text();
     switch (op.kind) {

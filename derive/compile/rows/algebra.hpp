@@ -42,9 +42,9 @@ class Algebra {
   int fixed(double number, const std::string& name);
   int input(const std::string& text, bool is_position = false);
   int sum(const Summands& terms, const std::string& name = {});
-  int product(const std::vector<int>& args, const std::vector<int>& exponents, const std::string& name = {});
+  int product(const derive::Operands& args, const derive::Operands& exponents, const std::string& name = {});
   int times(int a, int b, const std::string& name = {}) { return product({a, b}, {1, 1}, name); }
-  int function(Fn fn, const std::vector<int>& args, const std::string& name = {});
+  int function(Fn fn, const derive::Operands& args, const std::string& name = {});
 
   // The outputs of a program, by name. `input` gives the inputs; names get the prefix.
   std::map<std::string, int> inlined(const Program& program, const std::function<int(const std::string&)>& input,

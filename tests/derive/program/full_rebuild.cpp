@@ -108,7 +108,7 @@ std::optional<Program> share_a_factor_pair(const Program& program) {
   if (!pair) return std::nullopt;
   return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
     if (op.kind != OpKind::product) return std::nullopt;
-    std::vector<int> exponents = op.exponents;
+    Operands exponents = op.exponents;
     const std::size_t x = index_of(op.args, pair->x), y = index_of(op.args, pair->y);
     if (x == op.args.size() || y == op.args.size()) return std::nullopt;
     const int times = x == y ? exponents[x] / 2 : std::min(exponents[x], exponents[y]);
@@ -116,8 +116,8 @@ std::optional<Program> share_a_factor_pair(const Program& program) {
     exponents[x] -= times;
     exponents[y] -= times;
     const auto mapped = [&](std::size_t i) { return at(op.args[i]); };
-    std::vector<int> args{builder.product({mapped(x), mapped(y)}, {1, 1})};
-    std::vector<int> powers{times};
+    Operands args{builder.product({mapped(x), mapped(y)}, {1, 1})};
+    Operands powers{times};
     for (std::size_t i = 0; i < op.args.size(); ++i) {
       if (exponents[i] == 0) continue;
       args.push_back(mapped(i));
@@ -179,7 +179,7 @@ std::optional<Program> take_out_a_factor(const Program& program) {
         continue;
       }
       const Operation& term = program.at(op.args[i]);
-      std::vector<int> args, exponents;
+      Operands args, exponents;
       if (op.args[i] != f->factor) {
         for (std::size_t k = 0; k < term.args.size(); ++k) {
           const int left = term.exponents[k] - (term.args[k] == f->factor ? 1 : 0);
