@@ -227,6 +227,7 @@ typename S::Scalar improve(WorldData<S>& world, Island<S>& island, typename S::S
     if (renew) {
       system.choose([](const Batch<S>&, int) { return true; });
       island.redundant_rows = system.factor();
+      ++world.solves;
     }
     system.solve();
   }

@@ -80,6 +80,25 @@ TEST(Budgets, PriceFixedStepsByTheirSolves) {
   EXPECT_GT(choice.evaluations, 200);
 }
 
+// Joints alone as well: a step that is too long is taken in parts, and each part solves by Newton's method. A factor of
+// ten joints with their tensions costs more than an evaluation, so the search leaves `implicit` after its first run.
+TEST(Budgets, CountTheSolvesOfJoints) {
+  Scene scene = read_scene((source_dir() / "tests/hard_cases/heavy_load/spatial_beads.toml").string());
+  scene.step = 0;  // a method by default
+  std::string warnings;
+  RunOptions options;
+  options.estimates_error = false;
+  const RunResult found = simulate(scene, options, warnings);
+  ASSERT_TRUE(found.choice);
+  EXPECT_TRUE(found.choice->reached);
+  EXPECT_LE(found.choice->runs_before, 3);
+  scene.settings.integrator = Integrator::implicit, scene.step = scene.duration / 16;
+  const RunResult whole = simulate(scene, options, warnings);
+  EXPECT_EQ(whole.counts.evaluations, 0);
+  EXPECT_GT(whole.solves, 16 * 25);  // more than the most rounds of 16 whole steps
+  EXPECT_GT(work_of(scene, whole), work_of_evaluation(scene) * 16 * 25);
+}
+
 // Twenty bodies on hinges, and twenty free ones: an evaluation is mostly that of the twenty.
 TEST(Budgets, CountEvaluationsOfTheMeanBodysMechanism) {
   std::string text = "duration = 1\n";
