@@ -43,7 +43,8 @@ Blow what_hits(Island<S>& island) {
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
     const T missing = guard.rate - (batch.rate[i] + batch.bias[i]), share = std::abs(missing) / resolution.rate;
     if (!strikes(guard, resolution, missing, batch.law->distance && island.kinked < 0) || !(share > hardest)) return;
-    hardest = share, blow.source = static_cast<int>(batch.source);
+    hardest = share;
+    blow.source = static_cast<int>(batch.source), blow.joint = batch.joint[i / batch.ops->rows];
   });
   return blow;
 }
@@ -61,13 +62,21 @@ void offer_impulses(Island<S>& island) {
   });
 }
 
+// Takes back what offer_impulses() put into Batch::bias.
+template <class S>
+void take_back_rates(Island<S>& island) {
+  using T = typename S::Scalar;
+  each_guarded_row(island, [](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
+    if (may_strike(guard, resolution, batch.law->by_load != nullptr)) batch.bias[i] += guard.rate;
+  });
+}
+
 // Rows that have struck are `held`, because sweeps leave a rate that is not exactly 0.
 template <class S>
 void hold_what_struck(Island<S>& island) {
   using T = typename S::Scalar;
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
     if (!may_strike(guard, resolution, batch.law->by_load != nullptr)) return;
-    batch.bias[i] += guard.rate;
     const bool slips = batch.law->by_load && !(batch.lower[i] < batch.lambda[i] && batch.lambda[i] < batch.upper[i]);
     if (batch.lambda[i] != T(0) && !slips) batch.mode[i] = Mode::held;
   });
@@ -76,9 +85,98 @@ void hold_what_struck(Island<S>& island) {
 // Adds the impulses to those of the step.
 template <class S>
 void count_impulses(const Island<S>& island) {
-  for (const Segment<S>& segment : island.segments)
-    for (int i = segment.begin * segment.batch->ops->rows; i < segment.end * segment.batch->ops->rows; ++i)
-      segment.batch->correction[i] += segment.batch->lambda[i];
+  each_row(island, [](Batch<S>& batch, int i) { batch.correction[i] += batch.lambda[i]; });
+}
+
+// The error [share of rates] that a run by this local error has at least, in a step and in those before it.
+template <class S>
+typename S::Scalar error_of_rates(const WorldData<S>& world) {
+  using T = typename S::Scalar;
+  constexpr double of_steps = 10;
+  return std::max(T(of_steps * world.settings.local_error), T(16) * std::numeric_limits<T>::epsilon());
+}
+
+// The speed of a row if its bodies moved along it, by the velocities in Bodies::displacement.
+template <class S>
+typename S::Scalar speed_along(const WorldData<S>& world, const Island<S>& island, const Batch<S>& batch, int slot,
+                               const Resolution<typename S::Scalar>& resolution) {
+  using T = typename S::Scalar;
+  T pace = 0, v[S::freedom];
+  for (int k = slot * batch.ops->bodies; k < (slot + 1) * batch.ops->bodies; ++k) {
+    S::write(world.bodies.displacement[batch.body[k]], v);
+    T straight = 0, turning = 0;
+    for (int i = 0; i < S::freedom; ++i) (i < S::lengths ? straight : turning) += v[i] * v[i];
+    pace = std::max({pace, std::sqrt(straight) / T(island.size), std::sqrt(turning)});
+  }
+  return resolution.C / slight<T> * pace;
+}
+
+// The blow where ends are met faster by this share of what the speeds may be: from the velocities in
+// Bodies::displacement.
+template <class S>
+void strike_faster(WorldData<S>& world, Island<S>& island, typename S::Scalar share) {
+  using T = typename S::Scalar;
+  Bodies<S>& all = world.bodies;
+  const auto meet_faster = [&](T by) {
+    each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
+      if (guard.one_sided() && guard.gap() <= resolution.C)
+        batch.bias[i] -= by * speed_along(world, island, batch, i / batch.ops->rows, resolution);
+    });
+  };
+  for (int i : island.bodies) all.velocity[i] = all.displacement[i];
+  fill_lambda(island, T(0));  // a jam would keep its load
+  offer_impulses(island);
+  meet_faster(share);
+  solve(world, island, all.velocity.data());
+  meet_faster(-share);
+  take_back_rates(island);
+}
+
+// |change of the velocities| / |velocities at the start| in the metric of the masses, between ends that are met by this
+// share of their rates faster and slower.
+template <class S>
+double change_by(WorldData<S>& world, Island<S>& island, typename S::Scalar share) {
+  using T = typename S::Scalar;
+  Bodies<S>& all = world.bodies;
+  strike_faster(world, island, -share);
+  for (int i : island.bodies) all.increment[i] = all.velocity[i];
+  strike_faster(world, island, share);
+  double changed = 0, whole = 0;
+  for (int i : island.bodies) {
+    const auto d = S::sum(all.velocity[i], all.increment[i], T(-1)), &start = all.displacement[i];
+    changed += S::dot(S::force(all.inverse_mass[i], d), d);
+    whole += S::dot(S::force(all.inverse_mass[i], start), start);
+    all.velocity[i] = start, all.increment[i] = {};
+  }
+  return std::sqrt(changed / whole);
+}
+
+// True if an error as small as that of the steps changes the blow a thousand times as much. Friction that jams, since
+// it grows with the load that it causes, begins at any load. The state stays that before the blow.
+template <class S>
+bool is_undecided(WorldData<S>& world, Island<S>& island) {
+  constexpr double most = 1e3, at_most = 0.1;
+  const bool jams = island.jams;
+  for (int i : island.bodies) world.bodies.displacement[i] = world.bodies.velocity[i];
+  each_row(island, [](Batch<S>& batch, int i) {
+    batch.impulse[i] = batch.lambda[i];
+    if (batch.law && batch.law->cone_rows > 0) batch.error[i] = batch.share_of_cone(i);
+  });
+  const auto error = error_of_rates(world);
+  const bool undecided = change_by(world, island, error) > std::min(most * double(error), at_most);
+  each_row(island, [](Batch<S>& batch, int i) {
+    batch.lambda[i] = batch.impulse[i];
+    if (batch.law && batch.law->cone_rows > 0) batch.share_of_cone(i) = batch.error[i];
+  });
+  island.jams = jams;
+  return undecided;
+}
+
+// Counts a blow that is undecided.
+template <class S>
+void judge_blow(WorldData<S>& world, Island<S>& island, const Blow& blow) {
+  if (!is_undecided(world, island)) return;
+  if (world.counts->undecided++ == 0) world.counts->undecided_joint = blow.joint;
 }
 
 }  // namespace
@@ -89,8 +187,10 @@ bool stop_what_hits(WorldData<S>& world, Island<S>& island, typename S::Scalar t
   const Blow now = what_hits(island);
   if (now.source < 0) return false;
   blow = now, blow.left = kinetic_energy(world, island);
+  if (world.settings.local_error > 0 && island.flow.locates && !island.loads.empty()) judge_blow(world, island, blow);
   offer_impulses(island);
   solve(world, island, world.bodies.velocity.data());
+  take_back_rates(island);
   hold_what_struck(island);
   end_blow(world, island, blow);
   count_impulses(island);

@@ -10,7 +10,7 @@ inline constexpr double impact_time = 1e-3;
 
 // The row that strikes hardest, and the kinetic energy of the island [J] that is not booked yet. source -1: no blow.
 struct Blow {
-  int source = -1;
+  int source = -1, joint = -1;
   double left = 0;
 };
 

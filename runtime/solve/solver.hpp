@@ -54,4 +54,15 @@ const RowSolver<S>& solver_of(Solver solver) {
   return all[static_cast<std::size_t>(solver)]();
 }
 
+// f(i) for the rows of slots, f(batch, i) for those of an island.
+template <class S, class F>
+void each_row(const Batch<S>& batch, int begin, int end, F f) {
+  for (int i = begin * batch.ops->rows; i < end * batch.ops->rows; ++i) f(i);
+}
+template <class S, class F>
+void each_row(const Island<S>& island, F f) {
+  for (const Segment<S>& segment : island.segments)
+    each_row(*segment.batch, segment.begin, segment.end, [&](int i) { f(*segment.batch, i); });
+}
+
 }  // namespace cdot

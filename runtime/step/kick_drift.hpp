@@ -1,20 +1,10 @@
 // Stages that RATTLE and the implicit midpoint rule share: their steps are kicks by impulses and drifts by velocities.
 #pragma once
 
+#include "runtime/solve/solver.hpp"
 #include "runtime/state/world_data.hpp"
 
 namespace cdot {
-
-// f(i) for the rows of slots, f(batch, i) for those of an island.
-template <class S, class F>
-void each_row(const Batch<S>& batch, int begin, int end, F f) {
-  for (int i = begin * batch.ops->rows; i < end * batch.ops->rows; ++i) f(i);
-}
-template <class S, class F>
-void each_row(const Island<S>& island, F f) {
-  for (const Segment<S>& segment : island.segments)
-    each_row(*segment.batch, segment.begin, segment.end, [&](int i) { f(*segment.batch, i); });
-}
 
 // True if it has velocity rows, motors or friction, whose impulses of the end act once more at the start of the next
 // step.

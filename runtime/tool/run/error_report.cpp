@@ -36,6 +36,16 @@ std::string trajectory_warning(const Scene& scene, const RunResult& result) {
   return above(warned_trajectory_share(scene), scene, result);
 }
 
+std::string decision_warning(const Scene& scene, const RunResult& result) {
+  const long long count = result.counts.undecided;
+  if (count == 0) return {};
+  return fmt::format(
+      "{} blow{} undecided, first by t = {:.6g} s at joint \"{}\": an error as small as that of the steps makes friction "
+      "jam there, or not, so the error of the motion after it is not sure",
+      count, count == 1 ? " is" : "s are", result.first_undecided,
+      name_in(scene.joints, static_cast<int>(result.counts.undecided_joint)));
+}
+
 std::string error_text(const Scene& scene, const TrajectoryError& error) {
   return fmt::format(
       "  trajectory      off by about {:.1g} m and {:.1g} rad ({}, t = {:.6g} s), by other steps at {} places\n",

@@ -15,6 +15,9 @@ double warned_trajectory_share(const Scene& scene);
 std::string trajectory_failure(const Scene& scene, const RunResult& result);
 std::string trajectory_warning(const Scene& scene, const RunResult& result);
 
+// Of blows that the errors of steps decide; empty if there are none. Without a fix.
+std::string decision_warning(const Scene& scene, const RunResult& result);
+
 std::string error_text(const Scene& scene, const TrajectoryError& error);
 text::Json error_json(const Scene& scene, const TrajectoryError& error);
 

@@ -212,6 +212,8 @@ std::string summary_text(const Scene& asked, const RunResult& result) {
     text += fmt::format("  warning         {}. {}\n", lost, fix_of(result, "a shorter step"));
   if (const std::string off = trajectory_warning(scene, result); !off.empty())
     text += fmt::format("  warning         {}. {}\n", off, fix_of(result, "a shorter step"));
+  if (const std::string open = decision_warning(scene, result); !open.empty())
+    text += fmt::format("  warning         {}. {}\n", open, fix_of(result, "a smaller local error"));
   if (const std::string lack = warning_of_accuracy(scene, result); !lack.empty())
     text += fmt::format("  warning         {}\n", lack);
   const std::string why = failure(asked, result);
@@ -259,6 +261,7 @@ std::string summary_json(const Scene& asked, const RunResult& result) {
       {"warning", balance_warning(scene, result)},
       {"trajectory_warning", trajectory_warning(scene, result)},
       {"accuracy_warning", warning_of_accuracy(scene, result)},
+      {"decision_warning", decision_warning(scene, result)},
       {"redundant_rows", result.redundant_rows},
       {"rank_losses", rank_losses_json(scene, result.rank_losses)},
       {"retried", {{"steps", result.counts.retried}, {"direct", result.counts.direct}}},
@@ -269,7 +272,8 @@ std::string summary_json(const Scene& asked, const RunResult& result) {
   if (result.counts.evaluations > 0)
     json["own_steps"] = {{"evaluations", result.counts.evaluations}, {"taken", result.counts.taken},
                          {"rejected", result.counts.rejected},       {"events", result.counts.events},
-                         {"rescued", result.counts.rescued},         {"steered", result.counts.steered}};
+                         {"rescued", result.counts.rescued},         {"steered", result.counts.steered},
+                         {"undecided", result.counts.undecided}};
   for (std::size_t k = 0; k < result.sensors.size(); ++k)
     json["sensors"].push_back({{"name", scene.sensors[k].name},
                                {"unit", scene.sensors[k].unit},

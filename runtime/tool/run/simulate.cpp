@@ -170,6 +170,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     else worst_step.look(world, energy, k, bool(options.look), result.balance);
     if (result.first_rescue < 0 && world.step_counts().rescued > 0)
       result.first_rescue = after.time, result.at_rescue = largest_force(world);
+    if (result.first_undecided < 0 && world.step_counts().undecided > 0) result.first_undecided = after.time;
     if (every_step) options.row(after);
     requested.after_step(before, after);
     if (k > 0 && options.estimates_error) error.after_step(world, before, after, k);

@@ -88,8 +88,9 @@ struct RunResult {
   int redundant_rows = 0;
   std::vector<RankLoss> rank_losses;
   std::vector<std::string> broken_joints, notes;
-  double first_rescue = -1;  // [s] end of the step that an implicit method first had to finish; below 0: none
-  LargestForce at_rescue;    // of a joint, there
+  double first_rescue = -1;     // [s] end of the step that an implicit method first had to finish; below 0: none
+  LargestForce at_rescue;       // of a joint, there
+  double first_undecided = -1;  // [s] end of the step in which a blow was first undecided; below 0: none
   bool finite = true, interrupted = false;
   bool stopped = false;                   // by RunOptions::look or most_evaluations
   std::optional<StepResult> failed_step;  // the run ended before it

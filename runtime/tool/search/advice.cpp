@@ -101,7 +101,7 @@ std::vector<Candidate> finer_accuracies(const Scene& scene, bool reached) {
 
 bool needs_advice(const Scene& scene, const RunResult& result) {
   return !failure(scene, result).empty() || !balance_warning(scene, result).empty() ||
-         !trajectory_warning(scene, result).empty();
+         !trajectory_warning(scene, result).empty() || !decision_warning(scene, result).empty();
 }
 
 namespace {

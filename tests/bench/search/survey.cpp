@@ -11,6 +11,7 @@
 
 #include <cdot/methods.hpp>
 
+#include "runtime/tool/run/error_report.hpp"
 #include "runtime/tool/search/yardstick.hpp"
 #include "tests/bench/search/runs.hpp"
 
@@ -70,6 +71,7 @@ void survey(const Scene& scene, const std::vector<double>& times, std::optional<
   std::string warnings;
   const Run run = search_of(scene, times, most_evaluations, warnings);
   ++counts.runs;
+  if (warnings.empty()) warnings = decision_warning(scene, run.result);
   Yardstick yardstick(scene);
   const std::string name = fmt::format("{} at {:.0e}", short_name(scene), yardstick.asked());
   const bool reached = run.whole && run.result.choice->reached;
@@ -120,7 +122,7 @@ void study_survey(const std::vector<Scene>& scenes) {
     }
   }
   fmt::print(
-      "{} runs: {} fail, {} are told at the start, {} have no sure reference; of {} others {} above their claim, {} "
+      "{} runs: {} fail, {} are told, {} have no sure reference; of {} others {} above their claim, {} "
       "above {} times, the largest at {:.2f}\n",
       counts.runs, counts.failed, counts.told, counts.unknown, counts.compared, counts.above, counts.far_above,
       most_of_claim, counts.worst);

@@ -253,5 +253,34 @@ TEST(LoadedEffects, PainlevesRodJams) {
   }
 }
 
+// The same rod meets the line at 1e-8 of the speed at which it slides. Then it jams, and stops by an impulse; leaving
+// the line as slowly it slides on. So an error of 1e-5 decides between 4.8 J and 8 J, and one of 1e-11 does not.
+TEST(LoadedEffects, TheErrorOfStepsDecidesWhetherARodJams) {
+  constexpr double m = 1, l = 1, I = m * l * l / 3, v0 = 4, slowly = 1e-8 * v0;
+  const double tilt = std::atan(2.0), s = std::sin(tilt), c = std::cos(tilt);
+  const auto run = [&](double local_error, double vy, double mu) {
+    Settings settings = with(Integrator::dop853, 0);
+    settings.local_error = local_error;
+    World<double> world(settings);
+    const int rod = world.add_body({.x = -l * c, .y = l * s, .vx = v0, .vy = vy, .mass = m, .inertia = I});
+    world.add_joint({"rough_line",
+                     {rod, world.ground()},
+                     {{"pa", {l * c, -l * s}}, {"pb", {0, 0}}, {"n", {0, 1}}, {"mu", {mu}}},
+                     {}});
+    EXPECT_TRUE(world.step(1e-6));
+    return std::pair(world.energy(), world.step_counts());
+  };
+  const auto [jammed, exact] = run(1e-12, -slowly, 2);
+  EXPECT_LT(jammed, 5);
+  EXPECT_EQ(exact.undecided, 0);
+  EXPECT_NEAR(run(1e-12, slowly, 2).first, 8, 1e-6);
+  const auto [loose_energy, loose] = run(1e-6, -slowly, 2);
+  EXPECT_EQ(loose_energy, jammed);
+  EXPECT_EQ(loose.undecided, 1);
+  EXPECT_EQ(loose.undecided_joint, 0);
+  EXPECT_EQ(run(1e-6, -1, 2).second.undecided, 0);  // a blow that jams in any case
+  EXPECT_EQ(run(1e-6, -slowly, 0.2).second.undecided, 0);
+}
+
 }  // namespace
 }  // namespace cdot::test

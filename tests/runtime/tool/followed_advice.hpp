@@ -10,7 +10,10 @@ struct Ran {
   int status = -1;  // of the process
   nlohmann::json summary;
   // It ended with exit 0 and without a warning.
-  bool silent() const { return status == 0 && summary["warning"] == "" && summary["trajectory_warning"] == ""; }
+  bool silent() const {
+    return status == 0 && summary["warning"] == "" && summary["trajectory_warning"] == "" &&
+           summary["decision_warning"] == "";
+  }
 };
 
 // `cdot-run simulate FILE OPTIONS --json`.

@@ -281,5 +281,41 @@ TEST(Balance, MomentaOfFreeBodiesAreWatched) {
   EXPECT_GT(double(held.summary["balance"]["angular_momentum"]["scale"]), 3);
 }
 
+// Painlevé's rod meets a rough line at 1e-8 of its speed: there it jams, or leaves the line untouched. The advice is to
+// take steps whose errors are smaller than that.
+constexpr const char* doubtful_rod = R"(
+duration = 0.05
+step = 0.01
+gravity = [0, 0]
+[[body]]
+name = "rod"
+mass = 1
+inertia = 0.3333333333333333
+position = [-0.4472135954999579, 0.8944271909999159]
+velocity = [4, -4e-8]
+[[joint]]
+name = "line"
+type = "rough_line"
+bodies = ["rod", "world"]
+pa = [0.4472135954999579, -0.8944271909999159]
+pb = [0, 0]
+n = [0, 1]
+mu = 2
+)";
+
+TEST(Decisions, ThatErrorsTakeAreTold) {
+  const TemporaryFolder folder;
+  const std::string file = written(folder, doubtful_rod);
+  const Ran loose = simulated(file, "--integrator dop853 --local-error 1e-6");
+  EXPECT_EQ(loose.status, 0);
+  const std::string told = loose.summary["decision_warning"];
+  EXPECT_NE(told.find("1 blow is undecided, first by t = 0.01 s at joint \"line\": "), std::string::npos) << told;
+  EXPECT_EQ(loose.summary["own_steps"]["undecided"], 1);
+  EXPECT_EQ(loose.summary["advice"]["options"], "--local-error 1e-10") << loose.summary.dump(2);
+  EXPECT_EQ(simulated(file, "--integrator dop853 --local-error 1e-10").summary["decision_warning"], "");
+  const Ran searched = simulated(file, "--accuracy 1e-4");
+  EXPECT_NE(searched.summary["decision_warning"], "") << searched.summary.dump(2);
+}
+
 }  // namespace
 }  // namespace cdot::test::advice_test
