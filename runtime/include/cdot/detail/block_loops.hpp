@@ -59,20 +59,48 @@ struct BlockLoops : BlockSlots<S, Joint, Block> {
     Turns::start(block_of<Block>(batch), q, first_parameter(batch, slot), time, counters(batch, slot));
   }
 
-  // C of a slot as its bodies move and its parameters follow functions of time.
+  // f(poses, parameters, time) of a slot as jets: its bodies move and its parameters follow functions of time.
+  template <class F>
+  static void along_motion(const Batch<S>& batch, int slot, const Pose (&q)[bodies], const Velocity (&v)[bodies],
+                           T time, F f) {
+    decltype(moving(q[0], v[0])) poses[bodies];
+    for (int k = 0; k < bodies; ++k) poses[k] = moving(q[k], v[k]);
+    f(poses, jets_of<typename Joint::template Parameters<Jet<T>>>(batch, slot, false), Jet<T>{time, T(1), T(0)});
+  }
   [[gnu::noinline]] static void motion(const Batch<S>& batch, int slot, const Pose (&q)[bodies],
                                        const Velocity (&v)[bodies], T time, Jet<T> (&C)[rows]) {
-    using Moving = decltype(moving(q[0], v[0]));
-    Moving poses[bodies];
-    for (int k = 0; k < bodies; ++k) poses[k] = moving(q[k], v[k]);
-    using Jets = typename Joint::template Parameters<Jet<T>>;
-    block_of<Block>(batch).position(poses, jets_of<Jets>(batch, slot, false), Jet<T>{time, T(1), T(0)}, C);
+    along_motion(batch, slot, q, v, time, [&](const auto& poses, const auto& p, const Jet<T>& now) {
+      block_of<Block>(batch).position(poses, p, now, C);
+    });
   }
+  // J v of a slot at constant v.
+  [[gnu::noinline]] static void change_of_rates(const Batch<S>& batch, int slot, const Pose (&q)[bodies],
+                                                const Velocity (&v)[bodies], T time, Jet<T> (&Jv)[rows]) {
+    along_motion(batch, slot, q, v, time, [&](const auto& poses, const auto& p, const Jet<T>& now) {
+      typename Block::template Jacobian<Jet<T>> J;
+      decltype(steady(v[0])) of[bodies];
+      for (int k = 0; k < bodies; ++k) of[k] = steady(v[k]);
+      Jet<T> C[rows];
+      block_of<Block>(batch).jacobian(poses, p, now, C, J);
+      block_of<Block>(batch).velocity(J, of, Jv);
+    });
+  }
+
+  // True of rows of velocities. Numbers in time have no others beside these (check_functions()).
+  static bool lacks_position(const Batch<S>& batch) {
+    if constexpr (is_made_by_program<Block>) return block_of<Block>(batch).lacks_position();
+    else return may_lack_position;
+  }
+  static constexpr bool may_lack_position = [] {
+    if constexpr (is_made_by_program<Block>) return true;
+    else return rows > 0 && Block::row_kinds[0] == RowKind::velocity;
+  }();
 
   // dC/dt of the slots whose parameters follow functions of time, into the bias.
   static void drift_in_time(Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time) {
     for (int slot = begin; slot < end; ++slot) {
       if (batch.drives_of(slot).empty()) continue;
+      if (lacks_position(batch)) continue;
       Pose q[bodies];
       gather(all.pose, bodies_of(batch, slot), q);
       Jet<T> C[rows];
@@ -81,7 +109,7 @@ struct BlockLoops : BlockSlots<S, Joint, Block> {
     }
   }
 
-  // gamma of these slots: -d^2C/dt^2 without accelerations.
+  // gamma of these slots: -d^2C/dt^2, or -d(J v)/dt, without accelerations.
   static void gamma_in_time(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time, T* out) {
     for (int slot = begin; slot < end; ++slot) {
       if (batch.drives_of(slot).empty()) continue;
@@ -89,9 +117,12 @@ struct BlockLoops : BlockSlots<S, Joint, Block> {
       Velocity v[bodies];
       gather(all.pose, bodies_of(batch, slot), q);
       gather(all.velocity, bodies_of(batch, slot), v);
-      Jet<T> C[rows];
-      motion(batch, slot, q, v, time, C);
-      for (int r = 0; r < rows; ++r) out[slot * rows + r] = -C[r].second;
+      Jet<T> of_rows[rows];
+      const bool of_rates = lacks_position(batch);
+      if constexpr (may_lack_position)
+        if (of_rates) change_of_rates(batch, slot, q, v, time, of_rows);
+      if (!of_rates) motion(batch, slot, q, v, time, of_rows);
+      for (int r = 0; r < rows; ++r) out[slot * rows + r] = -(of_rates ? of_rows[r].first : of_rows[r].second);
     }
   }
 

@@ -45,6 +45,16 @@ Numbers jets_of(const Batch<S>& batch, int slot, bool of_row) {
   return jets;
 }
 
+// The same velocity at all times.
+template <class T>
+planar::Velocity<Jet<T>> steady(const planar::Velocity<T>& v) {
+  return {v.x, v.y, v.w};
+}
+template <class T>
+spatial::Velocity<Jet<T>> steady(const spatial::Velocity<T>& v) {
+  return {v.x, v.y, v.z, v.wx, v.wy, v.wz};
+}
+
 // A body that moves at the velocity v without acceleration.
 template <class T>
 planar::Pose<Jet<T>> moving(const planar::Pose<T>& q, const planar::Velocity<T>& v) {
