@@ -76,6 +76,15 @@ int overloaded_joint(const WorldData<S>& world, const Island<S>& island, double 
 }
 
 template <class S>
+double distance_from_break(const WorldData<S>& world, const Bond& bond, double time) {
+  const Island<S>& island = world.islands[world.island_of[movable_body(world, world.joints[bond.joint])]];
+  const auto load = [&](const auto& of, const JointRecord& record) {  // blows have been judged apart where located
+    return (island.flow.locates ? force_on(of, record) : impulse_on(of, record)) / of.last_step;
+  };
+  return distance_of(world, bond, time, load);
+}
+
+template <class S>
 bool break_by_lambda(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar over) {
   if (island.bonds.empty() || !island.solver->exact) return false;
   const auto load = [&](const auto&, const JointRecord& record) { return force_on(world, record) / double(over); };
@@ -135,6 +144,7 @@ void measure_margins_of_bonds(const WorldData<S>& world, Island<S>& island, doub
 
 #define CDOT_INSTANTIATE(S)                                                             \
   template int overloaded_joint(const WorldData<S>&, const Island<S>&, double, double); \
+  template double distance_from_break(const WorldData<S>&, const Bond&, double);        \
   template bool break_by_lambda(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar);       \
   template void break_joint(WorldData<S>&, Island<S>&, int, double);                    \
   template void find_rows(WorldData<S>&, Island<S>&);                                   \

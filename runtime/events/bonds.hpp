@@ -10,6 +10,10 @@ namespace cdot {
 template <class S>
 int overloaded_joint(const WorldData<S>& world, const Island<S>& island, double time, double h);
 
+// How far a joint is from breaking by the last substep, which ended at `time`; infinite if it is broken.
+template <class S>
+double distance_from_break(const WorldData<S>& world, const Bond& bond, double time);
+
 // Takes the rows of the joint out of its island. It does not allocate. Evaluate anew afterwards.
 template <class S>
 void break_joint(WorldData<S>& world, Island<S>& island, int joint, double time);

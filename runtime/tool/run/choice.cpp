@@ -53,6 +53,9 @@ std::string lack(const Choice& choice) {
   if (!std::isfinite(choice.achieved))
     return fmt::format("{} is not known: no two runs of one method ended well within the search's budget{}", asked,
                        rest);
+  if (choice.knows_means)
+    return fmt::format("{} is not assured: equal steps know the mean of a load alone, and joints may break by more{}",
+                       asked, rest);
   if (choice.achieved <= choice.asked) return fmt::format("{} is not assured{}", asked, rest);
   return fmt::format("{} holds up to t = {:.6g} s; later on two runs differ by up to {:.1e}{}", asked,
                      choice.holds_until, choice.achieved, rest);

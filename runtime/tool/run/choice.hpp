@@ -24,6 +24,7 @@ struct Choice {
   double first_rescue = 0;           // [s]
   long long evaluations = 0;         // of accelerations, in the run; for fixed steps their equivalent
   bool paced = false;                // its steps follow those of a run before (runtime/state/pace.hpp)
+  bool knows_means = false;          // of loads by which a joint may break, alone
   bool ended_by_budget = false;      // the search did, in vain
   int runs_before = 0;               // the one delivered
   long long evaluations_before = 0;  // in these

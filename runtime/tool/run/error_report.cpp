@@ -38,9 +38,15 @@ std::string trajectory_warning(const Scene& scene, const RunResult& result) {
 
 std::string decision_warning(const Scene& scene, const RunResult& result) {
   const long long count = result.counts.undecided;
+  if (const NearBreak& near = result.near_break; count == 0 && near.joint >= 0)
+    return fmt::format(
+        "joint {} is within {:.2g} % of breaking at t = {:.6g} s, and the error of its load is about {:.2g} %: whether "
+        "it holds is not sure",
+        joint_name(scene, near.joint), 100 * near.distance, near.time, 100 * near.error);
   if (count == 0) return {};
   return fmt::format(
-      "{} blow{} undecided, first by t = {:.6g} s at joint \"{}\": an error as small as that of the steps makes friction "
+      "{} blow{} undecided, first by t = {:.6g} s at joint \"{}\": an error as small as that of the steps makes "
+      "friction "
       "jam there, or not, so the error of the motion after it is not sure",
       count, count == 1 ? " is" : "s are", result.first_undecided,
       name_in(scene.joints, static_cast<int>(result.counts.undecided_joint)));

@@ -15,7 +15,8 @@ double warned_trajectory_share(const Scene& scene);
 std::string trajectory_failure(const Scene& scene, const RunResult& result);
 std::string trajectory_warning(const Scene& scene, const RunResult& result);
 
-// Of blows that the errors of steps decide; empty if there are none. Without a fix.
+// Of blows that the errors of steps decide, or of a joint that may break by them; empty if there are none. Without a
+// fix.
 std::string decision_warning(const Scene& scene, const RunResult& result);
 
 std::string error_text(const Scene& scene, const TrajectoryError& error);

@@ -213,7 +213,8 @@ std::string summary_text(const Scene& asked, const RunResult& result) {
   if (const std::string off = trajectory_warning(scene, result); !off.empty())
     text += fmt::format("  warning         {}. {}\n", off, fix_of(result, "a shorter step"));
   if (const std::string open = decision_warning(scene, result); !open.empty())
-    text += fmt::format("  warning         {}. {}\n", open, fix_of(result, "a smaller local error"));
+    text += fmt::format("  warning         {}. {}\n", open,
+                        fix_of(result, own_steps ? "a smaller local error" : "a shorter step"));
   if (const std::string lack = warning_of_accuracy(scene, result); !lack.empty())
     text += fmt::format("  warning         {}\n", lack);
   const std::string why = failure(asked, result);

@@ -159,12 +159,15 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   Frame after = before;
   result.energy_start = before.energy;
   auto next_diagnosis = options.diagnose_times.begin();
+  result.may_break = !data.bonds.empty();
   RankWatch rank;
+  BreakWatch breaks(scene.settings);
   WorstStepWatch<S> worst_step(told_share(scene), steps.count());
   ErrorEstimate<S> error(scene, steps.count());
   for (long long k = 0;; ++k) {
     judge(scene, after, result);
     if (k > 0) rank.look(after.time, world.weakest_row());
+    if (k > 0) breaks.look(world, after.time);
     if (!result.finite) break;
     if (k == 0) worst_step.begin(world, energy, result.balance);
     else worst_step.look(world, energy, k, bool(options.look), result.balance);
@@ -212,6 +215,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   if (std::isnan(result.energy_end)) result.without_energy = effect_without_energy(data);
   rank.end();
   result.rank_losses = rank.found();
+  result.near_break = breaks.found(world);
   result.worst_step = worst_step.found();
   error.finish(after, result.steps);
   result.error = error.error();

@@ -15,6 +15,7 @@
 #include "runtime/tool/run/frame.hpp"
 #include "runtime/tool/run/process.hpp"
 #include "runtime/tool/scene/scene.hpp"
+#include "runtime/tool/watch/near_break.hpp"
 #include "runtime/tool/watch/rank_watch.hpp"
 #include "runtime/tool/watch/worst.hpp"
 #include "runtime/tool/watch/worst_step.hpp"
@@ -88,8 +89,10 @@ struct RunResult {
   int redundant_rows = 0;
   std::vector<RankLoss> rank_losses;
   std::vector<std::string> broken_joints, notes;
-  double first_rescue = -1;     // [s] end of the step that an implicit method first had to finish; below 0: none
-  LargestForce at_rescue;       // of a joint, there
+  double first_rescue = -1;  // [s] end of the step that an implicit method first had to finish; below 0: none
+  LargestForce at_rescue;    // of a joint, there
+  NearBreak near_break;
+  bool may_break = false;       // joints may, by their loads
   double first_undecided = -1;  // [s] end of the step in which a blow was first undecided; below 0: none
   bool finite = true, interrupted = false;
   bool stopped = false;                   // by RunOptions::look or most_evaluations

@@ -100,8 +100,11 @@ void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse
                                  (std::isfinite(coarse.achieved) && converges(coarse, fine) && falls);
   // Two runs may agree by chance on steps that were left to another method: no gain is sure there.
   const bool rescued = fine.result.counts.rescued > 0;
-  fine.reached = known && seems_to_converge && balanced(scene, fine) &&
-                 std::max(fine.achieved, rescued ? apart : 0) <= yardstick.asked();
+  const bool agrees = known && seems_to_converge && balanced(scene, fine) &&
+                      std::max(fine.achieved, rescued ? apart : 0) <= yardstick.asked();
+  // A joint may break by a load that is over before the step ends.
+  fine.knows_means = agrees && fine.result.may_break && !fine.knob.adaptive();
+  fine.reached = agrees && !fine.knows_means;
   if (fine.reached) fine.holds_until = scene.duration;
   const double claim =
       rescued ? std::max(apart, coarse.apart) : std::max(margin * fine.achieved, unseen_error(yardstick, fine));

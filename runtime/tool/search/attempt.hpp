@@ -30,7 +30,8 @@ struct Attempt {
   double claimed = std::numeric_limits<double>::infinity();   // Choice::achieved
   double holds_until = 0;
   bool reached = false;
-  double foreseen = 0;  // distance from the run before at the end, if it made the run end early
+  bool knows_means = false;  // it would have reached the accuracy, but equal steps know the mean of a load alone
+  double foreseen = 0;       // distance from the run before at the end, if it made the run end early
 };
 
 struct Distance {

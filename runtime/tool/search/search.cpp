@@ -196,7 +196,7 @@ void Search::keep(Attempt&& attempt) {
 
 // The share of the last error that the next run may have; nothing if this candidate has no prospects.
 std::optional<double> Search::next_share(const Attempt& last, const Attempt& now, int& idle) {
-  if (now.result.stopped) return {};
+  if (now.result.stopped || now.knows_means) return {};
   const bool failed_before = !last.frames.empty() && !last.whole;
   // Smaller local errors get no further.
   if (now.knob.adaptive() && !now.whole && failed_before && now.result.time <= last.result.time) return {};
@@ -379,6 +379,7 @@ Choice Search::choice_of(const Attempt& attempt) const {
   choice.holds_until = attempt.holds_until;
   choice.rescued = attempt.result.counts.rescued;
   choice.first_rescue = attempt.result.first_rescue;
+  choice.knows_means = attempt.knows_means;
   choice.ended_by_budget = !attempt.reached && out_of_budget();
   choice.paced = attempt.paced_by != nullptr;
   choice.evaluations = std::llround(attempt.price);

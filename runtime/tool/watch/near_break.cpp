@@ -1,0 +1,49 @@
+#include "runtime/tool/watch/near_break.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/events/bonds.hpp"
+
+namespace cdot {
+namespace {
+
+// Errors of loads in local errors, where a method chooses its steps and locates what breaks.
+constexpr double errors_of_loads = 1e4;
+
+}  // namespace
+
+// Equal steps know the mean of a load. Within a step it may differ from that by as much as from one step to the next.
+template <class S>
+void BreakWatch::look(BasicWorld<S>& world, double time) {
+  const WorldData<S>& data = world.data();
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  before_.resize(data.bonds.size(), unknown), nearest_.resize(data.bonds.size());
+  for (std::size_t k = 0; k < data.bonds.size(); ++k) {
+    const double distance = distance_from_break(data, data.bonds[k], time);
+    const double error = local_error_ > 0 ? errors_of_loads * local_error_ : std::abs(distance - before_[k]);
+    const NearBreak now{data.bonds[k].joint, std::max(0.0, distance), error, time};
+    const NearBreak& most = nearest_[k];
+    if (distance < error && (most.joint < 0 || now.share() > most.share())) nearest_[k] = now;
+    before_[k] = distance;
+  }
+}
+
+template <class S>
+NearBreak BreakWatch::found(const BasicWorld<S>& world) const {
+  NearBreak most;
+  for (const NearBreak& one : nearest_)
+    if (one.joint >= 0 && !world.broken(one.joint) && (most.joint < 0 || one.share() > most.share())) most = one;
+  return most;
+}
+
+#define CDOT_INSTANTIATE(S)                               \
+  template void BreakWatch::look(BasicWorld<S>&, double); \
+  template NearBreak BreakWatch::found(const BasicWorld<S>&) const;
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

@@ -1,0 +1,36 @@
+// Joints that hold, though the error of their load may be all that keeps them from breaking.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <cdot/world.hpp>
+
+#include "runtime/tool/scene/scene.hpp"
+
+namespace cdot {
+
+struct NearBreak {
+  int joint = -1;                  // -1: none
+  double distance = 0, error = 0;  // from the end of its strength, as a share of it
+  double time = 0;                 // [s], of the step's end
+  double share() const { return error / distance; }
+};
+
+class BreakWatch {
+ public:
+  explicit BreakWatch(const Settings& settings) : local_error_(settings.local_error) {}
+  // After every step.
+  template <class S>
+  void look(BasicWorld<S>& world, double time);
+  // The least sure of the joints that hold at the end.
+  template <class S>
+  NearBreak found(const BasicWorld<S>& world) const;
+
+ private:
+  double local_error_;
+  std::vector<double> before_;      // distance after the last step, by bond
+  std::vector<NearBreak> nearest_;  // by bond
+};
+
+}  // namespace cdot

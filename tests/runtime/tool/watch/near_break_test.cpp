@@ -1,0 +1,55 @@
+// Joints that hold by less than the error of their load.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "runtime/text/files.hpp"
+#include "tests/runtime/tool/followed_advice.hpp"
+#include "tests/runtime/tool/support.hpp"
+
+namespace cdot::test::near_break_test {
+namespace {
+
+// A rod of 1 kg and 1 m falls from level about its end. There w^2 = 3 g / l at the lowest point, and the pin carries
+// m g + m w^2 l / 2 = 2.5 m g = 24.525 N.
+Ran rod_on_a_pin(const TemporaryFolder& folder, double strength, const std::string& options) {
+  const std::string file = (folder / "rod.toml").string();
+  text::write_file(file, fmt::format("duration = 1\nstep = 0.01\n[[body]]\nname = \"rod\"\nmass = 1\n"
+                                     "shape = {{ rod = 1 }}\nposition = [0.5, 0]\n[[joint]]\nname = \"pin\"\n"
+                                     "type = \"revolute\"\nbodies = [\"world\", \"rod\"]\nat = [0, 0]\n"
+                                     "breaking = {}\n",
+                                     strength));
+  return simulated(file, options);
+}
+
+constexpr double most = 2.5 * 9.81;  // [N]
+
+TEST(NearBreak, IsToldWhereTheErrorOfTheLoadDecides) {
+  const TemporaryFolder folder;
+  const auto told = [&](double strength, const std::string& options) {
+    return std::string(rod_on_a_pin(folder, strength, options).summary["decision_warning"]);
+  };
+  for (const std::string steps : {"--integrator rattle", "--integrator implicit", "--integrator rk4"}) {
+    const std::string warning = told(1.0005 * most, steps);
+    EXPECT_EQ(warning.find("joint \"pin\" is within 0."), 0u) << steps << ": " << warning;
+    EXPECT_EQ(told(1.1 * most, steps), "") << steps;
+  }
+  EXPECT_NE(told(1.0005 * most, "--integrator dop853 --local-error 1e-6"), "");
+  EXPECT_EQ(told(1.0005 * most, "--integrator dop853 --local-error 1e-9"), "");
+}
+
+TEST(NearBreak, IsNotToldOfWhatBreaks) {
+  const TemporaryFolder folder;
+  const Ran ran = rod_on_a_pin(folder, 0.99 * most, "--integrator rattle");
+  EXPECT_EQ(ran.summary["decision_warning"], "");
+  EXPECT_EQ(ran.summary["broken_joints"].size(), 1u);
+}
+
+TEST(NearBreak, ComesWithAFixThatWasTried) {
+  const TemporaryFolder folder;
+  const Ran ran = rod_on_a_pin(folder, 1.0005 * most, "--integrator rattle");
+  const std::string options = ran.summary["advice"]["options"];
+  EXPECT_TRUE(rod_on_a_pin(folder, 1.0005 * most, "--integrator rattle " + options).silent()) << options;
+}
+
+}  // namespace
+}  // namespace cdot::test::near_break_test
