@@ -111,5 +111,29 @@ TEST(OwnCones, ABrakeOfThreeTurnsKeepsTheAxis) {
   }
 }
 
+// A ball whose radius grows, r = 1 + t, rolls on a plane: v = w r, m dv/dt = -I dw/dt / r, so that w^2 (m r^2 + I)
+// stays.
+TEST(OwnCones, ABallThatGrowsRollsMoreSlowly) {
+  constexpr double m = 2, I = 0.5, w0 = 1.5;
+  const std::string growing = own_effect(
+      "own_growing_ball",
+      "  point pa on a = x(a)\n  point pb on b\n  frame f on b\n  scalar radius [m] above 0\n  scalar mu from 0\n"
+      "  coordinate gap [m] = dot(pa - pb, f.x) - radius\n"
+      "  coordinate slip_y [m] = velocity dot(f.y, v(pa) - cross(w(a), radius*f.x))\n"
+      "  coordinate slip_z [m] = velocity dot(f.z, v(pa) - cross(w(a), radius*f.x))\n  contact: gap >= 0\n"
+      "  grip: rate(slip_y) = 0, rate(slip_z) = 0, norm(force) <= mu*load(contact)");
+  const Profile grows = Profile::table({.times = {0, 1}, .values = {1, 2}, .interpolation = Interpolation::linear});
+  for (const IntegratorRow& row : integrator_rows) {
+    OneBody run(row.integrator, 9.81, {w0, 0, 1}, {0, w0, 0});
+    run.world.add_joint({growing,
+                         {run.body, run.world.ground()},
+                         {{"pb", {0, 0, -1}}, {"f", {0, 0, 1, 1, 0, 0}}, in_time("radius", {grows}), {"mu", {5}}},
+                         {}});
+    run.take(100);
+    const double w = w0 * std::sqrt((m + I) / (4 * m + I));
+    EXPECT_NEAR(run.spin().y, w, row.order > 2 ? 1e-6 : 1e-2) << row.name;
+  }
+}
+
 }  // namespace
 }  // namespace cdot::test
