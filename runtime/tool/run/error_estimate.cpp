@@ -22,14 +22,19 @@ constexpr int more_substeps = 3, more_iterations = 4;
 // going back as one more each. The search for a sample goes on in shorter runs too: where a crank passes its dead
 // centre, all of a run's error may be made in one step.
 constexpr double affordable = 0.05, free_steps = 20, price_of_return = 1;
-// Samples by parts are twice as dear: in shorter runs they cost at most so many steps and this share more.
+// Samples by parts are twice as dear, and RK4 asks for few others: in shorter runs they cost at most so many steps and
+// this share more.
 constexpr double free_parts = 6, free_share = 0.1;
-// A run of up to some thousand steps has at most this many samples. A longer run has one within some steps.
-constexpr long long usual_samples = 7, most_spacing = 700;
+// A run of up to some thousand steps has at most this many samples. A longer run has one within some steps. In a run of
+// some dozen steps, where they are dearest, there are fewer, and more where one by rates costs no step. In runs of up
+// to some dozen steps such a sample is shorter, so that it costs less to make anew.
+constexpr long long usual_samples = 7, fewer_samples = 6, some_dozens[] = {40, 140}, by_rates_samples = 14,
+                    most_spacing = 700;
 // Of the difference in the sample before: what RATTLE's rounds may leave of C in a step that is taken to be compared.
 constexpr double hardly = 0.03;
-// Of the share that warns: an estimate by longer steps that promises more by the end of the run is made anew.
-constexpr double doubted = 0.25;
+// Of the share that warns: an estimate by longer steps, or by rates, that promises more by the end of the run is made
+// anew.
+constexpr double doubted = 0.25, doubted_by_rates = 1;
 constexpr double half_turn = 3.141592653589793;  // a larger error of an angle has no meaning
 
 using Vector = std::array<double, 3>;
@@ -57,6 +62,11 @@ double time_scale(double speed, double change, double most) {
   return change > 0 ? std::min(most, std::sqrt(speed / change)) : most;
 }
 
+template <class S>
+long long divisions(const BasicWorld<S>& world) {
+  return world.step_counts().retried + world.step_counts().rejected;
+}
+
 Scene with_more_sweeps(Scene scene) {
   scene.settings.substeps *= more_substeps;
   scene.settings.iterations *= more_iterations;
@@ -67,22 +77,32 @@ Scene with_more_sweeps(Scene scene) {
 
 template <class S>
 ErrorEstimate<S>::ErrorEstimate(const Scene& scene, long long steps)
-    : scene_(scene), steps_(steps), warned_(warned_trajectory_share(scene)), size_(extents_of(scene).of_body) {
+    : scene_(scene),
+      steps_(steps),
+      warned_(warned_trajectory_share(scene)),
+      rates_(steps < some_dozens[1] ? ErrorsByRates<S>::fewest : ErrorsByRates<S>::most),
+      size_(extents_of(scene).of_body) {
   for (const double size : size_) is_point_.push_back(size == 0);
   total_.sums.resize(size_.size()), sample_.resize(size_.size());
-  // The midpoint rule divides long steps unseen.
-  const bool divides = scene.settings.integrator == Integrator::implicit;
-  const double few = divides ? free_parts + free_share * static_cast<double>(steps) : free_steps;
+  const Settings& settings = scene.settings;
+  const bool divides = settings.integrator == Integrator::implicit;  // the midpoint rule does so unseen to long steps
+  const bool exact = sizeof(typename S::Scalar) == sizeof(double);   // floats round by more than steps of RK4 err
+  const bool tells = exact && settings.integrator == Integrator::rk4 && settings.substeps == 1;
+  const double few = divides || tells ? free_parts + free_share * static_cast<double>(steps) : free_steps;
   budget_ = affordable * static_cast<double>(steps) + std::min(few, free_steps);
   parts_ = divides ? parts_of_halved : parts_of_one;
   const bool whole = steps >= steps_as_one && !divides;
-  choose(sweeps(scene.settings.solver) ? By::more_sweeps : whole ? By::longer_steps : By::shorter_steps);
+  choose(sweeps(settings.solver)            ? By::more_sweeps
+         : tells && steps >= rates_.steps() ? By::own_rates
+         : whole                            ? By::longer_steps
+                                            : By::shorter_steps);
   // A method that chooses its steps has an estimate of its own.
   next_ = scene.settings.local_error > 0 ? never() : std::min((spacing_ + 1) / 2, steps - window_ + 1);
 }
 
 template <class S>
 double ErrorEstimate<S>::price() const {
+  if (by_ == By::own_rates) return price_of_return;
   const int more = by_ == By::longer_steps ? 1 : by_ == By::shorter_steps ? parts_ : more_substeps * more_iterations;
   return more + price_of_return;
 }
@@ -90,9 +110,11 @@ double ErrorEstimate<S>::price() const {
 template <class S>
 void ErrorEstimate<S>::choose(By by) {
   by_ = by;
-  window_ = by == By::longer_steps ? steps_as_one : 1;
+  window_ = by == By::own_rates ? rates_.steps() : by == By::longer_steps ? steps_as_one : 1;
   const auto paid = static_cast<long long>(budget_ / price());
-  spacing_ = std::max({1LL, std::min(steps_ / usual_samples, most_spacing), steps_ / std::max(1LL, paid)});
+  const bool dear = steps_ > some_dozens[0] && steps_ < some_dozens[1];
+  const long long usual = dear ? fewer_samples : by == By::own_rates ? by_rates_samples : usual_samples;
+  spacing_ = std::max({1LL, std::min(steps_ / usual, most_spacing), steps_ / std::max(1LL, paid)});
 }
 
 template <class S>
@@ -109,7 +131,8 @@ void ErrorEstimate<S>::before_step(BasicWorld<S>& run, long long k, double h) {
   if (k != next_) return;
   spent_ += price();
   run.snapshot_into(start_);
-  length_ = h;
+  length_ = h, taken_ = true;
+  if (by_ == By::own_rates) return;
   const bool by_sweeps = by_ == By::more_sweeps;
   if (by_sweeps && !sweeper_) sweeper_ = build_world_in<S>(with_more_sweeps(scene_));
   if (by_sweeps) sweeper_->restore(start_);
@@ -117,35 +140,48 @@ void ErrorEstimate<S>::before_step(BasicWorld<S>& run, long long k, double h) {
   if (!by_sweeps) run.restore(start_);
 }
 
-// From the start of the window on.
 template <class S>
 bool ErrorEstimate<S>::take_instead(BasicWorld<S>& world, int steps) {
-  const long long divided = world.step_counts().retried;
-  world.data().enough = by_ == By::longer_steps ? hardly * difference_ : 0;
+  const long long divided = divisions(world);
+  const bool longer = steps < window_;
+  const double parts = by_ == By::more_sweeps ? more_substeps : static_cast<double>(steps) / window_;
+  share_ = 1 / (1 - std::pow(parts, -row_of(scene_.settings.integrator).order));
+  world.data().enough = longer ? hardly * difference_ : 0;
   bool stepped = true;
   for (int k = 0; stepped && k < steps; ++k) stepped = bool(world.step(window_ * length_ / steps));
   world.data().enough = 0;
   if (!stepped) return false;
   instead_ = states_of(world, static_cast<int>(total_.sums.size()));
-  return by_ != By::longer_steps || world.step_counts().retried == divided;
+  return !longer || divisions(world) == divided;
 }
 
 template <class S>
-double ErrorEstimate<S>::share_of_difference() const {
-  const double shorter = by_ == By::more_sweeps ? more_substeps : by_ == By::shorter_steps ? parts_ : 1.0 / window_;
-  return 1 / (1 - std::pow(shorter, -row_of(scene_.settings.integrator).order));
+bool ErrorEstimate<S>::accept(const Frame& before, const Frame& after, long long k, double most) {
+  if (!taken_) return false;
+  Total kept = total_;
+  add(before, after, k);
+  const double promised = total_.error.share * static_cast<double>(steps_) / static_cast<double>(k);
+  if (window_ == 1 || promised <= most * warned_) return true;
+  total_ = std::move(kept);
+  return false;
 }
 
 template <class S>
 void ErrorEstimate<S>::after_step(BasicWorld<S>& run, const Frame& before, const Frame& after, long long k) {
+  if (k < next_) return;
+  const bool by_rates = by_ == By::own_rates;
+  if (by_rates) taken_ = taken_ && rates_.add(run.data(), static_cast<int>(k - next_), length_);
   if (k != next_ + window_ - 1) return;
-  Total kept = total_;
-  if (taken_) add(before, after, k);
-  const double promised = total_.error.share * static_cast<double>(steps_) / static_cast<double>(k);
-  if (by_ == By::longer_steps && (!taken_ || promised > doubted * warned_)) {
-    total_ = std::move(kept);
+  if (by_rates && taken_) rates_.read(run.data(), sample_);
+  else if (taken_) compare(after);
+  bool accepted = accept(before, after, k, by_rates ? doubted_by_rates : doubted);
+  if (by_rates && !taken_) {
+    take_anew(run, after, window_ / 2);
+    accepted = accept(before, after, k, doubted);
+  }
+  if (!accepted && window_ > 1) {
     by_ = By::shorter_steps;
-    take_anew(run);
+    take_anew(run, after, parts_ * window_);
     if (taken_) add(before, after, k);
     choose(by_);
   }
@@ -153,15 +189,14 @@ void ErrorEstimate<S>::after_step(BasicWorld<S>& run, const Frame& before, const
   if (taken_) last_ = k;
 }
 
-// The window by shorter steps.
 template <class S>
-void ErrorEstimate<S>::take_anew(BasicWorld<S>& run) {
-  const int steps = parts_ * window_;
+void ErrorEstimate<S>::take_anew(BasicWorld<S>& run, const Frame& after, int steps) {
   spent_ += steps + 2 * price_of_return;
   run.snapshot_into(end_);
   run.restore(start_);
   taken_ = take_instead(run, steps);
   run.restore(end_);
+  if (taken_) compare(after);
 }
 
 template <class S>
@@ -170,16 +205,23 @@ void ErrorEstimate<S>::finish(const Frame& last, long long steps) {
 }
 
 template <class S>
+void ErrorEstimate<S>::compare(const Frame& after) {
+  for (std::size_t i = 0; i < sample_.size(); ++i) {
+    const BodyState &to = after.bodies[i], &other = instead_[i];
+    sample_[i] = {};
+    add_to(sample_[i].position, minus(position(to), position(other)), share_);
+    add_to(sample_[i].angle, turn<S>(other, to), share_);
+    add_to(sample_[i].velocity, minus(velocity(to), velocity(other)), share_);
+    add_to(sample_[i].spin, minus(spin(to), spin(other)), share_);
+  }
+}
+
+template <class S>
 void ErrorEstimate<S>::add(const Frame& before, const Frame& after, long long k) {
   if (first_.bodies.empty()) first_ = before;
-  const double h = after.time - before.time, share = share_of_difference();
+  const double h = after.time - before.time;
   for (std::size_t i = 0; i < sample_.size(); ++i) {
-    const BodyState &from = before.bodies[i], &to = after.bodies[i], &other = instead_[i];
-    sample_[i] = {};
-    add_to(sample_[i].position, minus(position(to), position(other)), share);
-    add_to(sample_[i].angle, turn<S>(other, to), share);
-    add_to(sample_[i].velocity, minus(velocity(to), velocity(other)), share);
-    add_to(sample_[i].spin, minus(spin(to), spin(other)), share);
+    const BodyState &from = before.bodies[i], &to = after.bodies[i];
     total_.speeds[0] += square(velocity(to)), total_.speeds[1] += square(spin(to));
     total_.changes[0] += square(minus(velocity(to), velocity(from))) / (h * h);
     total_.changes[1] += square(minus(spin(to), spin(from))) / (h * h);
@@ -198,7 +240,7 @@ void ErrorEstimate<S>::find_difference() {
     largest = std::max(largest, norm(sample_[i].position) / size_[i]);
     least_size = std::min(least_size, size_[i]);
   }
-  difference_ = std::isfinite(least_size) ? largest * least_size / std::abs(share_of_difference()) : 0;
+  difference_ = std::isfinite(least_size) ? largest * least_size / std::abs(share_) : 0;
 }
 
 template <class S>
@@ -207,7 +249,7 @@ void ErrorEstimate<S>::add_sums(const Frame& after, long long k) {
   const double linear = time_scale(total_.speeds[0], total_.changes[0], after.time),
                angular = time_scale(total_.speeds[1], total_.changes[1], after.time);
   for (std::size_t body = 0; body < sample_.size(); ++body) {
-    Sums& sums = total_.sums[body];
+    BodyError& sums = total_.sums[body];
     add_to(sums.position, sample_[body].position, scale), add_to(sums.angle, sample_[body].angle, scale);
     add_to(sums.velocity, sample_[body].velocity, scale), add_to(sums.spin, sample_[body].spin, scale);
     judge(after, body, linear, angular);
@@ -218,7 +260,7 @@ template <class S>
 void ErrorEstimate<S>::judge(const Frame& after, std::size_t body, double linear, double angular) {
   double& size = size_[body];
   if (is_point_[body]) size = std::max(size, norm(minus(position(after.bodies[body]), position(first_.bodies[body]))));
-  const Sums& sums = total_.sums[body];
+  const BodyError& sums = total_.sums[body];
   const double position = norm(sums.position) + linear * norm(sums.velocity);
   const double angle = std::min(half_turn, norm(sums.angle) + angular * norm(sums.spin));
   const double share = std::max(size > 0 ? position / size : 0, angle);

@@ -4,7 +4,8 @@
 // three by e = d / (1 - 3^p), d being the difference (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary
 // Differential Equations I", 1993, II.4). That formula need not hold for a step of three times the length.
 // Where such steps fail, are divided, or promise a warning, steps are taken in parts from there on: dearer, and true at
-// longer steps. For sweeps a second World takes the step, with more of them.
+// longer steps. For sweeps a second World takes the step, with more of them. RK4 tells its errors by its own rates, but
+// for steps with events.
 //
 // The errors of the steps add up with their signs, as those of a symplectic method cancel along an orbit: an error s of
 // velocities displaces a body by s T, where T is the time in which the motion changes, the root of sum v^2 / sum a^2.
@@ -19,6 +20,7 @@
 
 #include "runtime/tool/run/frame.hpp"
 #include "runtime/tool/scene/scene.hpp"
+#include "runtime/tool/watch/errors_by_rates.hpp"
 
 namespace cdot {
 
@@ -45,15 +47,12 @@ class ErrorEstimate {
 
  private:
   using Vector = std::array<double, 3>;
-  struct Sums {
-    Vector position{}, angle{}, velocity{}, spin{};  // of a body's errors
-  };
   struct Total {
-    std::vector<Sums> sums;  // by body
+    std::vector<BodyError> sums;  // by body
     Vector speeds{}, changes{};
     TrajectoryError error;
   };
-  enum class By { longer_steps, shorter_steps, more_sweeps };
+  enum class By { own_rates, longer_steps, shorter_steps, more_sweeps };
 
   void choose(By by);
   // Of a sample, in steps of the run.
@@ -61,10 +60,13 @@ class ErrorEstimate {
   long long never() const { return steps_ + 1; }
   // Finds the next sample after one that ends with step `k`.
   void find_next(long long k);
-  double share_of_difference() const;
-  void take_anew(BasicWorld<S>& run);
+  // Takes the window in so many steps, from its start on, and compares.
+  void take_anew(BasicWorld<S>& run, const Frame& after, int steps);
   // False if one of them fails, or is divided.
   bool take_instead(BasicWorld<S>& world, int steps);
+  void compare(const Frame& after);
+  // Adds the sample, unless there is none or it promises more than `most` of the share that warns.
+  bool accept(const Frame& before, const Frame& after, long long k, double most);
   void add(const Frame& before, const Frame& after, long long k);
   void find_difference();
   // The last sample stands for the steps since the one before it, and at the end of the run for those that follow.
@@ -74,6 +76,7 @@ class ErrorEstimate {
   const Scene& scene_;
   const long long steps_;
   const double warned_;  // a share
+  ErrorsByRates<S> rates_;
   By by_;
   int window_;                            // steps of the run in a sample
   long long spacing_, next_, last_ = 0;   // first step of the next sample, last step of the previous one
@@ -81,10 +84,11 @@ class ErrorEstimate {
   double budget_, spent_ = 0;             // for all samples, and on those so far, in steps
   Snapshot start_, end_;                  // of a window
   double length_ = 0;                     // of a step in it [s]
-  bool taken_ = false;                    // the steps instead were
+  bool taken_ = false;                    // the steps instead were, or those of the run tell their errors
+  double share_ = 1;                      // of a difference that is the run's error
   std::optional<BasicWorld<S>> sweeper_;  // the second World
   std::vector<BodyState> instead_;        // at the end of the steps taken instead
-  std::vector<Sums> sample_;              // the last one: errors of a window
+  std::vector<BodyError> sample_;         // the last one: errors of a window
   int window_of_sample_ = 1;
   double difference_ = 0;  // in the last sample, as a share of its mechanism, times the size of the smallest [m]
   Total total_;

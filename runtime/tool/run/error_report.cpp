@@ -54,7 +54,7 @@ std::string decision_warning(const Scene& scene, const RunResult& result) {
 
 std::string error_text(const Scene& scene, const TrajectoryError& error) {
   return fmt::format(
-      "  trajectory      off by about {:.1g} m and {:.1g} rad ({}, t = {:.6g} s), by other steps at {} places\n",
+      "  trajectory      off by about {:.1g} m and {:.1g} rad ({}, t = {:.6g} s), estimated at {} places\n",
       error.position, error.angle, body_name(scene, error.body), error.time, error.samples);
 }
 
