@@ -222,6 +222,8 @@ class EquationWriter {
       out_.waits += std::string(b == 0 ? "" : ", ") + (waits(blocks_, b) ? "true" : "false");
       out_.cones += fmt::format("{}{}", b == 0 ? "" : ", ", mechanism_.bounded[b].cone);
       out_.has_ends |= has_ends(blocks_, b), out_.has_events |= has_events(blocks_, b);
+      const bool late = is_late_end(blocks_, b, out_.constants);
+      out_.has_late_ends |= late, out_.late += std::string(b == 0 ? "" : ", ") + (late ? "true" : "false");
     }
     if (out_.has_events) out_.distances = distances_of(blocks_, out_.constants);
     if (mechanism_.on_accelerations() && !mechanism_.bounded.empty()) {

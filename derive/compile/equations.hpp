@@ -52,8 +52,9 @@ struct Equations {
   // Of rows with bounds:
   std::string is_rate;  // "true, false", by row
   std::string cones;    // "-1, 1, 1", by row: the first row of its cone
-  bool has_ends = false, has_events = false;
+  bool has_ends = false, has_events = false, has_late_ends = false;
   std::string waits;      // "true, false", by row: it waits for an event
+  std::string late;       // and is an end
   Program reach;          // q, time, J -> B: their part in a projection
   Program past;           // q, time -> past: errors
   Program nearest;        // q, time -> off, side: of the nearer end; not by Euler's steps

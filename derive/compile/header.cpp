@@ -197,7 +197,7 @@ class HeaderWriter {
                      "distances(" + at + ", " + moving + (has().forces ? ", const T (&force)[bounded]" : "") +
                          ", T (&after)[bounded], T (&until)[bounded])",
                      equations_.distances);
-      text_ += latch_of(equations_.waits, has());
+      text_ += latch_of(equations_.waits, has()) + approach_of(mechanism_, equations_.late, has());
     }
     if (has().bonds) {
       write_function("How far joints are from breaking", "strain(" + arguments_of_strain(mechanism_),

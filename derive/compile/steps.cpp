@@ -170,6 +170,7 @@ Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
           .bounded = !mechanism.bounded.empty(),
           .ends = equations.has_ends,
           .events = equations.has_events,
+          .late_ends = equations.has_late_ends,
           .forces = mechanism.has_events_by_force(),
           .spatial = mechanism.spatial(),
           .gyroscopes = mechanism.has_gyroscopes(),
@@ -205,7 +206,7 @@ Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
 
 Calls calls_of(Method method, const Contents& has) {
   Calls calls{.evaluate = 1, .errors = 2, .rates = 1, .solve = 2};  // the corrections
-  if (has.ends) calls.past = 2;
+  if (has.ends) calls.past = has.approaches() ? 3 : 2;
   if (has.events) calls.distances = 1;
   if (has.modes) calls.guard = 2, calls.reach = 1;
   if (method == Method::rattle) {
@@ -296,23 +297,12 @@ long state_bytes_of(const Mechanism& mechanism, const Equations& equations, cons
           long(equations.constants.inputs.size()) + 2 * mechanism.angles);
 }
 
-std::string begin_of(Method method, const Contents& has) {
+namespace {
+
+// The poses onto C = 0 and the velocities onto J v = -dC/dt, at the start of a run or beyond an end.
+std::string closing_of(Method method, const Contents& has) {
   const bool accelerates = works_on_accelerations(method);
-  std::string text =
-      "\n  // Makes a State whole after its poses, velocities or time were set.\n  static void begin(State& s) {\n"
-      "    turn(s.q);\n";
-  if (has.gyroscopes) text += accelerates ? "$W" : "    wind(s);\n";
-  text += "$C";
-  if (has.bounded && (has.midpoint || has.weighs)) text += "    for (T& of_row : s.force) of_row = T(0);\n";
-  if (has.strides()) text += "    s.modes = {};\n";
-  if (has.cones) text += "    for (T& of_row : s.share) of_row = T(0);\n";
-  if (has.events) text += "    latch(s);\n";
-  if (has.rows) text += "    for (int i = 0; i < rows; ++i) s.lambda[i] = T(0);\n";
-  if (has.carries_over()) {
-    text += "    for (T& of_row : s.load) of_row = T(0);\n    for (T& of_row : s.before) of_row = T(0);\n";
-    if (has.rows) text += "    for (T& of_row : s.drawn) of_row = T(0);\n";
-  }
-  if (has.repeats()) text += "    for (T& of_row : s.repeats) of_row = T(0);\n";
+  std::string text;
   if (has.modes) text += "    hold_passed_ends(s);\n";
   if (has.closes()) text += "    s.residual = T(1e30);\n";
   if (has.rows) text += evaluates;
@@ -329,17 +319,72 @@ std::string begin_of(Method method, const Contents& has) {
     text += "    project(s);\n    accelerate($ss.q, s.time, s.v, s.J, s.lambda, s.a);\n";
   else if ((method == Method::rattle || method == Method::implicit) && has.rows) text += "    project(s);\n";
   else if (accelerates) text += "    fall($ss.q, s.time, s.v, s.a);\n";
+  return text;
+}
+
+// As the World does it: Island::residual of runtime/events/latch.cpp. A step that closed such an end on its way would
+// throw its bodies.
+constexpr const char* approaches = R"(
+  // Where ends began to hold that are passed: bodies move there, as at the start of a run.
+  static void approach(State& s) {{
+    constexpr bool late[bounded] = {{{0}}};
+    T by[bounded];
+    past($ss.q, s.time, by);
+    Mask some = T(1) < T(0);
+    for (int i = 0; i < bounded; ++i)
+      if (late[i]) some = some || magnitude(by[i]) > T((single ? 1e9 : 1e5) * {1});
+    if (!any(some)) return;
+    const State passed = s;
+{2}{3}    replace(s, passed, !some);
+  }}
+)";
+
+}  // namespace
+
+std::string approach_of(const Mechanism& mechanism, const std::string& late, const Contents& has) {
+  if (!has.approaches()) return "";
+  return fmt::format(approaches, late, mechanism.tolerance, closing_of(mechanism.method, has),
+                     has.modes ? "    s.modes.known = T(0);\n" : "");
+}
+
+std::string begin_of(Method method, const Contents& has) {
+  std::string text =
+      "\n  // Makes a State whole after its poses, velocities or time were set.\n  static void begin(State& s) {\n"
+      "    turn(s.q);\n";
+  if (has.gyroscopes) text += works_on_accelerations(method) ? "$W" : "    wind(s);\n";
+  text += "$C";
+  if (has.bounded && (has.midpoint || has.weighs)) text += "    for (T& of_row : s.force) of_row = T(0);\n";
+  if (has.strides()) text += "    s.modes = {};\n";
+  if (has.cones) text += "    for (T& of_row : s.share) of_row = T(0);\n";
+  if (has.events) text += "    latch(s);\n";
+  if (has.rows) text += "    for (int i = 0; i < rows; ++i) s.lambda[i] = T(0);\n";
+  if (has.carries_over()) {
+    text += "    for (T& of_row : s.load) of_row = T(0);\n    for (T& of_row : s.before) of_row = T(0);\n";
+    if (has.rows) text += "    for (T& of_row : s.drawn) of_row = T(0);\n";
+  }
+  if (has.repeats()) text += "    for (T& of_row : s.repeats) of_row = T(0);\n";
+  text += closing_of(method, has);
   if (has.pulls()) text += "    for (Velocity& of_body : s.pull) of_body = still();\n";
   if (has.exerts) text += "    for (T& of_group : s.begins) of_group = T(1);\n";
   return text + "  }\n";
 }
 
-std::string step_of(const Mechanism& mechanism, const Contents& has) {
+namespace {
+
+std::string text_of_step(const Mechanism& mechanism, const Contents& has) {
   if (mechanism.method == Method::euler) return euler(mechanism, has);
   if (mechanism.method == Method::rattle) return rattle(mechanism.tolerance, has);
   if (mechanism.method == Method::implicit) return implicit(mechanism, has);
   if (mechanism.method == Method::radau5) return radau(mechanism, has);
   return runge_kutta(mechanism.method, has, slope_size(mechanism, has.apart).rates <= few_rates);
+}
+
+}  // namespace
+
+std::string step_of(const Mechanism& mechanism, const Contents& has) {
+  std::string text = text_of_step(mechanism, has);
+  if (has.approaches()) text.insert(text.find('\n', text.find(step_head)) + 1, "    approach(s);\n");
+  return text;
 }
 
 }  // namespace cdot::compile

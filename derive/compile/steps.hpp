@@ -25,6 +25,8 @@ long operations_of(const Equations& equations, const Calls& calls);
 // Of a State of double.
 long state_bytes_of(const Mechanism& mechanism, const Equations& equations, const Contents& has);
 
+// approach(), for ends that wait for events; late: "true, false", by row.
+std::string approach_of(const Mechanism& mechanism, const std::string& late, const Contents& has);
 std::string begin_of(Method method, const Contents& has);
 std::string step_of(const Mechanism& mechanism, const Contents& has);
 

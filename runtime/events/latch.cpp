@@ -4,6 +4,8 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/solve/misfits.hpp"
+
 namespace cdot {
 namespace {
 
@@ -32,23 +34,50 @@ bool latch_events(Island<S>& island, Load load) {
   return any;
 }
 
-// A hook of Model::after_substep. Methods that locate events have found those of the step.
+// How far the island's ends with events are passed, at most. What holds a coordinate on both sides stops it in a step.
+template <class S>
+typename S::Scalar passed_by(const Island<S>& island) {
+  using T = typename S::Scalar;
+  T worst = 0;
+  for (const Segment<S>& segment : island.segments) {
+    if (!has_events(segment) || !segment.batch->law->error) continue;
+    for (int i = segment.begin; i < segment.end; ++i) {
+      Guard<T> guard;
+      segment.batch->law->guard(*segment.batch, i, &guard);
+      if (guard.one_sided()) worst = std::max(worst, -guard.gap());
+    }
+  }
+  return worst;
+}
+
+// The events at the end of a substep of h. Methods that locate events have found those of the step.
+template <class S>
+bool meet_events(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  if (island.flow.locates) return false;
+  using T = typename S::Scalar;
+  for (const Segment<S>& segment : island.segments) {
+    if (!has_events(segment)) continue;
+    Batch<S>& batch = *segment.batch;
+    // C alone is rounded otherwise than beside J, which a state restored has.
+    if (!island.evaluated) batch.ops->position(batch, segment.begin, segment.end, world.bodies, T(world.time) + h);
+    batch.ops->velocity(batch, segment.begin, segment.end, world.bodies.velocity.data(), batch.rate.data());
+  }
+  return latch_by_impulses(island, h);
+}
+
+// A hook of Model::after_substep. An end that began to hold where it is passed is an error of the next start, whose
+// projection moves the bodies there. A step that closed it on its way would throw them.
 template <class S>
 void latch_after_substep(WorldData<S>& world, typename S::Scalar h) {
   using T = typename S::Scalar;
   for (const int index : world.awake) {
     Island<S>& island = world.islands[index];
-    if (island.flow.locates) continue;
-    bool any = false;
-    for (const Segment<S>& segment : island.segments) {
-      if (!has_events(segment)) continue;
-      Batch<S>& batch = *segment.batch;
-      any = true;
-      // C alone is rounded otherwise than beside J, which a state restored has.
-      if (!island.evaluated) batch.ops->position(batch, segment.begin, segment.end, world.bodies, T(world.time) + h);
-      batch.ops->velocity(batch, segment.begin, segment.end, world.bodies.velocity.data(), batch.rate.data());
-    }
-    if (!any || !latch_by_impulses(island, h)) continue;
+    if (std::none_of(island.segments.begin(), island.segments.end(), has_events<S>)) continue;
+    const bool any = meet_events(world, island, h);
+    const T by = passed_by(island);
+    const bool passed = by > foreign<T> * island.scale;
+    if (!any && !(island.flow.locates && passed)) continue;
+    if (passed) island.residual = std::max<T>(island.residual, by);
     island.evaluated = island.factored = false;
     island.rested = 0.0;
     island.flow.forget();

@@ -12,6 +12,7 @@ namespace cdot::compile {
 struct Contents {
   bool rows = false, effects = false, bounded = false, ends = false;
   bool events = false;                                       // among rows with bounds some that begin or end to act
+  bool late_ends = false;                                    // that wait for an event
   bool forces = false;                                       // by the force that a row carries
   bool spatial = false, gyroscopes = false, angles = false;  // angles: that count whole turns
   // By RATTLE: effects act by their rates at the start; rates at the end are looked for; the end solves for more than
@@ -47,9 +48,10 @@ struct Contents {
   bool weighs_joints() const { return weighs && (bonds || loads) && rows; }
   bool shares_impulses() const { return shares && weighs_joints(); }
   bool closes() const { return (rows || ends) && !open; }
+  bool approaches() const { return late_ends && closes(); }
   bool stiffens() const { return midpoint && (rows || bounded) && (turns || taut); }  // by tension
   bool weighs_blows() const { return snaps && modes; }                                // of impacts, as loads of joints
-  bool replaces() const { return strides() || midpoint || collocated > 0; }           // some lanes of a State
+  bool replaces() const { return strides() || midpoint || collocated > 0 || approaches(); }  // some lanes of a State
   bool pulls() const { return rattle && (rows || bounded); }  // a State has its joints' accelerations
 };
 

@@ -128,4 +128,10 @@ bool has_ends(const RowBlocks& blocks, std::size_t bounded) {
   return !prescribes_rate(blocks, bounded) && !blocks.mechanism().bounded[bounded].acts_by_force();
 }
 
+bool is_late_end(const RowBlocks& blocks, std::size_t bounded, Constants& constants) {
+  if (!has_ends(blocks, bounded) || !waits(blocks, bounded)) return false;
+  Algebra algebra(constants);
+  return !BoundWriter(blocks, algebra, bounded).holds();
+}
+
 }  // namespace cdot::compile

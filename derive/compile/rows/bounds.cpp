@@ -283,6 +283,11 @@ BoundWriter::Kick BoundWriter::of_pull(int h, int bias, int softness) const {
   return {if_slack(way, bias), if_slack(zero, softness), zero, algebra_.value(boundless)};
 }
 
+bool BoundWriter::holds() const {
+  const std::optional<double> apart = algebra_.constant(ends().apart);
+  return apart && *apart <= 0;
+}
+
 // The part of C beyond the end.
 int BoundWriter::past() const {
   const int zero = algebra_.value(0);

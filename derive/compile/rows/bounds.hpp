@@ -46,6 +46,8 @@ class BoundWriter {
     int value, rate, force;
   };
   Resolution resolution() const;
+  // True if its ends are one.
+  bool holds() const;
   // The part of C that the projection removes.
   int past() const;
   // C - end of the nearer end, 0 without ends; the side: 1 for the lower one, -1 for the upper one, 0 for both.
@@ -106,6 +108,8 @@ bool prescribes_rate(const RowBlocks& blocks, std::size_t bounded);
 // True for a row that begins or ends to act at an event. The input events.acts tells whether it acts.
 bool has_events(const RowBlocks& blocks, std::size_t bounded);
 bool waits(const RowBlocks& blocks, std::size_t bounded);
+// It has one end, or two that are apart, and waits for an event: an end may be passed as it begins to hold.
+bool is_late_end(const RowBlocks& blocks, std::size_t bounded, Constants& constants);
 // q, v, time -> after, until: the distances from the events of rows with bounds, at most 0 where one happens.
 Program distances_of(const RowBlocks& blocks, Constants& constants);
 // q, v, time -> B: of each row its distance from the end that it serves, what its rate misses of the prescribed one,

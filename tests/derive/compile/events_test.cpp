@@ -3,6 +3,11 @@
 
 #include "events_euler.hpp"
 #include "events_rattle.hpp"
+#include "late_ends_euler.hpp"
+#include "late_ends_implicit.hpp"
+#include "late_ends_radau5.hpp"
+#include "late_ends_rattle.hpp"
+#include "late_ends_rk4.hpp"
 #include "tests/derive/compile/beside_world.hpp"
 
 namespace {
@@ -41,9 +46,38 @@ TEST(CompiledEvents, ASnapshotKeepsThem) {
   EXPECT_EQ(kept.events.acts[Scene::hub_angle_timed_motor], 0);
 }
 
+// Runge-Kutta methods meet the event within a step, which tells that an end is passed. The next one moves the bodies.
+template <class Scene>
+void tells_as_the_world(const std::string& file, Integrator integrator) {
+  auto world = cdot::world_of(cdot::read_scene(std::string(CDOT_SOURCE_DIR) + "/" + file), integrator);
+  typename Scene::State state;
+  Scene::reset(state);
+  int told = 0;
+  for (int k = 0; k < 700; ++k) {
+    ASSERT_TRUE(world.step(0.001));
+    const double by = Scene::step(state, 0.001);
+    EXPECT_NEAR(by, world.worst_passed_end().by, 1e-8);
+    EXPECT_LT(cdot::distance<Scene>(state, world), 1e-10);
+    told += by > 1e-3;
+  }
+  EXPECT_EQ(told, 2);
+}
+
+// A step that closed such an end on its way would throw the bodies: a bob at 0.06 rad from it by 60 rad/s.
+TEST(CompiledEvents, EndsThatArePassedAsTheyBeginThrowNoBody) {
+  const std::string scene = "tests/derive/compile/scenes/late_ends.toml";
+  cdot::runs_as_the_world<late_ends_euler<double>>(scene, Integrator::euler, 1e-10);
+  cdot::runs_as_the_world<late_ends_implicit<double>>(scene, Integrator::implicit, 1e-10);
+  cdot::runs_as_the_world<late_ends_rattle<double>>(scene, Integrator::rattle, 1e-10);
+  tells_as_the_world<late_ends_rk4<double>>(scene, Integrator::rk4);
+  tells_as_the_world<late_ends_radau5<double>>(scene, Integrator::radau5);
+}
+
 TEST(CompiledEvents, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<events_euler>();
   cdot::lanes_are_as_alone<events_rattle>();
+  cdot::lanes_are_as_alone<late_ends_rattle>();
+  cdot::lanes_are_as_alone<late_ends_rk4>();
 }
 
 }  // namespace

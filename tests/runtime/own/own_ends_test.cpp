@@ -1,0 +1,56 @@
+// Ends that begin to hold where they are passed, by a spec that no catalogue has.
+#include <cdot/balance.hpp>
+#include <cdot/integrators.hpp>
+
+#include "runtime/own/own.hpp"
+#include "tests/runtime/support.hpp"
+
+namespace cdot::test {
+namespace {
+
+std::string late_end() {
+  const OwnType own = add_own_type(CDOT_SOURCE_DIR "/tests/derive/compile/scenes/late_end.effect");
+  EXPECT_EQ(own.problems, "");
+  return own.name;
+}
+
+struct Slider {
+  int body, guide;
+};
+Slider slides(World<double>& world, int on, double v, double mass) {
+  const int body = world.add_body({.vx = v, .mass = mass, .inertia = 1});
+  const int guide = world.add_joint({"prismatic", {body, on}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0, 1}}}, {}});
+  return {body, guide};
+}
+
+// A bob slides ahead on a carriage until its end begins to hold behind it. The bodies meet there without a bounce, as
+// P = (M + m) V says, and their centre of mass goes on. A step that closed the end on its way threw the bob back, by
+// Euler's method only beside a body that moves faster than the end is far.
+TEST(OwnEnds, AnEndThatIsPassedAsItBeginsThrowsNoBody) {
+  constexpr double M = 1000, m = 1, V = 10, v = 11, begin = 0.3, h = 0.01, meets = (M * V + m * v) / (M + m);
+  const std::string type = late_end();
+  for (const Solver solver : {Solver::direct, Solver::iterative})
+    for (const IntegratorRow& row : integrator_rows)
+      for (const double beyond : {0.2, 0.02, 0.001}) {
+        if (solver == Solver::iterative && row.integrator == Integrator::radau5) continue;
+        Settings by = settings(solver);
+        by.integrator = row.integrator;
+        World<double> world(by);
+        const int carriage = slides(world, world.ground(), V, M).body;
+        const auto [bob, guide] = slides(world, carriage, v, m);
+        const double top = (v - V) * begin - beyond;
+        add_effect(world, guide, "slide", SpecEffect{type, {{"top", {top}}, {"begin", {begin}}}});
+        for (int k = 0; k < 50; ++k) ASSERT_TRUE(world.step(h));
+        const double from = world.pose(carriage).x, to = world.pose(bob).x,
+                     tolerance = solver == Solver::direct ? 1e-9 : 1e-5;
+        EXPECT_NEAR(to - from, top, tolerance) << row.name << ", by " << beyond;
+        EXPECT_NEAR((M * from + m * to) / (M + m), meets * world.time(), tolerance) << row.name << ", by " << beyond;
+        EXPECT_NEAR(world.velocity(carriage).x, meets, tolerance) << row.name << ", by " << beyond;
+        EXPECT_NEAR(world.velocity(bob).x, meets, tolerance) << row.name << ", by " << beyond;
+        const Balance balance = world.balance();
+        EXPECT_NEAR(balance.taken - balance.put_in, M * m / (M + m) * (v - V) * (v - V) / 2, 1e-5) << row.name;
+      }
+}
+
+}  // namespace
+}  // namespace cdot::test
