@@ -31,6 +31,16 @@ inline T magnitude(const T& x) {
   return select(x < T(0), -x, x);
 }
 
+// The larger and the smaller number. A pack may bring its own.
+template <class T>
+inline T larger(const T& a, const T& b) {
+  return select(a > b, a, b);
+}
+template <class T>
+inline T lower(const T& a, const T& b) {
+  return select(a < b, a, b);
+}
+
 // True if the condition holds in any lane.
 inline bool any(bool condition) { return condition; }
 template <class Mask>

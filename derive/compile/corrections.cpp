@@ -12,8 +12,6 @@ std::string when(bool condition, const char* text) { return condition ? text : "
 
 // Four maxima and minima, side by side in the processor.
 constexpr const char* largest_row = R"(
-  static T larger(const T& a, const T& b) { return select(a > b, a, b); }
-  static T lower(const T& a, const T& b) { return select(a < b, a, b); }
   // The largest size.
   template <int n>
   static T largest(const T (&x)[n]) {

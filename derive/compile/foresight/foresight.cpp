@@ -58,10 +58,10 @@ constexpr const char* foresees = R"(
 // Rounds on K leave a share of the error, by which J has turned since the start of the step. Where two more of them
 // would leave {2} (worst / {2})^2 > {1}, J' M^-1 J^T with J' of the pose is exact to the size of the move. The first
 // round tells the share; where the last step told that three rounds would not do, it aims.
-constexpr const char* aiming = R"(      if (round < 2) {{
+constexpr const char* aiming = R"(      if (round < 8) {{
         const Mask newly = round == 0 ? goes_on && {0} && worst * s.share * s.share * s.share > {1}
-                                      : goes_on && !aimed{3} && worst * worst * worst > {1} * {2} * {2};
-        if (round == 1) s.share = select(goes_on && !aimed, worst / {2}, s.share);
+                                      : goes_on{3} && worst * worst * worst > {1} * {2} * {2};
+        if (round == 1) s.share = select(goes_on && !aimed && {2} < T(1e29), worst / {2}, s.share);
         if (any(newly) && !any(aimed)) {{
           aim($ss.q, s.time, s.J, B);
         }} else if (any(newly)) {{

@@ -199,7 +199,8 @@ constexpr const char* end_changes = R"(      Mask passed[bounded];
       }}
 )";
 
-// Where that fails, or reverses the velocities, the step starts again, with renewed directions.
+// Where that fails, or reverses the velocities, the step starts again, with renewed directions. Other lanes keep what
+// they have.
 constexpr const char* round_ends =
     R"(      for (int i = 0; i < bodies; ++i) s.v[i] = choose(goes_on, s.v[i] + d[i], s.v[i]);
     }}
@@ -212,10 +213,13 @@ constexpr const char* round_ends =
       for (int i = 0; i < bodies; ++i) s.v[i] = choose(fails, before[i] + half * {1}, s.v[i]);
       for (int i = 0; i < bodies; ++i) next[i] = s.q[i];
 {2}      for (int i = 0; i < bodies; ++i) s.q[i] = choose(fails, s.q[i], next[i]);
+      const T found_residual = s.residual{5};
       s.residual = select(fails, left, s.residual);
       Velocity moves[bodies];
-{3}      const auto keep = fails && T(4) * weighed(s.q, moves) <= h * h * weighed(s.q, s.v);
-      for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + select(keep, T(1) / h, T(0)) * moves[i];
+{3}      for (int i = 0; i < bodies; ++i) s.q[i] = choose(fails, s.q[i], next[i]);
+      s.residual = select(fails, s.residual, found_residual);
+{6}      const auto keep = fails && T(4) * weighed(s.q, moves) <= h * h * weighed(s.q, s.v);
+      for (int i = 0; i < bodies; ++i) s.v[i] = choose(keep, s.v[i] + (T(1) / h) * moves[i], s.v[i]);
 {4}    }}
 )";
 
@@ -323,7 +327,8 @@ std::string closing(double tolerance, const Contents& has) {
                             has.foresees
                                 ? closes_unforeseen
                                 : declares_gained(has) + "      close(s, at, T(0.2), moves" + gained(has) + ");\n",
-                            weighs_failures(has));
+                            weighs_failures(has), has.foresees ? ", found_share = s.share" : "",
+                            has.foresees ? "      s.share = select(fails, s.share, found_share);\n" : "");
 }
 
 // The end's impulses of joints, effects and rows with bounds together.

@@ -2,13 +2,16 @@
 #include <cmath>
 #include <cstring>
 #include <gtest/gtest.h>
+#include <random>
 
 #include <cdot/pack.hpp>
 
 #include "chain_10_dop853.hpp"
 #include "chain_10_euler.hpp"
 #include "chain_10_rk4.hpp"
+#include "four_bar_rattle.hpp"
 #include "slider_crank_euler.hpp"
+#include "slider_crank_rattle.hpp"
 #include "slider_crank_rk4.hpp"
 
 namespace {
@@ -74,6 +77,47 @@ TEST(CompiledLanes, OfDoublesAreAsAlone) {
 TEST(CompiledLanes, OfFloatsAreAsAlone) {
   lanes_are_as_alone<slider_crank_euler, float, 8>();
   lanes_are_as_alone<slider_crank_rk4, float, 4>();
+}
+
+// Each lane moves the faster the larger its number, off its joints.
+template <template <class> class Compiled, int width>
+void kick(typename Compiled<cdot::Pack<double, width>>::State& together,
+          typename Compiled<double>::State (&alone)[width], std::mt19937& random) {
+  const auto change = [&](int lane, double least) { return 0.3 * (lane + least) * (random() / 2147483648.0 - 1); };
+  const double least = random() % 2;
+  for (int i = 0; i < Compiled<double>::bodies; ++i)
+    for (int lane = 0; lane < width; ++lane) {
+      auto& v = alone[lane].v[i];
+      v.x += change(lane, least), v.y += change(lane, least), v.w += 5 * change(lane, least);
+      together.v[i].x.set(lane, v.x), together.v[i].y.set(lane, v.y), together.v[i].w.set(lane, v.w);
+    }
+}
+
+// Newton's method begins anew, or fails, in some lanes only.
+template <template <class> class Compiled>
+void kicked_lanes_are_as_alone() {
+  constexpr int width = 4;
+  typename Compiled<cdot::Pack<double, width>>::State together;
+  typename Compiled<double>::State alone[width];
+  std::mt19937 random(7);
+  Compiled<cdot::Pack<double, width>>::reset(together);
+  for (auto& lane : alone) Compiled<double>::reset(lane);
+  for (int k = 0; k < 600; ++k) {
+    if (k % 10 == 0) kick<Compiled, width>(together, alone, random);
+    Compiled<cdot::Pack<double, width>>::step(together, 0.004);
+    for (int lane = 0; lane < width; ++lane) {
+      Compiled<double>::step(alone[lane], 0.004);
+      ASSERT_TRUE((are_equal<Compiled, double>(alone[lane], lane_of<Compiled, double, width>(together, lane))))
+          << "lane " << lane << ", step " << k;
+    }
+  }
+}
+
+TEST(CompiledLanes, AreAsAloneWhereOthersBeginAnew) {
+  kicked_lanes_are_as_alone<slider_crank_euler>();
+  kicked_lanes_are_as_alone<chain_10_euler>();
+  kicked_lanes_are_as_alone<slider_crank_rattle>();
+  kicked_lanes_are_as_alone<four_bar_rattle>();
 }
 
 struct Pose {
