@@ -91,8 +91,8 @@ Guard<typename S::Scalar> guard_of(const Batch<S>& batch, int i) {
 template <class S>
 bool hold_ends(System<S>& system, typename S::Scalar& worst) {
   bool some = false;
-  system.each_row([&](int, Batch<S>& batch, int i) {
-    if (!end_acts(batch, i)) return;
+  system.each_row([&](int row, Batch<S>& batch, int i) {
+    if (system.broken[row] || !end_acts(batch, i)) return;
     const auto guard = guard_of(batch, i);
     if (!guard.one_sided()) return;
     some = true, batch.error[i] = guard.off_by;
@@ -107,7 +107,7 @@ void let_go_of_pulling_ends(System<S>& system) {
   for (bool any = true; any;) {
     any = false;
     system.each_row([&](int row, const Batch<S>& batch, int i) {
-      if (system.fixed[row] || !end_acts(batch, i)) return;
+      if (system.fixed[row] || system.broken[row] || !end_acts(batch, i)) return;
       const auto guard = guard_of(batch, i);
       const auto impulse = batch.correction[i] + system.lambda[row];
       if (!guard.one_sided() || (guard.lower == 0 ? impulse >= 0 : impulse <= 0)) return;

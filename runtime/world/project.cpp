@@ -96,7 +96,7 @@ double largest_error(Island<S>& island, ProjectResult& result, F value) {
   double worst = 0;
   island.system.each_row([&](int row, const Batch<S>& batch, int i) {
     const double error = std::abs(double(value(batch, i)));
-    if (island.system.fixed[row] || !(error > worst)) return;
+    if (island.system.fixed[row] || island.system.broken[row] || !(error > worst)) return;
     worst = error;
     if (!result.refused) result.joint = batch.joint[i / batch.ops->rows], result.row = i % batch.ops->rows;
   });
