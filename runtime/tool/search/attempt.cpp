@@ -45,10 +45,23 @@ std::size_t stride_of(const Attempt& coarse, const Attempt& fine) {
   return static_cast<std::size_t>(fine.knob.intervals / coarse.knob.intervals);
 }
 
-// The error that a run may have between the times at which it was compared. Equal steps are compared where they end: a
-// damped motion may be over before.
+// The error that a run may have between the times at which it was compared, up to the accuracy asked for. Equal steps
+// are compared where they end: a damped motion may be over before.
 double unseen_error(const Yardstick& yardstick, const Attempt& attempt) {
-  return attempt.knob.adaptive() ? local_errors * attempt.knob.local_error : yardstick.asked();
+  if (!attempt.knob.adaptive()) return yardstick.asked();
+  return std::min(local_errors * attempt.knob.local_error, yardstick.asked());
+}
+// The share of it that may refuse a run.
+double refusing_error(const Yardstick& yardstick, const Attempt& attempt) {
+  return std::min(local_errors * attempt.knob.local_error, unseen * yardstick.asked());
+}
+
+// The gain by steps: that of a run between the two up to where it ended early, as it is measured, and the sure one from
+// there on. A loose run may be so far off that its error does not grow with its local errors any more.
+double gain_by(const Yardstick& yardstick, const Attempt& coarse, const Attempt& between, const Attempt& fine) {
+  const std::size_t ends = (between.frames.size() - 1) / stride_of(coarse, between);
+  const double left = distance(yardstick, between, fine).largest;
+  return distance(yardstick, coarse, fine, ends).largest / left * sure_gain(between, fine, left);
 }
 
 }  // namespace
@@ -85,13 +98,13 @@ bool balanced(const Scene& scene, const Attempt& attempt) {
 
 bool converges(const Attempt& coarse, const Attempt& fine) { return fine.achieved * least_fall < coarse.achieved; }
 
-void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse, Attempt& fine) {
+void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse, const Attempt& between,
+           Attempt& fine) {
   const auto [apart, agree_until] = distance(yardstick, coarse, fine);
   fine.apart = apart, fine.holds_until = agree_until;
-  const double gained = sure_gain(coarse, fine, apart);
-  const double between_looks = local_errors * fine.knob.local_error;
-  fine.achieved =
-      std::max({std::min(apart, least_sure), apart / gained, std::min(between_looks, unseen * yardstick.asked())});
+  const double alone = sure_gain(coarse, fine, apart);
+  const double gained = between.frames.empty() ? alone : std::min(alone, gain_by(yardstick, coarse, between, fine));
+  fine.achieved = std::max({std::min(apart, least_sure), apart / gained, refusing_error(yardstick, fine)});
   const bool known = fine.knob.parts > coarse.knob.parts || !fine.knob.adaptive() ||
                      (fine.result.counts.rescued == 0 && !same_steps(coarse, fine));
   // Where a fast oscillation is not resolved, distances fall less than the errors should.
@@ -113,7 +126,8 @@ void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse
 
 void judge_unlike(const Scene& scene, const Yardstick& yardstick, const Attempt& other, Attempt& now) {
   const auto [apart, agree_until] = distance(yardstick, other, now);
-  now.achieved = std::max(least_sure, unlike * apart), now.holds_until = agree_until;
+  now.achieved = std::max({least_sure, unlike * apart, refusing_error(yardstick, now)});
+  now.holds_until = agree_until;
   now.reached = balanced(scene, now) && now.achieved <= yardstick.asked();
   now.claimed = std::max(now.achieved, unseen_error(yardstick, now));
   if (now.reached) now.holds_until = scene.duration;

@@ -49,8 +49,10 @@ bool same_steps(const Attempt& a, const Attempt& b);
 bool balanced(const Scene& scene, const Attempt& attempt);
 // The distance of a run from a coarser one has fallen well below the one before.
 bool converges(const Attempt& coarse, const Attempt& fine);
-// Measures a run by a coarser one, or by one of another method.
-void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse, Attempt& fine);
+// Measures a run by a coarser one, and by one between them that ended early if it has frames; or by one of another
+// method.
+void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse, const Attempt& between,
+           Attempt& fine);
 void judge_unlike(const Scene& scene, const Yardstick& yardstick, const Attempt& other, Attempt& now);
 // The distance at the end, foreseen from that up to now, if it shows that the two runs will not agree; else 0.
 double foreseen_distance(const Yardstick& yardstick, double duration, const Attempt& coarse, const Attempt& fine);

@@ -254,7 +254,7 @@ void Search::try_candidate(Integrator integrator, double most, double reach) {
   const bool adaptive = row_of(integrator).level == Level::acceleration;
   std::optional<Try> knob =
       first_try(integrator, yardstick_.asked(), !adaptive || stiff_at_start_ <= suspicious * yardstick_.mechanisms());
-  Attempt last;
+  Attempt last, between;  // the second has ended early
   double spent = 0;
   int idle = 0;
   bool may_end_early = adaptive;
@@ -272,12 +272,13 @@ void Search::try_candidate(Integrator integrator, double most, double reach) {
     if (now.foreseen > 0) {
       may_end_early = false;
       knob = after_early_end(aim * yardstick_.asked(), scene_.duration, last, now);
+      between = std::move(now);
       continue;
     }
     bound_budget(now);
     if (now.whole) {
       yardstick_.see(now.frames);
-      if (last.whole) judge(scene_, yardstick_, last, now);
+      if (last.whole) judge(scene_, yardstick_, last, between, now);
       if (last.whole && adaptive && !now.reached && now.result.counts.rescued == 0 &&
           now.knob.parts == last.knob.parts && same_steps(last, now))
         judge_by_another_method(now, most - spent);
@@ -290,7 +291,7 @@ void Search::try_candidate(Integrator integrator, double most, double reach) {
     if (now.result.stopped && last.whole) break;  // it may go on from the last one
     const bool goes_on = share && in_reach(now, std::max(most, reach) - spent);
     knob = goes_on ? finer(*knob, *share, shorter_after(now, scene_.duration)) : std::nullopt;
-    last = std::move(now);
+    last = std::move(now), between = {};
   }
   begun_ = {std::move(last), knob, idle};
 }

@@ -44,7 +44,7 @@ std::vector<Reference> references_of(const Scene& scene, const std::vector<doubl
 }
 
 struct Counts {
-  int runs = 0, told = 0, failed = 0, unknown = 0, compared = 0, above = 0, far_above = 0;
+  int unbuilt = 0, runs = 0, told = 0, failed = 0, unknown = 0, compared = 0, above = 0, far_above = 0;
   double worst = 0;
 };
 
@@ -107,6 +107,8 @@ void survey(const Scene& scene, const std::vector<double>& times, std::optional<
   if (share > 1) fmt::print("{}; above {:.1f} times\n", line, share);
 }
 
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
 }  // namespace
 
 void study_survey(const std::vector<Scene>& scenes) {
@@ -117,15 +119,21 @@ void study_survey(const std::vector<Scene>& scenes) {
     std::optional<std::vector<Reference>> references;
     for (const double accuracy : {0.0, asked_too}) {
       scene.accuracy = accuracy;
-      survey(scene, times, references, counts);
+      try {
+        survey(scene, times, references, counts);
+      } catch (const SceneError& error) {
+        ++counts.unbuilt;
+        fmt::print("{}: is not built: {}\n", short_name(scene), first_line(error.what()));
+        break;
+      }
       std::fflush(stdout);
     }
   }
   fmt::print(
-      "{} runs: {} fail, {} are told, {} have no sure reference; of {} others {} above their claim, {} "
-      "above {} times, the largest at {:.2f}\n",
-      counts.runs, counts.failed, counts.told, counts.unknown, counts.compared, counts.above, counts.far_above,
-      most_of_claim, counts.worst);
+      "{} scenes are not built; {} runs: {} fail, {} are told, {} have no sure reference; of {} others {} above their "
+      "claim, {} above {} times, the largest at {:.2f}\n",
+      counts.unbuilt, counts.runs, counts.failed, counts.told, counts.unknown, counts.compared, counts.above,
+      counts.far_above, most_of_claim, counts.worst);
 }
 
 }  // namespace cdot::search_bench

@@ -182,6 +182,58 @@ TEST(Claims, OfEqualStepsAreNoSmallerThanAsked) {
   EXPECT_LT(off, result.choice->achieved);
 }
 
+// A force of a box rises and falls in straight lines, from kink to kink. Between two of them the box moves by a
+// polynomial that collocation follows exactly: its steps end at kinks, whatever the local error, and a run by another
+// method tells the error. On the box stands one so stiff that stiff methods are tried first.
+TEST(Claims, OfTwoUnlikeMethodsAreNoLargerThanAsked) {
+  const TemporaryFolder folder;
+  constexpr double most = 30, apart = 0.02, mass = 2, duration = 3;
+  std::string table = "time,force\n";
+  for (int k = 0; k * apart < duration + apart; ++k)
+    table += fmt::format("{},{}\n", k * apart, k % 2 == 0 ? -most : most);
+  text::write_file((folder / "force.csv").string(), table);
+  const std::string file = (folder / "kinks.toml").string();
+  text::write_file(file, fmt::format(R"(
+gravity = [0, 0]
+duration = {}
+accuracy = 1e-5
+[[body]]
+name = "pushed"
+mass = 1
+inertia = 1
+force = [{{ table = "force.csv", column = "force" }}, 0]
+[[body]]
+name = "stiff"
+mass = 1
+inertia = 1
+[[joint]]
+type = "prismatic"
+bodies = ["pushed", "world"]
+at = [0, 0]
+t = [0, 1]
+[[joint]]
+type = "prismatic"
+bodies = ["stiff", "pushed"]
+at = [0, 0]
+t = [1, 0]
+slide.spring = {{ stiffness = 1e8, damping = 1e3 }}
+)",
+                                     duration));
+  const auto [result, rows] = recorded(read_scene(file), 0.007);
+  const Choice& choice = result.choice.value();
+  double off = 0;
+  for (const Frame& row : rows) {
+    const double interval = std::floor(row.time / apart), t = row.time - interval * apart;
+    const auto fallen = [&](double s) { return most / mass * s * s * (0.5 - s / (3 * apart)); };
+    const bool falls = std::fmod(interval, 2) == 0;
+    off = std::max(off, std::abs(row.bodies[0].x + (falls ? fallen(t) : fallen(apart) - fallen(t))));
+  }
+  fmt::print("  {} claims {:.1e}, is off by {:.1e}\n", name_of(integrators, choice.integrator), choice.achieved, off);
+  EXPECT_TRUE(choice.reached);
+  EXPECT_LT(off, choice.achieved);
+  EXPECT_LE(choice.achieved, choice.asked);
+}
+
 // A motor of 10 N gives a slide its speed within 0.1 ms, and overloads the weld of its base for that time: the base
 // breaks off and recoils by half of that speed. Equal steps know the mean of that load alone, by which the weld holds.
 // Beside it hangs a box so stiff that stiff methods are tried first.
@@ -254,6 +306,42 @@ TEST(Claims, WantDistancesOfEqualStepsToFallAsErrorsShould) {
       off = std::max({off, apart.position, apart.angle});
     }
   EXPECT_LE(off, result.choice->achieved);
+}
+
+// A body whose error grows with time, to 2e4 local errors of a run, but to no more than 0.2 m: so far apart are all
+// loose runs of a mechanism that magnifies differences. The energy's error falls with the local errors.
+Attempt attempt_of(double local_error, int intervals, double share_of_time) {
+  constexpr double magnified = 2e4, most = 0.2;
+  Attempt attempt;
+  attempt.knob = {Integrator::dop853, local_error, 1, intervals};
+  attempt.energy_share = local_error, attempt.whole = share_of_time == 1;
+  for (int k = 0; k <= intervals * share_of_time; ++k) {
+    Frame frame;
+    frame.time = static_cast<double>(k) / intervals;
+    frame.bodies.resize(1);
+    frame.bodies[0].x = std::min(most, magnified * local_error) * std::min(1.0, 4 * frame.time);
+    attempt.frames.push_back(frame);
+  }
+  return attempt;
+}
+
+// The first run tells nothing about the error of the last one. That of the run between them, which ended after a
+// quarter of the time since it was too far from the first, tells.
+TEST(Claims, CountARunBetweenThatEndedEarly) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "body.toml").string();
+  text::write_file(file, "duration = 1\naccuracy = 1e-4\n[[body]]\nname = \"body\"\nmass = 1\ninertia = 1\n");
+  const Scene scene = read_scene(file);
+  const Yardstick yardstick(scene);
+  for (const double fine : {2e-8, 9e-9, 2e-9, 2e-10, 2e-11}) {
+    const Attempt coarse = attempt_of(2e-2, 16, 1), between = attempt_of(2e-6, 64, 0.25);
+    Attempt now = attempt_of(fine, 64, 1);
+    judge(scene, yardstick, coarse, between, now);
+    const double off = now.frames.back().bodies[0].x;
+    fmt::print("  local error {:.0e}: claims {:.1e}, is off by {:.1e}\n", fine, now.claimed, off);
+    EXPECT_LT(off, now.claimed) << fine;
+    EXPECT_EQ(now.reached, fine < 1e-9) << fine;
+  }
 }
 
 // Local errors of 1e-6 and of 1e-12 promise errors of 1e6 : 1. Where events are located to 1e-9, 1e3 : 1 is left.
