@@ -26,8 +26,8 @@ constexpr double unlike = 2;  // the error in units of the distance of two metho
 constexpr double least_fall = 1.5;
 constexpr double surely = 1e-3;  // or be below this share of the accuracy
 
-// Events are located to about this share of what they depend on (events/guarded.hpp), whatever the local error is.
-constexpr double noise_of_events = 1e-9;
+// Each event is located to about this share of what it depends on (events/guarded.hpp), whatever the local error is.
+constexpr double share_of_events = 1e-9;
 
 // Errors grow at least with time. From this share of the run on, the distance of two runs is taken to grow by the power
 // of time with which it grew over the second half up to then. The run that comes next expects a little more.
@@ -45,11 +45,13 @@ std::size_t stride_of(const Attempt& coarse, const Attempt& fine) {
   return static_cast<std::size_t>(fine.knob.intervals / coarse.knob.intervals);
 }
 
-// The error that a run may have between the times at which it was compared, up to the accuracy asked for. Equal steps
-// are compared where they end: a damped motion may be over before.
+// The error that a run may have where it was not compared, up to the accuracy asked for: between the times of the
+// comparison, and by its events, of which hundreds in a row may agree in two runs by chance. Equal steps are compared
+// where they end: a damped motion may be over before.
 double unseen_error(const Yardstick& yardstick, const Attempt& attempt) {
   if (!attempt.knob.adaptive()) return yardstick.asked();
-  return std::min(local_errors * attempt.knob.local_error, yardstick.asked());
+  const double of_events = yardstick.of_largest(share_of_events) * static_cast<double>(attempt.result.counts.events);
+  return std::min(local_errors * (attempt.knob.local_error + of_events), yardstick.asked());
 }
 // The share of it that may refuse a run.
 double refusing_error(const Yardstick& yardstick, const Attempt& attempt) {
@@ -61,7 +63,7 @@ double refusing_error(const Yardstick& yardstick, const Attempt& attempt) {
 double gain_by(const Yardstick& yardstick, const Attempt& coarse, const Attempt& between, const Attempt& fine) {
   const std::size_t ends = (between.frames.size() - 1) / stride_of(coarse, between);
   const double left = distance(yardstick, between, fine).largest;
-  return distance(yardstick, coarse, fine, ends).largest / left * sure_gain(between, fine, left);
+  return distance(yardstick, coarse, fine, ends).largest / left * sure_gain(yardstick, between, fine, left);
 }
 
 }  // namespace
@@ -77,11 +79,11 @@ Distance distance(const Yardstick& yardstick, const Attempt& coarse, const Attem
   return distance;
 }
 
-double sure_gain(const Attempt& coarse, const Attempt& fine, double apart) {
+double sure_gain(const Yardstick& yardstick, const Attempt& coarse, const Attempt& fine, double apart) {
   if (fine.knob.adaptive() && apart > far) return 1;
   const bool rescued = coarse.result.counts.rescued > 0 || fine.result.counts.rescued > 0;
   const bool events = coarse.result.counts.events > 0 || fine.result.counts.events > 0;
-  const double noise = events ? noise_of_events : strictest_local_error;
+  const double noise = yardstick.of_largest(events ? share_of_events : strictest_local_error);
   const bool tells_of_energy = coarse.energy_share >= witness * apart;
   const double of_energy = tells_of_energy ? coarse.energy_share / std::max(round_off, fine.energy_share) : 1;
   return sure_gain(fine.knob.row(), gain(coarse.knob, fine.knob, rescued, noise), of_energy);
@@ -102,7 +104,7 @@ void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse
            Attempt& fine) {
   const auto [apart, agree_until] = distance(yardstick, coarse, fine);
   fine.apart = apart, fine.holds_until = agree_until;
-  const double alone = sure_gain(coarse, fine, apart);
+  const double alone = sure_gain(yardstick, coarse, fine, apart);
   const double gained = between.frames.empty() ? alone : std::min(alone, gain_by(yardstick, coarse, between, fine));
   fine.achieved = std::max({std::min(apart, least_sure), apart / gained, refusing_error(yardstick, fine)});
   const bool known = fine.knob.parts > coarse.knob.parts || !fine.knob.adaptive() ||
@@ -140,7 +142,7 @@ double foreseen_distance(const Yardstick& yardstick, double duration, const Atte
   const double now = distance(yardstick, coarse, fine, ends).largest;
   const double growth = std::log2(now / distance(yardstick, coarse, fine, ends / 2).largest);
   const auto at_end = [&](double power) { return now / std::pow(share, std::clamp(power, 1.0, most_growth)); };
-  const double foreseen = at_end(growth), allowed = yardstick.asked() * sure_gain(coarse, fine, foreseen);
+  const double foreseen = at_end(growth), allowed = yardstick.asked() * sure_gain(yardstick, coarse, fine, foreseen);
   return foreseen > allowed ? at_end(growth + further_growth) : 0;
 }
 

@@ -42,7 +42,7 @@ struct Distance {
 Distance distance(const Yardstick& yardstick, const Attempt& coarse, const Attempt& fine,
                   std::size_t ends = std::numeric_limits<std::size_t>::max());
 // The factor by which the error of the fine run is surely smaller, if they are so far apart.
-double sure_gain(const Attempt& coarse, const Attempt& fine, double apart);
+double sure_gain(const Yardstick& yardstick, const Attempt& coarse, const Attempt& fine, double apart);
 // Two runs by the same steps agree, whatever their error; of bodies that never move there are no steps and no error.
 bool same_steps(const Attempt& a, const Attempt& b);
 // The energy's error is within the scene's tolerance.

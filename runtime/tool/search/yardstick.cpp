@@ -13,6 +13,8 @@ Yardstick::Yardstick(const Scene& scene)
       of_size_(scene.accuracy == 0) {
   const Extents extents = extents_of(scene);
   mechanisms_ = std::max(1, extents.mechanisms);
+  largest_ = 1;
+  if (!of_size_ && !extents.of_body.empty()) largest_ = std::max(1.0, *std::ranges::max_element(extents.of_body));
   size_ = of_size_ ? extents.of_body : std::vector<double>(scene.bodies.size(), 1);
 }
 

@@ -15,6 +15,8 @@ class Yardstick {
   double asked() const { return asked_; }
   bool of_size() const { return of_size_; }
   int mechanisms() const { return mechanisms_; }
+  // This share of the size of the largest mechanism, or of a radian if that is more.
+  double of_largest(double share) const { return share * largest_; }
 
   // A single point has no size: the distance that it travels, in the first run seen, takes the place of one.
   void see(const std::vector<Frame>& run);
@@ -26,6 +28,7 @@ class Yardstick {
   double asked_;
   bool of_size_;
   int mechanisms_;
+  double largest_;
   std::vector<double> size_;  // of the mechanism of each body [m]
 };
 

@@ -232,12 +232,13 @@ TEST(SearchedAccuracy, EndsARunThatCannotAgree) {
 // Two runs by dop853 whose local errors differ by a factor of 10^4. The distance of the second from the truth is sure
 // to be 100 times smaller than theirs; 1000 times where the energies say so, too; and unknown beyond a radian.
 TEST(SearchedAccuracy, TrustsLargeGainsWhereTheEnergyShowsThem) {
+  const Yardstick yardstick(scene_named("simple_pendulum"));
   Attempt coarse, fine;
   coarse.knob = {Integrator::dop853, 1e-2}, fine.knob = {Integrator::dop853, 1e-6};
   coarse.energy_share = 1e-3;
   const auto sure = [&](double energy_share, double apart) {
     fine.energy_share = energy_share;
-    return sure_gain(coarse, fine, apart);
+    return sure_gain(yardstick, coarse, fine, apart);
   };
   EXPECT_NEAR(sure(1e-3, 0.01), 100, 1e-6);
   EXPECT_NEAR(sure(1e-7, 0.01), 1000, 1e-4);
