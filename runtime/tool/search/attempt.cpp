@@ -58,11 +58,12 @@ double refusing_error(const Yardstick& yardstick, const Attempt& attempt) {
   return std::min(local_errors * attempt.knob.local_error, unseen * yardstick.asked());
 }
 
-// The gain by steps: that of a run between the two up to where it ended early, as it is measured, and the sure one from
-// there on. A loose run may be so far off that its error does not grow with its local errors any more.
-double gain_by(const Yardstick& yardstick, const Attempt& coarse, const Attempt& between, const Attempt& fine) {
+// The gain by steps: that of a run between the two up to where it ended early, as it is measured by its distance `left`
+// from the fine one, and the sure one from there on. A loose run may be so far off that its error does not grow with
+// its local errors any more.
+double gain_by(const Yardstick& yardstick, const Attempt& coarse, const Attempt& between, const Attempt& fine,
+               double left) {
   const std::size_t ends = (between.frames.size() - 1) / stride_of(coarse, between);
-  const double left = distance(yardstick, between, fine).largest;
   return distance(yardstick, coarse, fine, ends).largest / left * sure_gain(yardstick, between, fine, left);
 }
 
@@ -94,6 +95,11 @@ bool same_steps(const Attempt& a, const Attempt& b) {
   return of_a.taken > 0 && of_a.taken == of_b.taken && of_a.shortest == of_b.shortest && of_a.longest == of_b.longest;
 }
 
+bool same_parts(const Attempt& a, const Attempt& b) {
+  const double shorter = static_cast<double>(b.knob.steps()) / a.knob.steps();
+  return static_cast<double>(b.result.solves) < std::sqrt(shorter) * static_cast<double>(a.result.solves);
+}
+
 bool balanced(const Scene& scene, const Attempt& attempt) {
   return attempt.result.balance.energy.share() <= scene.energy_tolerance;
 }
@@ -104,11 +110,16 @@ void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse
            Attempt& fine) {
   const auto [apart, agree_until] = distance(yardstick, coarse, fine);
   fine.apart = apart, fine.holds_until = agree_until;
-  const double alone = sure_gain(yardstick, coarse, fine, apart);
-  const double gained = between.frames.empty() ? alone : std::min(alone, gain_by(yardstick, coarse, between, fine));
+  double gained = sure_gain(yardstick, coarse, fine, apart);
+  if (!between.frames.empty()) {
+    const auto [left, agrees_until] = distance(yardstick, between, fine);
+    gained = std::min(gained, gain_by(yardstick, coarse, between, fine, left));
+    fine.holds_until = std::max(fine.holds_until, agrees_until);
+  }
   fine.achieved = std::max({std::min(apart, least_sure), apart / gained, refusing_error(yardstick, fine)});
-  const bool known = fine.knob.parts > coarse.knob.parts || !fine.knob.adaptive() ||
-                     (fine.result.counts.rescued == 0 && !same_steps(coarse, fine));
+  const bool known = fine.knob.adaptive() ? fine.knob.parts > coarse.knob.parts ||
+                                                (fine.result.counts.rescued == 0 && !same_steps(coarse, fine))
+                                          : !same_parts(coarse, fine);
   // Where a fast oscillation is not resolved, distances fall less than the errors should.
   const bool falls = coarse.apart >= gained * apart;
   const bool seems_to_converge = fine.knob.adaptive() || fine.achieved < surely * yardstick.asked() ||

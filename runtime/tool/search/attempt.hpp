@@ -45,6 +45,9 @@ Distance distance(const Yardstick& yardstick, const Attempt& coarse, const Attem
 double sure_gain(const Yardstick& yardstick, const Attempt& coarse, const Attempt& fine, double apart);
 // Two runs by the same steps agree, whatever their error; of bodies that never move there are no steps and no error.
 bool same_steps(const Attempt& a, const Attempt& b);
+// The same of equal steps: those that are too long are taken in parts, so they take hardly more solves where they are
+// shorter.
+bool same_parts(const Attempt& a, const Attempt& b);
 // The energy's error is within the scene's tolerance.
 bool balanced(const Scene& scene, const Attempt& attempt);
 // The distance of a run from a coarser one has fallen well below the one before.
