@@ -4,27 +4,12 @@
 
 #include "derive/compile/foresight/foresight.hpp"
 #include "derive/compile/methods/weights.hpp"
+#include "derive/compile/texts.hpp"
 
 namespace cdot::compile {
 namespace {
 
 std::string when(bool condition, const char* text) { return condition ? text : ""; }
-
-// Four maxima and minima, side by side in the processor.
-constexpr const char* largest_row = R"(
-  // The largest size.
-  template <int n>
-  static T largest(const T (&x)[n]) {
-    T a = T(0), b = a, c = a, d = a, e = a, f = a, g = a, h = a;
-    int i = 0;
-    for (; i + 4 <= n; i += 4) {
-      a = larger(x[i], a), b = larger(x[i + 1], b), c = larger(x[i + 2], c), d = larger(x[i + 3], d);
-      e = lower(x[i], e), f = lower(x[i + 1], f), g = lower(x[i + 2], g), h = lower(x[i + 3], h);
-    }
-    for (; i < n; ++i) a = larger(x[i], a), e = lower(x[i], e);
-    return larger(-lower(lower(e, f), lower(g, h)), larger(larger(a, b), larger(c, d)));
-  }
-)";
 
 // As the World does it: runtime/solve/direct.cpp.
 constexpr const char* close_begins = R"(
@@ -34,6 +19,9 @@ constexpr const char* close_begins = R"(
     const T left = s.residual;
     T before = T(1e30), error = T(0);
     auto goes_on = T(0) < T(1), renewed = T(1) < T(0);
+    bool is_back = false;
+    Pose free[bodies];
+    for (int i = 0; i < bodies; ++i) free[i] = s.q[i];
 )";
 
 constexpr const char* errors_of_rows = R"(      T C[rows];
@@ -70,8 +58,7 @@ constexpr const char* round_begins = R"(      s.residual = worst;
 
 constexpr const char* renews = R"(      const auto is_slow = goes_on && {0}worst > slow * before;
       goes_on = goes_on && !(is_slow && renewed && worst > T(0.5) * before);
-      if (!any(goes_on) || round == 20) return error;
-      const auto renews = goes_on && is_slow;
+{4}      const auto renews = goes_on && is_slow;
       if (any(renews)) {{
 {2}        at.time = select(renews, s.time, at.time);
         for (int i = 0; i < bodies; ++i) at.q[i] = is_pack ? choose(renews, s.q[i], at.q[i]) : s.q[i];
@@ -79,6 +66,28 @@ constexpr const char* renews = R"(      const auto is_slow = goes_on && {0}worst
       }}
 {3}      before = worst;
 )";
+
+// Where no pose nearby meets all joints, Newton may end anywhere.
+constexpr const char* ends_rounds = R"(      if (is_back || !any(goes_on) || round == 20) {{
+        const auto worse = worst > error;
+        if (is_back || !any(worse)) return error;
+{0}        for (int i = 0; i < bodies; ++i) s.q[i] = choose(worse, free[i], s.q[i]);
+        for (int i = 0; i < bodies; ++i) moves[i] = choose(worse, still(), moves[i]);
+{1}        goes_on = T(1) < T(0), is_back = true;
+        continue;
+      }}
+)";
+
+// All that rounds have summed up is nothing any more.
+std::string takes_back_all(const Contents& has) {
+  constexpr const char* none = "        for (T& of_row : {0}) of_row = select(worse, T(0), of_row);\n";
+  std::string text;
+  for (const auto& [sums, of] : {std::pair{has.foresees, "total"},
+                                 {has.weighs && has.weighs_joints(), "gained"},
+                                 {has.weighs && has.ends, "gained_by_ends"}})
+    if (sums) text += fmt::format(none, of);
+  return fmt::format(ends_rounds, when(has.foresees, "        turn(free);\n"), text);
+}
 
 constexpr const char* moves_of_rows = R"(      T lambda[rows];
       Velocity d[bodies];
@@ -349,7 +358,7 @@ std::string corrections_of(double tolerance, const Contents& has, const std::str
     text += fmt::format(
         renews, has.ends && !has.modes ? "!more && " : "",
         when(has.rows, "        evaluate($sat.q, at.time, s.J);\n") + when(has.ends, "        reached = false;\n"),
-        renew, has.foresees ? aims(has.spatial) : "");
+        renew, has.foresees ? aims(has.spatial) : "", takes_back_all(has));
     const bool turns_with_ends = has.ends && has.gyroscopes && !has.modes;
     text += has.rows ? fmt::format(moves_of_rows, turns_with_ends ? "at.q, " : "$q", has.foresees ? "B, aimed, " : "")
                      : no_moves;

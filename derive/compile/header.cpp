@@ -135,7 +135,9 @@ class HeaderWriter {
     line();
     line("  // " + comment + ": " + derive::text(derive::count(program)));
     const std::string arguments = with_arguments(head);
-    for (const std::string& wrapped : derive::wrapped("  static void " + arguments + " {")) line(wrapped);
+    const bool inlined = head.starts_with("solve(") && derive::count(program).total() <= few_operations;
+    const std::string kind = inlined ? "  CDOT_SCENE_INLINE static void " : "  static void ";
+    for (const std::string& wrapped : derive::wrapped(kind + arguments + " {")) line(wrapped);
     derive::Printing printing;
     printing.indent = "    ";
     printing.reserved = used_;

@@ -17,6 +17,8 @@ struct Counts {
 };
 // Loops over the numbers of a slope of a Runge-Kutta method are lines up to so many.
 constexpr std::size_t few_rates = 24;
+// Solves of up to so many operations are inlined.
+constexpr int few_operations = 300;
 // The text with a line for each body, row or rate in place of a line "for (int i = 0; i < bodies; ++i) …;", where there
 // are few. The wide loads of a compiler's vector loop would wait for the stores of single numbers before them.
 std::string unrolled(const std::string& text, const Counts& counts);
@@ -55,6 +57,22 @@ inline constexpr const char* guards = R"(
   static T sign(const T& x) { return select(x > T(0), T(1), select(x < T(0), T(-1), T(0))); }
   // 1/d, and 0 where d is round-off beside the diagonal entry k: the row depends on others.
   static T pivot(const T& d, const T& k) { return select(d > T(64 * epsilon) * k, T(1) / d, T(0)); }
+)";
+
+// Four maxima and minima, side by side in the processor.
+inline constexpr const char* largest_row = R"(
+  // The largest size.
+  template <int n>
+  static T largest(const T (&x)[n]) {
+    T a = T(0), b = a, c = a, d = a, e = a, f = a, g = a, h = a;
+    int i = 0;
+    for (; i + 4 <= n; i += 4) {
+      a = larger(x[i], a), b = larger(x[i + 1], b), c = larger(x[i + 2], c), d = larger(x[i + 3], d);
+      e = lower(x[i], e), f = lower(x[i + 1], f), g = lower(x[i + 2], g), h = lower(x[i + 3], h);
+    }
+    for (; i < n; ++i) a = larger(x[i], a), e = lower(x[i], e);
+    return larger(-lower(lower(e, f), lower(g, h)), larger(larger(a, b), larger(c, d)));
+  }
 )";
 
 inline constexpr const char* slope = R"(

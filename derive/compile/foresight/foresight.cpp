@@ -6,8 +6,8 @@ namespace cdot::compile {
 namespace {
 
 constexpr const char* solves_either = R"(
-  static void solve($gconst Jacobian& J, const Aim& B, const Mask& aimed, const T (&b)[rows], T (&lambda)[rows],
-                    Velocity (&d)[bodies]) {
+  CDOT_SCENE_INLINE static void solve($gconst Jacobian& J, const Aim& B, const Mask& aimed, const T (&b)[rows],
+                                      T (&lambda)[rows], Velocity (&d)[bodies]) {
     if (!any(aimed)) return solve($tJ, b, lambda, d);
     solve($tJ, B, b, lambda, d);
     if (!any(!aimed)) return;
@@ -99,9 +99,9 @@ std::string foresight(bool rattle) {
 
 // In the plane sines come from their angles, so that no round-off gathers over the steps.
 std::string moves_as_foreseen(bool spatial) {
-  return std::string("    Pose free[bodies];\n    for (int i = 0; i < bodies; ++i) free[i] = s.q[i];\n") +
-         (spatial ? "    shift(s.q, moves);\n"
-                  : "    for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], moves[i]);\n    turn(s.q);\n") +
+  return std::string(spatial
+                         ? "    shift(s.q, moves);\n"
+                         : "    for (int i = 0; i < bodies; ++i) move(s.q[i], s.q[i], moves[i]);\n    turn(s.q);\n") +
          "    Aim B;\n    Mask aimed = T(1) < T(0);\n";
 }
 

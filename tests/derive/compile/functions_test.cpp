@@ -38,6 +38,27 @@ TEST(OwnFunctions, AreThoseOfTheLibraryToAUnitInTheLastPlace) {
   is_exact<float>(87, 1e-45F, 1.01);
 }
 
+// The largest error over angles up to the limit, many of them beside multiples of pi/2, where one of both is small.
+template <class T, class Error>
+double largest_error(double limit, Error error) {
+  double most = 0;
+  for (int k = -40000; k <= 40000; ++k) {
+    const double quarters = std::round(k * (k % 7) / 240000.0 * limit / std::acos(0.0));
+    for (const T angle : {T(limit * k / 40000), T(quarters * std::acos(0.0)), T(1e-4 * k)}) {
+      T s, c;
+      cdot::scenes::sin_cos(angle, s, c);
+      if (angle != 0) most = std::max(most, error(s, double(std::sin((long double)(angle)))));
+      most = std::max(most, error(c, double(std::cos((long double)(angle)))));
+    }
+  }
+  return most;
+}
+
+TEST(OwnFunctions, TurnAngles) {
+  EXPECT_LE(largest_error<double>(1e5, error<double>), 2) << "units in the last place";
+  EXPECT_LT(largest_error<float>(1e4, [](float found, double exact) { return std::abs(found - exact); }), 1e-7);
+}
+
 TEST(OwnFunctions, KnowWhatHasNoNumber) {
   EXPECT_EQ(Exponential{}(0.0), 1);
   EXPECT_EQ(Exponential{}(1000.0), endless);
