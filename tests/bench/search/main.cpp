@@ -10,6 +10,7 @@ void study_claims(const std::vector<Scene>& scenes);    // claims.cpp
 void study_price(const std::vector<Scene>& scenes);     // price.cpp
 void study_estimate(const std::vector<Scene>& scenes);  // estimate.cpp
 void study_survey(const std::vector<Scene>& scenes);    // survey.cpp
+void study_work(const std::vector<Scene>& scenes);      // work.cpp
 }  // namespace cdot::search_bench
 
 int main(int count, char** arguments) {
@@ -18,12 +19,16 @@ int main(int count, char** arguments) {
   CLI::App app("Studies of the search for a method, over the scenes below folders.");
   std::string study, only;
   std::vector<std::string> folders;
-  const std::map<std::string, void (*)(const std::vector<Scene>&)> studies = {
-      {"claims", study_claims}, {"price", study_price}, {"estimate", study_estimate}, {"survey", study_survey}};
+  const std::map<std::string, void (*)(const std::vector<Scene>&)> studies = {{"claims", study_claims},
+                                                                              {"price", study_price},
+                                                                              {"estimate", study_estimate},
+                                                                              {"survey", study_survey},
+                                                                              {"work", study_work}};
   app.add_option(
          "study", study,
          "claims: claimed against true errors; price: against the cheapest named method; estimate: of runs with "
-         "fixed steps, against true errors; survey: claimed against the distance from unlike methods")
+         "fixed steps, against true errors; survey: claimed against the distance from unlike methods; work: "
+         "evaluations of searches")
       ->required()
       ->check(CLI::IsMember(studies));
   app.add_option("folders", folders, "with scenes")->required()->check(CLI::ExistingDirectory);
