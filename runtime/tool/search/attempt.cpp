@@ -146,6 +146,10 @@ void judge_unlike(const Scene& scene, const Yardstick& yardstick, const Attempt&
   if (now.reached) now.holds_until = scene.duration;
 }
 
+bool differ(const Yardstick& yardstick, const Attempt& other, const Attempt& now) {
+  return unlike * distance(yardstick, other, now).largest > yardstick.asked();
+}
+
 double foreseen_distance(const Yardstick& yardstick, double duration, const Attempt& coarse, const Attempt& fine) {
   const std::size_t stride = stride_of(coarse, fine), ends = (fine.frames.size() - 1) / stride;
   const double share = fine.frames.back().time / duration;

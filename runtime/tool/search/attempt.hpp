@@ -57,6 +57,8 @@ bool converges(const Attempt& coarse, const Attempt& fine);
 void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse, const Attempt& between,
            Attempt& fine);
 void judge_unlike(const Scene& scene, const Yardstick& yardstick, const Attempt& other, Attempt& now);
+// So far apart already that judge_unlike() will not find the accuracy reached.
+bool differ(const Yardstick& yardstick, const Attempt& other, const Attempt& now);
 // The distance at the end, foreseen from that up to now, if it shows that the two runs will not agree; else 0.
 double foreseen_distance(const Yardstick& yardstick, double duration, const Attempt& coarse, const Attempt& fine);
 

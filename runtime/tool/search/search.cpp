@@ -11,6 +11,7 @@
 #include <cdot/methods.hpp>
 
 #include "runtime/tool/search/attempt.hpp"
+#include "runtime/tool/search/bounds.hpp"
 #include "runtime/tool/search/knobs.hpp"
 #include "runtime/tool/search/simulate.hpp"
 #include "runtime/tool/search/stiffness.hpp"
@@ -31,25 +32,6 @@ constexpr double safety = 0.8;
 constexpr double even = 150, slow = 150;
 
 constexpr int most_idle = 3;  // refinements in a row by fixed steps that do not converge, or runs that do not end
-
-// --- Prices, in evaluations of an island's accelerations. All runs of a search together may take
-// RunOptions::search_work, or so many times the price of steps of a millisecond, if
-constexpr double most_millisecond_runs = 20;
-// that is more than so many times the price of the first run that has ended with steps of its own: 1e-12 of its local
-// error costs 32 times as much.
-constexpr double most_first_runs = 50;
-// If nobody asked for the accuracy, they take less: so much work, some seconds, or if it is more, so many times that
-// price. After two that did not end, or left steps to another method, few of the next ones get any further.
-constexpr double unasked_work = 7e7, unasked_work_of_others = 5e6, most_unasked_runs = 4;
-// A scene is surely stiff if an oscillation of tensions and springs at the start makes explicit steps `dear`. It may be
-// if a run has taken `suspicious` evaluations, is on the way to `dear`, and the fastest oscillation explains a share of
-// that price. Then methods for stiff scenes get such a share to be cheaper.
-constexpr double suspicious = 600, dear = 4000, share_of_stiff = 0.33, share_of_surely_stiff = 0.5;
-constexpr double steps_of_collocation = 10;  // half of its first run, or less
-// If nobody asked for the accuracy: work of collocation before the lowest order goes on, and of that then. In large
-// mechanisms a unit takes a microsecond. A run of collocation that has left a step to another method, which ends few
-// searches, ends after less.
-constexpr double first_work_of_collocation = 2e6, work_of_lowest_order = 5e6, work_if_rescued = 5e5;
 
 class Search {
  public:
@@ -82,8 +64,9 @@ class Search {
   bool done() const { return stopped_ || given_up_ || best_.reached || out_of_budget(); }
   bool in_reach(const Attempt& now, double most) const;
   double price_after(const Attempt& last, const Try& knob) const;
-  double price_of_fixed(const Try& knob, const RunResult& so_far) const {
-    return std::max(price_of(knob), static_cast<double>(so_far.solves));
+  // Of this share of the steps.
+  double price_of_fixed(const Try& knob, const RunResult& so_far, double share = 1) const {
+    return std::max(share * price_of(knob), static_cast<double>(so_far.solves));
   }
   static double price_of_adaptive(const RunResult& so_far) {
     return static_cast<double>(so_far.counts.evaluations + so_far.solves);
@@ -121,13 +104,13 @@ class Search {
   double price_ = 0, cpu_ = 0;    // of all runs
 };
 
-// Follows the pace of the `last` run. If it is judged by that run, it ends early, by Attempt::foreseen, where the two
-// will not agree.
+// Follows the pace of the `last` run. If it is judged by that run, it ends early where the two will not agree: by
+// Attempt::foreseen, or fixed steps where they differ.
 Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool judged) {
   Attempt attempt;
   attempt.knob = knob;
   if (knob.adaptive()) attempt.paces = std::make_shared<Paces>(knob.local_error, safety);
-  if (last.whole) attempt.paced_by = last.paces;
+  if (last.whole && knob.adaptive()) attempt.paced_by = last.paces;
   Scene solved = solved_by(choice_of(attempt), scene_);
   solved.step = scene_.duration / knob.steps();
   attempt.full = runs_ > 0 && knob.intervals == intervals_of_own_steps;
@@ -147,7 +130,10 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool 
     if (std::abs(frame.time - static_cast<double>(attempt.frames.size()) * interval) < 1e-6 * interval)
       attempt.frames.push_back(frame);
     attempt.energy_share = so_far.balance.energy.share();
-    if (!knob.adaptive()) return (attempt.price = price_of_fixed(knob, so_far)) <= most;
+    if (!knob.adaptive()) {
+      attempt.price = price_of_fixed(knob, so_far);
+      return attempt.price <= most && !(judged && differ(yardstick_, last, attempt));
+    }
     if (judged && (attempt.foreseen = foreseen_distance(yardstick_, solved.duration, last, attempt)) > 0) return false;
     attempt.price = price_of_adaptive(so_far);
     const bool is_stiff = first_price_ > 0, rescued = so_far.counts.rescued > 0;
@@ -162,7 +148,8 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool 
   std::string ignored;
   attempt.result = run_once(solved, options, runs_ == 0 ? warnings_ : ignored);
   const RunResult& result = attempt.result;
-  attempt.price = knob.adaptive() ? price_of_adaptive(result) : price_of_fixed(knob, result);
+  const double share = static_cast<double>(result.steps) / knob.steps();
+  attempt.price = knob.adaptive() ? price_of_adaptive(result) : price_of_fixed(knob, result, share);
   // A bound that is met within a step leaves that one to another method.
   attempt.left_steps = result.counts.rescued - (attempt.price > options.most_evaluations ? 1 : 0);
   stiff_price_ = stiff_price(scene_, result.diagnosis);
@@ -227,7 +214,7 @@ bool Search::in_reach(const Attempt& now, double most) const {
 // first run of another method, they are delivered.
 void Search::try_even_steps(const Attempt& even) {
   const bool is_slow = stiff_at_start_ <= slow * yardstick_.mechanisms();
-  Attempt now = attempt({is_slow ? Integrator::rattle : Integrator::implicit}, infinity, {}, false);
+  Attempt now = attempt({is_slow ? Integrator::rattle : Integrator::implicit}, infinity, even, true);
   if (now.whole && now.result.counts.rescued == 0) judge_unlike(scene_, yardstick_, even, now);
   keep(std::move(now));
 }
