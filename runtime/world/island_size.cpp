@@ -62,6 +62,23 @@ double longest_distance(const Batch<S>& batch, int slot, const Bodies<S>& all) {
   return longest;
 }
 
+// Of an island's movable bodies from the origin.
+template <class S>
+double farthest(const WorldData<S>& world, const Island<S>& island) {
+  double far = 0;
+  for (int body : island.bodies) far = std::max(far, distance<S>(world.bodies.pose[body], {}));
+  return far;
+}
+
+// A wheel that is held at its centre has no arm. Round-off of its place, and of what a scene computes about 1 m (the
+// cosine of a right angle), would be one of 1e-17 m, and no step resolves lengths like it.
+template <class S>
+bool round_off(double size, double far) {
+  using T = typename S::Scalar;
+  constexpr double digits = std::numeric_limits<double>::epsilon(), digits_of_poses = std::numeric_limits<T>::epsilon();
+  return size <= 8 * (digits + digits_of_poses * far);
+}
+
 }  // namespace
 
 template <class S>
@@ -78,7 +95,7 @@ void measure_size(WorldData<S>& world, Island<S>& island) {
     }
   }
   island.evaluated = false;
-  island.size = size > 0 ? T(size) : T(1);
+  island.size = round_off<S>(size, farthest(world, island)) ? T(1) : T(size);
   // Small are not only mechanisms, but also slopes, as that of a squared distance [m^2].
   island.scale = std::min(T(10) * island.size, T(1)) * T(std::min(lengths.least_slope, 1.0));
 }
