@@ -346,7 +346,9 @@ std::string corrections_of(double tolerance, const Contents& has, const std::str
     text += when(has.ends,
                  "    Bounded B;\n    bool reached = false;  // B is that of `at`\n    Mask active[bounded];\n"
                  "    for (int i = 0; i < bounded; ++i) ") +
-            when(has.ends, has.modes ? "active[i] = magnitude(s.hold[i]) < T(0.5);\n" : "active[i] = T(1) < T(0);\n");
+            when(has.ends, !has.modes      ? "active[i] = T(1) < T(0);\n"
+                           : has.late_ends ? "active[i] = magnitude(s.hold[i]) < T(0.125);\n"
+                                           : "active[i] = magnitude(s.hold[i]) < T(0.5);\n");
     text += "    for (int round = 0;; ++round) {\n";
     text += has.rows ? errors_of_rows : "      const T of_joints = T(0);\n";
     text += has.ends ? fmt::format(errors_of_ends, has.modes ? leaves_out_free_rows : "")

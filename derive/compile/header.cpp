@@ -362,7 +362,7 @@ class HeaderWriter {
             "(&of_rate)[bounded], T (&of_force)[bounded])",
         equations_.resolve);
     if (has().loads) write_carry(at);
-    text_ += modes_of(has(), equations_.waits, equations_.cones);
+    text_ += modes_of(has(), equations_.waits, equations_.cones, equations_.late, mechanism_.tolerance);
   }
 
   void write_step() {

@@ -17,6 +17,13 @@
 namespace cdot {
 namespace {
 
+// True for an end that began to hold where it is passed. It holds its bodies there, and the next start moves them.
+template <class S>
+bool is_passed(const Island<S>& island, const Batch<S>& batch, const Guard<typename S::Scalar>& guard) {
+  using T = typename S::Scalar;
+  return batch.law->distance && guard.one_sided() && -guard.gap() > foreign<T> * island.scale;
+}
+
 // The error of a row under a law. At acceleration level only held rows must be at their end.
 template <class S>
 void error_of_law(const Island<S>& island, const Batch<S>& batch, int slot, typename S::Scalar* error) {
@@ -28,7 +35,7 @@ void error_of_law(const Island<S>& island, const Batch<S>& batch, int slot, type
   Guard<T> guards[most_rows];
   batch.law->guard(batch, slot, guards);
   for (int r = 0; r < rows; ++r)
-    if (batch.mode[slot * rows + r] == Mode::held) error[r] = guards[r].off_by;
+    if (batch.mode[slot * rows + r] == Mode::held && !is_passed(island, batch, guards[r])) error[r] = guards[r].off_by;
 }
 
 // Adds `share` of the prescribed rates of held rows to the bias.

@@ -106,6 +106,15 @@ constexpr const char* decides = R"(
 {7}  }}
 )";
 
+// An end that began to hold where it is passed holds its bodies there: the step's end does not close it, and the next
+// start moves them. As the World does it: runtime/solve/projection.cpp.
+constexpr const char* holds_beyond = R"(    constexpr bool late[bounded] = {{{0}}};
+    for (int i = 0; i < bounded; ++i) {{
+      const Mask passed = magnitude(s.hold[i]) < T(0.5) && gap(G, i) < T((single ? -1e9 : -1e5) * {1});
+      if (late[i]) s.hold[i] = select(passed, T(0.25), s.hold[i]);
+    }}
+)";
+
 constexpr const char* margins_begin = R"(
   // How far each row is from its next event, in units of the resolution. Off: C - end. Held: its force from its bounds.
   // At a bound: the missing rate. Returns how far the furthest end is passed, beyond a few resolutions.
@@ -277,7 +286,7 @@ std::string choices_of(const Contents& has) {
   return text + fmt::format(chooses_again, asks);
 }
 
-std::string decides_of(const Contents& has) {
+std::string decides_of(const Contents& has, const std::string& late, double tolerance) {
   const std::string J = has.rows ? "s.J, s.lambda, " : "";
   return fmt::format(
       decides, J, has.loads ? bounds_by_load : "",
@@ -286,7 +295,8 @@ std::string decides_of(const Contents& has) {
                 : "solve(force);",
       has.loads ? stops_jammed : "",
       std::string(has.loads ? " && !jams" : "") + (has.strong ? " && !(drives && stopped[i])" : ""),
-      has.strong ? finds_strong_motors : "", has.cones ? offers_cones : "", has.cones ? decides_cones : "");
+      has.strong ? finds_strong_motors : "", has.cones ? offers_cones : "",
+      (has.cones ? decides_cones : "") + (has.late_ends ? fmt::format(holds_beyond, late, tolerance) : ""));
 }
 
 }  // namespace
@@ -309,12 +319,13 @@ std::string arguments_of_pull(const Contents& has) {
          (has.loads ? "s.modes.load, " : "") + "s.a";
 }
 
-std::string modes_of(const Contents& has, const std::string& waits, const std::string& cones) {
+std::string modes_of(const Contents& has, const std::string& waits, const std::string& cones, const std::string& late,
+                     double tolerance) {
   std::string text = pull_of(has) + kinds_of_rows + resolutions;
   if (has.loads) text += grows + settle_loads_of(has, cones);
   if (has.cones) text += aims_cones;
   if (has.forces) text += latches;
-  text += stops_of(has) + decides_of(has);
+  text += stops_of(has) + decides_of(has, late, tolerance);
   std::string margins = margins_begin;
   const std::string_view growing = "    grow(G, m);\n";
   if (!has.loads) margins.erase(margins.find(growing), growing.size());

@@ -11,7 +11,8 @@ namespace cdot::compile {
 std::string modes_types(const Contents& has);
 // The mode of each row, and accelerations in these modes. Of each row waits: whether it waits for an event; cones: as
 // settle_loads_of() has it.
-std::string modes_of(const Contents& has, const std::string& waits, const std::string& cones);
+std::string modes_of(const Contents& has, const std::string& waits, const std::string& cones, const std::string& late,
+                     double tolerance);
 // Those of pull(), after the pose, the time and the velocities of a State.
 std::string arguments_of_pull(const Contents& has);
 // True if loads may end a row or a joint; the distance from such an event that counts as none.

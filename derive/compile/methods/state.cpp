@@ -47,7 +47,9 @@ std::string of_rows(const Mechanism& mechanism, const Contents& has) {
         mechanism.method == Method::rattle ? "forces of first halves"
                                            : "corrections' multipliers by the step's square");
   if (has.bounded)
-    text += "    T hold[bounded];  // of the rows with bounds: -1 at the lower one, 1 at the upper one, 0 between\n";
+    text += fmt::format(
+        "    T hold[bounded];  // of the rows with bounds: -1 at the lower one, 1 at the upper one, 0 between{}\n",
+        has.modes && has.late_ends ? ",\n                      // 1/4 held beyond an end" : "");
   if (has.bounded && (has.midpoint || has.weighs)) text += "    T force[bounded];  // of these\n";
   if (has.carries_over()) {
     text +=

@@ -1,6 +1,7 @@
 // Ends that begin to hold where they are passed, by a spec that no catalogue has.
 #include <cdot/balance.hpp>
 #include <cdot/integrators.hpp>
+#include <cdot/methods.hpp>
 
 #include "runtime/own/own.hpp"
 #include "tests/runtime/support.hpp"
@@ -50,6 +51,30 @@ TEST(OwnEnds, AnEndThatIsPassedAsItBeginsThrowsNoBody) {
         const Balance balance = world.balance();
         EXPECT_NEAR(balance.taken - balance.put_in, M * m / (M + m) * (v - V) * (v - V) / 2, 1e-5) << row.name;
       }
+}
+
+// A force presses the slider on beyond the end. By methods that locate the event it stands where it is until the step
+// ends, which tells how far the end is passed; the next step moves it to the end.
+TEST(OwnEnds, AnEndThatIsPassedAsItBeginsHoldsAgainstAForce) {
+  constexpr double v = 1, force = 0.5, begin = 0.303, top = 0.1, h = 0.01;
+  constexpr double stands = v * begin + force * begin * begin / 2;
+  const std::string type = late_end();
+  for (const Integrator by : {Integrator::rk4, Integrator::dop853, Integrator::radau5}) {
+    World<double> world({.integrator = by});
+    const int body = world.add_body({.vx = v, .mass = 1, .inertia = 1, .force_x = force});
+    const int guide =
+        world.add_joint({"prismatic", {body, world.ground()}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0, 1}}}, {}});
+    add_effect(world, guide, "slide", SpecEffect{type, {{"top", {top}}, {"begin", {begin}}}});
+    for (int k = 0; k < 31; ++k) ASSERT_TRUE(world.step(h));
+    EXPECT_NEAR(world.pose(body).x, stands, 1e-9) << name_of(integrators, by);
+    EXPECT_NEAR(world.worst_passed_end().by, stands - top, 1e-9) << name_of(integrators, by);
+    for (int k = 0; k < 9; ++k) {
+      ASSERT_TRUE(world.step(h));
+      EXPECT_NEAR(world.pose(body).x, top, 1e-12) << name_of(integrators, by);
+      EXPECT_NEAR(world.velocity(body).x, 0, 1e-12) << name_of(integrators, by);
+    }
+    EXPECT_EQ(world.step_counts().rescued, 0) << name_of(integrators, by);
+  }
 }
 
 }  // namespace
