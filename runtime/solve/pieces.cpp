@@ -34,11 +34,12 @@ double begin_piece(WorldData<S>& world, Island<S>& island, double time, double h
   const double near = one_time<typename S::Scalar>(time, h);
   for (const auto& [batch, begin, end, whole] : island.segments) {
     if (!batch->driven()) continue;
+    const bool has_ends = batch->law && batch->law->error;
     for (int slot = begin; slot < end; ++slot) {
       const bool effect = joint_types(S::dimension)[world.joints[batch->joint[slot]].type].is_effect;
       double slot_until = unbounded;
       for (const Drive& drive : batch->drives_of(slot)) {
-        const int lowest = effect || drive.of_row ? 0 : 1;
+        const int lowest = (effect || drive.of_row) && !has_ends ? 0 : 1;
         slot_until = std::min(slot_until, drive.profile.next_break(time + near, std::max(order, lowest)));
       }
       begin_span(world, island, *batch, slot, time, {time + near, slot_until}, effect);

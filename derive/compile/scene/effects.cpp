@@ -90,7 +90,7 @@ class EffectReader {
   bool notes_parameters(const SceneJoint& source, int joint) {
     parameters_in_time_.clear();
     if (!source.definition.soft && !is_rope(world_.joint_type(joint))) return true;
-    const bool known = find_functions(scene_, record(joint), -1, mechanism_, parameters_in_time_);
+    const bool known = find_functions(scene_, record(joint), -1, true, mechanism_, parameters_in_time_);
     if (!known) refuse_(source, fmt::format("{}: numbers that follow a function of a program", source.name));
     return known;
   }
@@ -219,9 +219,17 @@ class EffectReader {
       mechanism_.joints.back().speed_in_time = speed->second;
   }
 
+  // Among the rows of a place; -1: of the joint.
+  bool has_ends(int joint, int place) {
+    const std::vector<Place>& places = record(joint).places;
+    const auto ends = [&](const Place& of) { return batch_of(of).law && batch_of(of).law->error; };
+    return place < 0 ? std::ranges::any_of(places, ends) : ends(places[static_cast<std::size_t>(place)]);
+  }
+
   // Notes which numbers follow functions of time. `place`: of its rows; -1: its own. False if it is refused.
   bool note_functions(const SceneJoint& source, int joint, int place, Effect& effect) {
-    const bool known = find_functions(scene_, record(joint), place, mechanism_, effect.in_time);
+    const bool moves = has_ends(joint, place);
+    const bool known = find_functions(scene_, record(joint), place, moves, mechanism_, effect.in_time);
     if (!known) refuse_(source, fmt::format("{}: numbers that follow a function of a program", effect.name));
     return known;
   }
@@ -280,8 +288,9 @@ class EffectReader {
 
 }  // namespace
 
-bool find_functions(const Scene& scene, const JointRecord& record, int place, Mechanism& mechanism,
+bool find_functions(const Scene& scene, const JointRecord& record, int place, bool moves, Mechanism& mechanism,
                     std::map<std::size_t, InTime>& in_time) {
+  const int order = mechanism.on_accelerations() ? 2 : moves ? 1 : 0;
   for (const auto& [of_place, drive] : record.drives) {
     if (of_place != place) continue;
     const WrittenProfile* const written = written_profile(scene, drive.profile);
@@ -290,7 +299,7 @@ bool find_functions(const Scene& scene, const JointRecord& record, int place, Me
     function = {written->text, written->unit};
     if (!written->text.empty()) continue;
     function.table = static_cast<int>(mechanism.tables.size());
-    mechanism.tables.push_back(table_of(written->table, mechanism.on_accelerations() ? 2 : 0));
+    mechanism.tables.push_back(table_of(written->table, order));
   }
   return true;
 }

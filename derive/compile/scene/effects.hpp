@@ -20,8 +20,8 @@ using RefuseEffect = std::function<void(const SceneJoint&, const std::string&)>;
 bool is_rope(const JointType& type);
 
 // The functions of time that numbers of a place follow (of its rows; -1: its own), by number; adds their tables to the
-// mechanism. False if a program has given one.
-bool find_functions(const Scene& scene, const JointRecord& record, int place, Mechanism& mechanism,
+// mechanism. False if a program has given one. `moves`: they prescribe positions, so that steps end at their kinks.
+bool find_functions(const Scene& scene, const JointRecord& record, int place, bool moves, Mechanism& mechanism,
                     std::map<std::size_t, InTime>& in_time);
 
 // The rows by which the World counts the stiffness of tension of a place.

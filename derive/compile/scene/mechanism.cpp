@@ -153,7 +153,7 @@ void add_joint(const Scene& scene, BasicWorld<S>& world, int index, Mechanism& m
   const JointRecord& record = world.data().joints[static_cast<std::size_t>(index)];
   if (!record.places.empty()) joint.tensions = tensions_of(world, record.places[0]);
   if (counts_turns(world, index)) joint.turns = turns_of(world.joint_type(index), mechanism);
-  if (!find_functions(scene, record, -1, mechanism, joint.in_time)) {
+  if (!find_functions(scene, record, -1, true, mechanism, joint.in_time)) {
     Refusals refusals(scene);
     refusals.add(scene.joints[static_cast<std::size_t>(index)].where,
                  fmt::format("{}: cdot compile knows no numbers that follow a function of a program", joint.name),

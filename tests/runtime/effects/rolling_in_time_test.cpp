@@ -38,7 +38,7 @@ TEST(RollingInTime, AHeldRowDoesNotFeelHowItsBoundMoves) {
 }
 
 // A ball whose radius grows, r = 1 + t, rolls on a plane: v = w r, m dv/dt = -I dw/dt / r, so that
-// w^2 (m r^2 + I) stays.
+// w^2 (m r^2 + I) stays. At the run's end the radius has a kink: in the last step the plane still lifts the ball.
 TEST(RollingInTime, ABallThatGrowsRollsMoreSlowly) {
   constexpr double m = 2, I = 0.8, w0 = 1.5;
   for (const IntegratorRow& row : integrator_rows) {
@@ -50,10 +50,10 @@ TEST(RollingInTime, ABallThatGrowsRollsMoreSlowly) {
                      {}});
     run(world, duration, 1e-3);
     // Linearly implicit Euler holds rates with the radius at the start of a step.
-    const bool first_order = row.order == 1 || row.integrator == Integrator::implicit;
-    const double w = w0 * std::sqrt((m + I) / (m * 4 + I)), tolerance = first_order ? 2e-3 : 1e-5;
+    const double w = w0 * std::sqrt((m + I) / (m * 4 + I)), tolerance = row.order == 1 ? 2e-3 : 1e-6;
     EXPECT_NEAR(world.velocity(growing).wy, w, tolerance) << row.name;
     EXPECT_NEAR(world.velocity(growing).x, 2 * w, 2 * tolerance) << row.name;
+    EXPECT_NEAR(world.velocity(growing).z, 1, 1e-9) << row.name;
   }
 }
 
