@@ -171,6 +171,7 @@ Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
           .ends = equations.has_ends,
           .events = equations.has_events,
           .late_ends = equations.has_late_ends,
+          .numbers_of_J = !equations.stored.empty(),
           .forces = mechanism.has_events_by_force(),
           .spatial = mechanism.spatial(),
           .gyroscopes = mechanism.has_gyroscopes(),

@@ -13,6 +13,7 @@ struct Contents {
   bool rows = false, effects = false, bounded = false, ends = false;
   bool events = false;                                       // among rows with bounds some that begin or end to act
   bool late_ends = false;                                    // that wait for an event
+  bool numbers_of_J = false;                                 // J is not constant
   bool forces = false;                                       // by the force that a row carries
   bool spatial = false, gyroscopes = false, angles = false;  // angles: that count whole turns
   // By RATTLE: effects act by their rates at the start; rates at the end are looked for; the end solves for more than

@@ -69,6 +69,7 @@ std::string reset_of(const Contents& has) {
   const auto set = [&](bool has, const char* of, const char* list, int value) {
     if (has) text += fmt::format("    for (T& {0} : s.{1}) {0} = T({2});\n", of, list, value);
   };
+  if (has.gyroscopes) text += "    for (Pose& of_body : s.q) of_body.I = {};\n";  // those that do not turn stay so
   set(has.bounded, "of_row", "hold", 0);
   set(has.events, "of_row", "events.began", 0), set(has.events, "of_row", "events.ended", 0);
   set(has.bonds, "of_joint", "bonds.holds", 1), set(has.bonds, "of_joint", "bonds.load", 0);
@@ -86,7 +87,9 @@ std::string state_of(const Mechanism& mechanism, const Contents& has, bool input
   if (has.bonds) text += "    Bonds bonds;\n";
   if (has.exerts) text += "    T begins[groups];  // 1 before the first step of a mechanism\n";
   if (has.closes()) text += "    T residual;      // the largest |C| [m], [rad]\n";
-  if (has.rows) text += "    Jacobian J;      // of the poses q\n";
+  if (has.rows)
+    text += has.numbers_of_J ? "    Jacobian J;      // of the poses q\n"
+                             : "    inline static Jacobian J;  // without numbers: no byte of a State\n";
   return text + state_ends;
 }
 

@@ -54,11 +54,22 @@ double distance(const typename Compiled::State& state, const BasicWorld<S>& worl
   return farthest;
 }
 
+// reset() sets every byte of a State, so that equal States have equal bytes.
+template <class Compiled>
+void sets_every_byte() {
+  using State = typename Compiled::State;
+  alignas(State) unsigned char some[sizeof(State)], others[sizeof(State)];
+  std::memset(some, 0x55, sizeof some), std::memset(others, 0xaa, sizeof others);
+  Compiled::reset(*reinterpret_cast<State*>(some)), Compiled::reset(*reinterpret_cast<State*>(others));
+  for (std::size_t k = 0; k < sizeof some; ++k) ASSERT_EQ(some[k], others[k]) << k << " of " << sizeof some;
+}
+
 template <class Compiled>
 void runs_as_the_world(const std::string& file, Integrator integrator, double within = 1e-10, double until = 0.7,
                        double step = 0.001) {  // [s]; the four-bar is singular at 0.708 s
   using S = std::conditional_t<is_spatial<Compiled>, Spatial<double>, Planar<double>>;
   auto world = world_of<S>(read_scene(std::string(CDOT_SOURCE_DIR) + "/" + file), integrator);
+  sets_every_byte<Compiled>();
   typename Compiled::State state;
   Compiled::reset(state);
   double farthest = 0, moved = 0;

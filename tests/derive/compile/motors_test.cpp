@@ -4,6 +4,8 @@
 
 #include "bennett_dop853.hpp"
 #include "bennett_rk4.hpp"
+#include "brakes_euler.hpp"
+#include "brakes_rk4.hpp"
 #include "cam_dop853.hpp"
 #include "cam_rk4.hpp"
 #include "tests/derive/compile/beside_world.hpp"
@@ -25,6 +27,12 @@ TEST(CompiledMotors, MoveByRk4AsTheWorld) {
 TEST(CompiledMotors, MoveByDop853AsTheWorld) {
   cdot::runs_as_the_world<cam_dop853<double>>(gallery + "cam.toml", Integrator::dop853);
   cdot::runs_as_the_world<bennett_dop853<double>>(gallery + "bennett.toml", Integrator::dop853);
+}
+
+// J of wheels on fixed pins is constant.
+TEST(CompiledMotors, ResetSetsEveryByteBesideAConstantJ) {
+  cdot::sets_every_byte<brakes_euler<double>>();
+  cdot::sets_every_byte<brakes_rk4<double>>();
 }
 
 TEST(CompiledMotors, AnEffectBesideTheSceneMovesAsInTheWorld) {
