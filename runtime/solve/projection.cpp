@@ -167,6 +167,20 @@ void project_velocities_at_start(WorldData<S>& world, Island<S>& island) {
   else take(world, source, -gained);
 }
 
+namespace {
+
+// Of the rows of joints, as find_errors() left them.
+template <class S>
+typename S::Scalar error_of_joints(Island<S>& island) {
+  typename S::Scalar worst = 0;
+  each_row(island, [&](const Batch<S>& batch, int i) {
+    if (!batch.law) worst = std::max(worst, std::abs(batch.error[i]));
+  });
+  return worst;
+}
+
+}  // namespace
+
 template <class S>
 void project_start(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   using T = typename S::Scalar;
@@ -176,8 +190,12 @@ void project_start(WorldData<S>& world, Island<S>& island, typename S::Scalar ti
   Bodies<S>& all = world.bodies;
   const bool exact = island.solver->exact;
   for (size_t k = 0; exact && k < island.bodies.size(); ++k) island.flow.pose[k] = all.pose[island.bodies[k]];
-  const T error = find_errors(world, island, time);
+  const bool goes_on = std::isfinite(island.residual);
+  const T error = find_errors(world, island, time), near = foreign<T> * island.scale;
+  const bool fitted = error_of_joints(island) <= near;
   island.solver->positions(world, island, time, true);
+  // An end that began to hold where no pose of the joints reaches it would tear them apart.
+  if (exact && goes_on && fitted && error_of_joints(island) > near) island.trouble = StepProblem::joints_apart;
   if (exact) fail_if_moved_far(world, island, double(error), 0);
   // Joints that contradict each other may have no pose near by, and Newton leads away from all.
   if (exact && island.residual > error) {
