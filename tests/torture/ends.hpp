@@ -7,6 +7,7 @@
 
 #include <cdot/diagnose.hpp>
 
+#include "runtime/events/latch.hpp"
 #include "runtime/state/world_data.hpp"
 #include "tests/torture/motion.hpp"
 
@@ -20,11 +21,25 @@ struct EndRow {
   std::vector<double> direction;  // its row of J, of length 1; turns count with that length
 };
 
+// True if the end of a slot began to hold in the last step: it may be passed, which the World tells, and the next step
+// moves the bodies there. `rows` are evaluated at the time before that step.
 template <class S>
-void add_end_rows(const WorldData<S>& state, const Batch<S>& batch, double length, std::vector<EndRow>& ends) {
+bool began_since(const Batch<S>& rows, int slot) {
+  if (!rows.law->distance) return false;
+  typename S::Scalar from[2];
+  rows.law->distance(rows, slot, 0, 0, from);
+  return from[0] > at_event<typename S::Scalar>;
+}
+
+template <class S>
+void add_end_rows(const WorldData<S>& state, const Batch<S>& batch, double length, double step,
+                  std::vector<EndRow>& ends) {
   using Real = ExactNumber<typename S::Scalar>;
   Batch<S> rows = batch;  // a copy, because the next step may start from the World's own rows
   const int count = rows.ops->rows, bodies = rows.ops->bodies;
+  rows.ops->evaluate(rows, 0, rows.count(), state.bodies, typename S::Scalar(state.time - step));
+  std::vector<bool> began;
+  for (int slot = 0; slot < rows.count(); ++slot) began.push_back(step > 0 && began_since(rows, slot));
   rows.ops->evaluate(rows, 0, rows.count(), state.bodies, typename S::Scalar(state.time));
   for (int slot = 0; slot < rows.count(); ++slot) {
     const int joint = rows.joint[static_cast<std::size_t>(slot)];
@@ -35,7 +50,9 @@ void add_end_rows(const WorldData<S>& state, const Batch<S>& batch, double lengt
     rows.law->error(rows, slot, error);
     rows.ops->dense(rows, slot, state.bodies, J, weighted, K, count);
     for (int r = 0; r < count; ++r) {
-      EndRow end{joint, std::abs(double(error[r])), 0, {}};
+      const bool moves = double(K[r * count + r]) > 0;  // else no body can, as one that never turns
+      const bool counts = moves && !began[static_cast<std::size_t>(slot)];
+      EndRow end{joint, counts ? std::abs(double(error[r])) : 0, 0, {}};
       double square = 0;
       for (int c = 0; c < S::freedom * bodies; ++c) {
         const double slope = double(J[r * S::freedom * bodies + c]) * (c % S::freedom < S::lengths ? length : 1.0);
@@ -50,11 +67,11 @@ void add_end_rows(const WorldData<S>& state, const Batch<S>& batch, double lengt
 }
 
 template <class S>
-std::vector<EndRow> end_rows(BasicWorld<S>& world, double length) {
+std::vector<EndRow> end_rows(BasicWorld<S>& world, double length, double step = 0) {
   const WorldData<S>& state = world.data();
   std::vector<EndRow> ends;
   for (const auto& batch : state.batches)
-    if (batch->law && !batch->law->reported && batch->law->error) add_end_rows(state, *batch, length, ends);
+    if (batch->law && !batch->law->reported && batch->law->error) add_end_rows(state, *batch, length, step, ends);
   std::ranges::stable_sort(ends, {}, &EndRow::joint);  // slots change places when a joint breaks
   return ends;
 }
@@ -67,7 +84,8 @@ double passed_share(BasicWorld<S>& world, double length, double step, double hel
   double share = 0, size = std::max(1.0, length);
   if (world.worst_passed_end().by > held * size)
     for (const Diagnosis::Island& island : diagnose(world, step).islands) size = std::max(size, island.size);
-  for (const EndRow& end : end_rows(world, length)) share = std::max(share, end.passed / std::max(size, end.reach));
+  for (const EndRow& end : end_rows(world, length, step))
+    share = std::max(share, end.passed / std::max(size, end.reach));
   return share;
 }
 

@@ -7,6 +7,7 @@
 #include <cdot/jacobian.hpp>
 
 #include "tests/torture/draw/in_time.hpp"
+#include "tests/torture/draw/own_effects.hpp"
 #include "tests/torture/pushes.hpp"
 
 namespace cdot::torture {
@@ -260,10 +261,12 @@ Laws laws_of(const Scene& scene) {
   laws.energy_falls = !exchange.gives;
   laws.smooth = is_smooth(scene);
   laws.may_contradict = prescribes_motion(scene) && may_stop_a_motion(scene);
+  const bool leaps = has_late_ends(scene);  // poses change without a motion
+  if (leaps) laws.energy_kept = laws.energy_falls = laws.smooth = false;
   if (scene.settings.sleep_after > 0 || !is_free(scene)) return laws;
   const double g[3] = {scene.settings.gravity_x, scene.settings.gravity_y, scene.settings.gravity_z};
   const bool planar = scene.dimension == Dimension::planar;
-  const bool turns = !has_soft_rows(scene) && !takes_torque(scene) &&
+  const bool turns = !leaps && !has_soft_rows(scene) && !takes_torque(scene) &&
                      (planar ? turns_as_one<Planar<double>>(scene) : turns_as_one<Spatial<double>>(scene));
   for (std::size_t k = 0; k < 3; ++k) {
     laws.linear[k] = g[k] == 0 && !(planar && k == 2);

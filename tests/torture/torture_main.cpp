@@ -140,7 +140,8 @@ int torture(const Options& options) {
     const std::clock_t began = std::clock();
     Asked asked = options.asked();
     Verdict verdict = judged(options, mechanism.scene, asked);
-    if (verdict.outcome != Outcome::refused && !verdict.broken() && !options.misfit && !options.advice) {
+    if (verdict.outcome != Outcome::refused && !verdict.broken() && !options.misfit && !options.advice &&
+        !options.wish.late) {  // steps by sweeps pay for what an end lifts
       asked.swept = seed;
       const Verdict by_sweeps = judge(mechanism.scene, asked);
       if (by_sweeps.broken()) verdict = by_sweeps;
@@ -190,6 +191,7 @@ int main(int count, char** arguments) {
   app.add_flag("--effects", options.wish.effects, "effects of specs, on bodies and on coordinates");
   app.add_flag("--islands", options.wish.islands, "few joints, and effects of specs between the islands");
   app.add_flag("--own", options.wish.own, "effects whose specs are written at random, too");
+  app.add_flag("--late", options.wish.late, "ends that begin to hold at a time, where they may be passed");
   app.add_flag("--tables", options.wish.tables, "forces, torques and loads that follow tables with kinks and jumps");
   app.add_flag("--in-time", options.wish.in_time, "numbers of joints and effects follow functions of time");
   app.add_flag("--advice", options.advice, "runs each by cdot-run, and follows its advice; judges nothing else");

@@ -226,6 +226,7 @@ void Growth::grow() {
     };
     if (wish_.effects || wish_.islands) add(effects_of_catalogue(S::dimension));
     if (wish_.own) add(own_effects(random_, S::dimension));
+    if (wish_.late) add(late_ends(random_, S::dimension));
     if (wish_.tables) add_tables<S>(random_, scales_, made_.scene, made_.refused);
     if (wish_.in_time) add_numbers_in_time<S>(random_, scales_, made_.scene, made_.refused);
   } catch (const SceneError& error) {  // the World refuses the projected poses, as gears that have turned too far

@@ -21,6 +21,7 @@ struct Wish {
   bool effects = false;  // of specs too
   bool islands = false;  // few joints, and many such effects between the islands
   bool own = false;      // effects whose specs are written at random
+  bool late = false;     // ends that begin to hold at a time, where they may be passed
   bool in_time = false;  // numbers of joints and effects follow functions of time
   bool tables = false;   // forces that follow tables
   int steps = 200;

@@ -1,5 +1,6 @@
 #include "tests/torture/draw/own_effects.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -25,9 +26,10 @@ class Writer {
  public:
   Writer(Random& random, About about) : random_(random), about_(about) {}
 
-  std::string text(const std::string& name) {
+  std::string text(const std::string& name, int late) {
     declare_coordinate();
-    if (random_.chance(0.3)) write_row();
+    if (late >= 0) write_late_end(late);
+    else if (random_.chance(0.3)) write_row();
     else write_law();
     const char* const space = about_ == About::bodies_in_plane   ? "planar"
                               : about_ == About::bodies_in_space ? "spatial"
@@ -47,10 +49,11 @@ class Writer {
   void write_law();
   void write_pushes();
   void write_row();
+  void write_late_end(int number);
 
   Random& random_;
   About about_;
-  bool turns_ = false, alone_ = false;  // alone: of one body, which it pushes from outside
+  bool turns_ = false, alone_ = false, distance_ = false;  // alone: of one body, which it pushes from outside
   std::string head_, law_, force_;
 };
 
@@ -63,6 +66,7 @@ void Writer::declare_coordinate() {
     const bool along = !turns_ && random_.chance(0.4);
     if (!turns_) head_ += fmt::format("point  pa on a\npoint  pb on {}\n", alone_ ? "world" : "b");
     if (along) head_ += fmt::format("unit   t on {}\n", alone_ ? "world" : "b");
+    distance_ = !turns_ && !along;
     value = turns_ ? (alone_ ? "angle(a)" : "angle(a) - angle(b)") : along ? "dot(t, pa - pb)" : "norm(pa - pb)";
   }
   const std::string coordinate = fmt::format("coordinate s [{}]{}{}\n", unit, value.empty() ? "" : " = ", value);
@@ -151,6 +155,20 @@ void Writer::write_row() {
   law_ += "\n";
 }
 
+// Ends near the rest, which bodies may have passed by then, and ends that the rest itself passes. None asks for a
+// distance below 0.
+void Writer::write_late_end(int number) {
+  const std::string rest = distance_ ? "abs(rest)" : "rest", beyond = distance_ ? "abs(rest)/2" : "rest - upper/8";
+  const std::string ends[late_specs] = {"s >= " + rest + " + lower/8", "s <= " + rest + " + upper/8",
+                                        "s in [" + rest + " + lower/8, " + rest + " + upper]", "s <= " + beyond,
+                                        "s >= " + rest + " + upper/8"};
+  const std::string unit = turns_ ? "rad" : "m";
+  scalar("lower", unit, "");
+  scalar("upper", unit, "");
+  scalar("t0", "s", " above 0");
+  law_ = fmt::format("end: {}, after time >= t0\n", ends[number]);
+}
+
 const char* word_of(About about) {
   switch (about) {
     case About::bodies_in_plane: return "plane";
@@ -162,7 +180,7 @@ const char* word_of(About about) {
 
 std::string text_of_spec(About about, int number) {
   Random random(static_cast<std::uint64_t>(number) * 4 + static_cast<std::uint64_t>(about));
-  return Writer(random, about).text(fmt::format("own_{}_{}", word_of(about), number));
+  return Writer(random, about).text(fmt::format("own_{}_{}", word_of(about), number), number - own_specs);
 }
 
 // The name of the type, derived at its first use.
@@ -182,13 +200,38 @@ std::string registered(About about, int number) {
 
 }  // namespace
 
-EffectTypes own_effects(Random& random, Dimension dimension) {
+namespace {
+
+// One of `count` specs of each kind, from the number `first` on.
+EffectTypes drawn_from(Random& random, Dimension dimension, int first, int count) {
   const About bodies = dimension == Dimension::planar ? About::bodies_in_plane : About::bodies_in_space;
-  const std::string on_bodies = registered(bodies, random.below(own_specs)),
-                    on_lengths = registered(About::lengths, random.below(own_specs)),
-                    on_angles = registered(About::angles, random.below(own_specs));
+  const std::string on_bodies = registered(bodies, first + random.below(count)),
+                    on_lengths = registered(About::lengths, first + random.below(count)),
+                    on_angles = registered(About::angles, first + random.below(count));
   return {{find_joint_type(dimension, on_bodies)},
           {find_coordinate_effect(on_lengths), find_coordinate_effect(on_angles)}};
+}
+
+// The number of an own type; -1: it is none.
+int number_of(const std::string& type) {
+  return type.starts_with("own_") ? std::stoi(type.substr(type.rfind('_') + 1)) : -1;
+}
+
+}  // namespace
+
+EffectTypes own_effects(Random& random, Dimension dimension) { return drawn_from(random, dimension, 0, own_specs); }
+
+EffectTypes late_ends(Random& random, Dimension dimension) {
+  return drawn_from(random, dimension, own_specs, late_specs);
+}
+
+bool has_late_ends(const Scene& scene) {
+  const auto is_late = [](const std::string& type) { return number_of(type) >= own_specs; };
+  return std::ranges::any_of(scene.joints, [&](const SceneJoint& joint) {
+    return is_late(joint.definition.type) || std::ranges::any_of(joint.effects, [&](const CoordinateEffects& effects) {
+             return std::ranges::any_of(effects.specs, is_late, &SpecEffect::type);
+           });
+  });
 }
 
 std::vector<std::pair<std::string, std::string>> own_specs_of(const Scene& scene) {

@@ -13,6 +13,11 @@ constexpr int own_specs = 400;
 // Three of them: on the bodies of that space, on lengths and on angles. Pointers to types before are no longer valid.
 EffectTypes own_effects(Random& random, Dimension dimension);
 
+// So many further specs there are of each kind, of ends that begin to hold at a time, wherever the bodies are then.
+constexpr int late_specs = 5;
+EffectTypes late_ends(Random& random, Dimension dimension);
+bool has_late_ends(const Scene& scene);
+
 // The files of a scene's types: name and text of each.
 std::vector<std::pair<std::string, std::string>> own_specs_of(const Scene& scene);
 
