@@ -11,9 +11,9 @@
 namespace cdot {
 
 // Call before a step from `time` on, of about h: its numbers in time will be those from `time` on to the returned time,
-// the first one at which a derivative of this order or a lower one jumps; of joints and ends, which prescribe positions,
-// at least a kink. An end whose speed falls in the last instant of a step would take back what it pushed before.
-// Infinite without such a time.
+// the first one at which a derivative of this order or a lower one jumps; of joints and ends, which prescribe
+// positions, at least a kink. An end whose speed falls in the last instant of a step would take back what it pushed
+// before. Infinite without such a time.
 template <class S>
 double begin_piece(WorldData<S>& world, Island<S>& island, double time, double h, int order);
 
