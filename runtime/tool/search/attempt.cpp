@@ -18,6 +18,9 @@ constexpr double least_sure = 1e-12;  // below it, smaller steps gain nothing fo
 // Between two looks the error may be so many local errors. Beyond this share of the accuracy they still count in a
 // claim, but refuse no run.
 constexpr double local_errors = 30, unseen = 0.1;
+// A local error allows each velocity an error that is larger in proportion to 1 + the velocity, and it goes on until
+// the end. Where forces have kinks within steps, the error may be so many of them.
+constexpr double velocity_errors = 3;
 // Up to the accuracy asked for, a claim is so many times the error that seems sure.
 constexpr double margin = 1.5;
 constexpr double unlike = 2;  // the error in units of the distance of two methods of different kind
@@ -45,13 +48,18 @@ std::size_t stride_of(const Attempt& coarse, const Attempt& fine) {
   return static_cast<std::size_t>(fine.knob.intervals / coarse.knob.intervals);
 }
 
-// The error that a run may have where it was not compared, up to the accuracy asked for: between the times of the
-// comparison, and by its events, of which hundreds in a row may agree in two runs by chance. Equal steps are compared
-// where they end: a damped motion may be over before.
+// The error that a run may have where the comparison does not show it, up to the accuracy asked for: between its times;
+// by events, of which hundreds in a row may agree in two runs by chance; and by velocities, if the loose run happens to
+// be as good as the fine one. Equal steps are compared where they end: a damped motion may be over before.
 double unseen_error(const Yardstick& yardstick, const Attempt& attempt) {
   if (!attempt.knob.adaptive()) return yardstick.asked();
   const double of_events = yardstick.of_largest(share_of_events) * static_cast<double>(attempt.result.counts.events);
-  return std::min(local_errors * (attempt.knob.local_error + of_events), yardstick.asked());
+  double pace = 0;
+  for (const Frame& frame : attempt.frames) pace = std::max(pace, yardstick.allowed_pace(frame));
+  const double lasts = attempt.frames.empty() ? 0 : attempt.frames.back().time - attempt.frames.front().time;
+  const double error = std::max(local_errors * (attempt.knob.local_error + of_events),
+                                velocity_errors * attempt.knob.local_error * pace * lasts);
+  return std::min(error, yardstick.asked());
 }
 // The share of it that may refuse a run.
 double refusing_error(const Yardstick& yardstick, const Attempt& attempt) {

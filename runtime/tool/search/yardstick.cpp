@@ -1,6 +1,7 @@
 #include "runtime/tool/search/yardstick.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "runtime/tool/run/trajectory.hpp"
 #include "runtime/tool/scene/extent.hpp"
@@ -25,6 +26,16 @@ void Yardstick::see(const std::vector<Frame>& run) {
       size_[k] = std::max(size_[k], cdot::apart(frame.bodies[k], run.front().bodies[k], dimension_).position);
     if (size_[k] == 0) size_[k] = 1;
   }
+}
+
+double Yardstick::allowed_pace(const Frame& frame) const {
+  double most = 0;
+  for (std::size_t k = 0; k < size_.size(); ++k) {
+    const BodyState& body = frame.bodies[k];
+    most = std::max({most, (1 + std::hypot(body.vx, body.vy, body.vz)) / size_[k], 1 + std::abs(body.w),
+                     1 + std::hypot(body.wx, body.wy, body.wz)});
+  }
+  return most;
 }
 
 double Yardstick::apart(const Frame& a, const Frame& b) const {

@@ -20,6 +20,8 @@ class Yardstick {
 
   // A single point has no size: the distance that it travels, in the first run seen, takes the place of one.
   void see(const std::vector<Frame>& run);
+  // The error of velocities that a local error of 1 allows at these, the largest over the bodies [its unit / s].
+  double allowed_pace(const Frame& frame) const;
   // The largest over the bodies.
   double apart(const Frame& a, const Frame& b) const;
 

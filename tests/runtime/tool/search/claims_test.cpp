@@ -336,8 +336,7 @@ Attempt attempt_of(double local_error, int intervals, double share_of_time) {
 // The first run tells nothing about the error of the last one. That of the run between them, which ended after a
 // quarter of the time since it was too far from the first, tells.
 TEST(Claims, CountARunBetweenThatEndedEarly) {
-  const TemporaryFolder folder;
-  const Scene scene = box(folder, 1);
+  const Scene scene = box(TemporaryFolder(), 1);
   const Yardstick yardstick(scene);
   for (const double fine : {2e-8, 9e-9, 2e-9, 2e-10, 2e-11}) {
     const Attempt coarse = attempt_of(2e-2, 16, 1), between = attempt_of(2e-6, 64, 0.25);
@@ -349,6 +348,17 @@ TEST(Claims, CountARunBetweenThatEndedEarly) {
     EXPECT_EQ(now.reached, fine < 1e-9) << fine;
     EXPECT_GT(now.holds_until, 0.09) << fine;  // by the ends of the coarse run's intervals it is 0.0625
   }
+}
+
+// At 1000 m/s a local error allows a thousand times as much of the velocity. An error of one such step goes on for a
+// second, but the loose run happens to make none.
+TEST(Claims, CountTheErrorsOfFastBodies) {
+  const Scene scene = box(TemporaryFolder(), 1);
+  Attempt coarse = attempt_of(2e-5, 16, 1), fine = attempt_of(1e-9, 64, 1);
+  for (Frame& frame : coarse.frames) frame.bodies[0].x = 0;
+  for (Frame& frame : fine.frames) frame.bodies[0].vx = 1000, frame.bodies[0].x = 1e-6 * frame.time;
+  judge(scene, Yardstick(scene), coarse, {}, fine);
+  EXPECT_GT(fine.claimed, 1e-6);
 }
 
 // At 0.79 s a ball meets a rough bowl some 600 times within 5 ms. Runs at local errors from 1e-9 to 1e-13, by two
