@@ -7,8 +7,9 @@ namespace cdot::compile {
 
 inline constexpr const char* arithmetic = R"(#ifndef CDOT_SCENE_ARITHMETIC
 #define CDOT_SCENE_ARITHMETIC
-// Compilers call the solves of a step, whose numbers then go through memory. In 8 lanes that takes 4 to 17 % of it.
-#if defined(__OPTIMIZE__) && !defined(__OPTIMIZE_SIZE__)
+// Compilers call the solves of a step, whose numbers then go through memory. In 8 lanes that takes 4 to 17 % of it. On a
+// microcontroller bytes of code count more.
+#if defined(__OPTIMIZE__) && !defined(__OPTIMIZE_SIZE__) && (defined(__SSE2__) || defined(__aarch64__))
 #define CDOT_SCENE_INLINE [[gnu::always_inline]] inline
 #else
 #define CDOT_SCENE_INLINE inline
