@@ -236,12 +236,17 @@ int System<S>::find_active_set() {
   return settled || rows_ == 0 ? dependent : end_turns();
 }
 
-// Parts contradicting rows until none is left. eased_: motors yielded, and then a row reached or left a bound.
+// Parts contradicting rows until none is left; the others share their error, once. eased_: motors yielded, and then a
+// row reached or left a bound.
 template <class S>
 int System<S>::part_and_settle() {
   yields_ = eased_ = false;
   int dependent = find_active_set();
-  for (int round = 0; round < 2 && dependent > 0 && part_contradicting_rows(); ++round) dependent = find_active_set();
+  for (int round = 0; round < 2 && dependent > 0; ++round) {
+    if (!part_contradicting_rows()) return dependent;
+    dependent = find_active_set();
+  }
+  share_contradictions();
   return dependent;
 }
 
@@ -263,7 +268,6 @@ int System<S>::solve_bounded() {
     load_laws();
     dependent = part_and_settle();
   }
-  share_contradictions();
   share_redundant_loads(Bounds::known);
   std::copy(fixed.begin(), fixed.end(), active_set_.begin());
   for (int r = 0; r < rows_; ++r) lambda[r] = std::clamp(lambda[r], lower[r], upper[r]);

@@ -5,6 +5,7 @@
 
 #include <cdot/methods.hpp>
 
+#include "runtime/state/world_data.hpp"
 #include "tests/runtime/mechanisms.hpp"
 #include "tests/runtime/support.hpp"
 
@@ -142,6 +143,41 @@ TEST(Contradiction, OpensNoOtherJoint) {
       EXPECT_LT(gap_beside_a_misfit<float>(integrator, 1e-3 * speed), 5e-6) << name_of(integrators, integrator);
     }
   }
+}
+
+// The rows of `count` welds of one body, with any b. What is left of b then is orthogonal to all that the rows can
+// reach, K times it is 0, whether the solver takes them as equations or within bounds, and how many of them are
+// redundant.
+void expect_least_error(int count) {
+  Settings s = settings(Solver::direct);
+  World<double> world(s);
+  const int held = world.add_body({.mass = 1, .inertia = 1}), bob = world.add_body({.x = 1, .mass = 1, .inertia = 0.1});
+  for (int k = 0; k < count; ++k)
+    world.add_joint(
+        {"weld", {held, world.ground()}, {{"pa", {0.3 * k, 0.1}}, {"pb", {0.3 * k, 0.1}}, {"phi", {0}}}, {}});
+  revolute(world, held, bob, 0, 0, -1, 0);
+  ASSERT_TRUE(world.step(0.01));
+  auto& system = world.data().islands[0].system;
+  const int rows = system.rows();
+  system.choose([](const auto&, int) { return true; });
+  ASSERT_EQ(system.factor(), 3 * (count - 1));
+  for (int r = 0; r < rows; ++r) system.b[r] = std::sin(1.0 + r);
+  system.solve();
+  std::vector<double> unmet(rows), image(rows), lambda = system.lambda;
+  double largest = 0;
+  for (int r = 0; r < rows; ++r) unmet[r] = system.unmet(r), largest = std::max(largest, std::abs(unmet[r]));
+  EXPECT_GT(largest, 0.1);
+  system.multiply(unmet.data(), image.data());
+  for (const double x : image) EXPECT_NEAR(x, 0, 1e-12);
+  system.multiply(lambda.data(), image.data());
+  for (int r = 0; r < rows; ++r) EXPECT_NEAR(image[r] + unmet[r], system.b[r], 1e-12);
+  system.solve_bounded();
+  system.multiply(system.lambda.data(), image.data());
+  for (int r = 0; r < rows; ++r) EXPECT_NEAR(image[r] + unmet[r], system.b[r], 1e-12) << "row " << r << ", bounded";
+}
+
+TEST(Contradiction, LeavesTheLeastErrorOfManyRowsAndOfFew) {
+  for (const int count : {2, 3, 4, 8}) expect_least_error(count);
 }
 
 }  // namespace
