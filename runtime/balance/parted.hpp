@@ -97,6 +97,13 @@ void add_drifts(const WorldData<S>& world, const Segment<S>& segment, typename S
   }
 }
 
+// True if no energy stores all that these forces do at rest.
+template <class S>
+bool acts_unstored(const Batch<S>& batch) {
+  const Law<S>* law = batch.law;
+  return law && law->force && (law->stores_part || (law->is_of_effect() && !law->energy));
+}
+
 // Rows that RATTLE exerts as forces: Batch::at_rest over h, and in Batch::lambda the impulses of what rates change.
 // Most need no rates: an energy stores the whole force at rest, and nothing damps.
 template <class S, class Rates>
@@ -105,7 +112,7 @@ void work_of_forces(const WorldData<S>& world, const Segment<S>& segment, Rates 
   Batch<S>& batch = *segment.batch;
   const Law<S>& law = *batch.law;
   const int rows = batch.ops->rows, begin = segment.begin * rows, end = segment.end * rows;
-  const bool of_effect = law.is_of_effect(), unstored = law.stores_part || (of_effect && !law.energy);
+  const bool of_effect = law.is_of_effect(), unstored = acts_unstored(batch);
   const bool drifts = batch.explicit_time();
   const auto* const lambda = batch.lambda.data();
   if (!drifts && !unstored && std::all_of(lambda + begin, lambda + end, [](auto x) { return x == 0; })) return;

@@ -238,12 +238,27 @@ constexpr Rows rows_of(Impulses impulses) {
   return impulses == Impulses::dampers ? Rows::springs : impulses == Impulses::relaxed ? Rows::others : Rows::all;
 }
 
+// True if nothing works in the first half of RATTLE, as where discs fly off what they roll on: no row has an impulse,
+// and no force acts without an energy.
+template <class S, class Kind>
+bool rests(const WorldData<S>& world, const Island<S>& island, Kind impulses) {
+  if (!island.drags.empty() || island.by_mass || world.driven) return false;
+  return std::ranges::all_of(island.working, [&](const size_t k) {
+    const Segment<S>& segment = island.segments[k];
+    const Batch<S>& batch = *segment.batch;
+    if (batch.explicit_time() || acts_unstored(batch)) return false;
+    return idle(segment, batch.law && batch.law->force ? batch.lambda.data() : impulses_of(impulses, batch));
+  });
+}
+
 // `impulses`, or a type that holds it: the halves of RATTLE are booked in each step, by code of their own.
 template <class S, class Kind>
 void book(WorldData<S>& world, Island<S>& island, Kind impulses, typename S::Scalar h) {
   using T = typename S::Scalar;
   if (!(impulses == Impulses::drift ? island.driven : works_now(world, island))) return;
   if (impulses == Impulses::dampers && !has_springs(island)) return;
+  if constexpr (!S::has_gyroscopes)
+    if (impulses == Impulses::rattle_start && rests(world, island, impulses)) return;
   const auto& v = world.bodies.velocity;
   auto &start = world.start_of_kick, &mean = world.mean_of_kick;
   const bool at_velocities = impulses == Impulses::middle || impulses == Impulses::drift;
@@ -296,11 +311,10 @@ void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typena
   else book(world, island, impulses, h);
 }
 
-// Known forces have just acted at the present velocities.
+// Known forces have just acted at the present velocities, and something works.
 template <class S>
 void find_power(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar* power) {
   using T = typename S::Scalar;
-  if (!works_now(world, island)) return void(std::fill_n(power, island.flow.work.size(), T(0)));
   Work work{world.work_by_source.data()};  // not read: what each part adds to the sums is its own
   const auto* const v = world.bodies.velocity.data();
   work_on_bodies(world, island, v, v, true, false, T(1), work);
@@ -314,7 +328,7 @@ void find_power(WorldData<S>& world, Island<S>& island, typename S::Scalar time,
     if (batch.law && batch.law->force)
       work_of_whole_forces(world, segment, batch.lambda.data(), acted, acted, time, 1, work);
     else work_of_held_rows(segment, batch.lambda.data(), rates, Kick::only, work);
-    if (may_stiffen(segment)) work_of_stiffness(world, island, segment, time, v, 1, work);
+    if (island.by_mass && may_stiffen(segment)) work_of_stiffness(world, island, segment, time, v, 1, work);
     if (world.driven) work_of_drives(segment, 1, work);
     *of_rows++ = T(work.put_in - work.taken - before);
   });

@@ -34,7 +34,10 @@ typename S::Scalar* read_rates(const WorldData<S>& world, Island<S>& island, int
 template <class S>
 void read_rates(WorldData<S>& world, Island<S>& island, int stage, typename S::Scalar time) {
   auto* const power = read_rates(world, island, stage);
-  if (!island.flow.work.empty()) find_power(world, island, time, power);
+  const size_t count = island.flow.work.size();
+  if (count == 0) return;
+  if (works_now(world, island)) find_power(world, island, time, power);
+  else std::fill_n(power, count, typename S::Scalar(0));
 }
 
 // sum_j weights_j rows_j of rows of T, in A. Registers hold some neighbours at a time, each summed in the order of j.
