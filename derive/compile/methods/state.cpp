@@ -72,7 +72,8 @@ std::string reset_of(const Contents& has) {
   if (has.gyroscopes) text += "    for (Pose& of_body : s.q) of_body.I = {};\n";  // those that do not turn stay so
   set(has.bounded, "of_row", "hold", 0);
   set(has.events, "of_row", "events.began", 0), set(has.events, "of_row", "events.ended", 0);
-  set(has.bonds, "of_joint", "bonds.holds", 1), set(has.bonds, "of_joint", "bonds.load", 0);
+  if (has.bonds) text += "    s.bonds = {};\n";
+  set(has.bonds, "of_joint", "bonds.holds", 1);
   set(has.angles, "angle", "angles.angle", 0), set(has.angles, "turns", "angles.turns", 0);
   return text;
 }
