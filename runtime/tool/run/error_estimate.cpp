@@ -14,7 +14,8 @@
 namespace cdot {
 namespace {
 
-constexpr int steps_as_one = 3;
+// Three steps as one tell more than four; in shorter runs they are dearer.
+constexpr int steps_as_one = 3, steps_as_one_in_short = 4;
 // Of a step. The midpoint rule halves a step that it cannot solve, and would take the same parts of a half.
 constexpr int parts_of_one = 2, parts_of_halved = 3;
 constexpr int more_substeps = 3, more_iterations = 4;
@@ -91,13 +92,18 @@ ErrorEstimate<S>::ErrorEstimate(const Scene& scene, long long steps)
   const double few = divides || tells ? free_parts + free_share * static_cast<double>(steps) : free_steps;
   budget_ = affordable * static_cast<double>(steps) + std::min(few, free_steps);
   parts_ = divides ? parts_of_halved : parts_of_one;
-  const bool whole = steps >= steps_as_one && !divides;
+  const bool whole = steps >= longest_window() && !divides;
   choose(sweeps(settings.solver)            ? By::more_sweeps
          : tells && steps >= rates_.steps() ? By::own_rates
          : whole                            ? By::longer_steps
                                             : By::shorter_steps);
   // A method that chooses its steps has an estimate of its own.
   next_ = scene.settings.local_error > 0 ? never() : std::min((spacing_ + 1) / 2, steps - window_ + 1);
+}
+
+template <class S>
+int ErrorEstimate<S>::longest_window() const {
+  return steps_ < some_dozens[1] ? steps_as_one_in_short : steps_as_one;
 }
 
 template <class S>
@@ -110,7 +116,7 @@ double ErrorEstimate<S>::price() const {
 template <class S>
 void ErrorEstimate<S>::choose(By by) {
   by_ = by;
-  window_ = by == By::own_rates ? rates_.steps() : by == By::longer_steps ? steps_as_one : 1;
+  window_ = by == By::own_rates ? rates_.steps() : by == By::longer_steps ? longest_window() : 1;
   const auto paid = static_cast<long long>(budget_ / price());
   const bool dear = steps_ > some_dozens[0] && steps_ < some_dozens[1];
   const long long usual = dear ? fewer_samples : by == By::own_rates ? by_rates_samples : usual_samples;

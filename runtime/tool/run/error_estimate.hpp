@@ -1,8 +1,8 @@
 // The error of a run's trajectory, estimated while it runs, for at most a twentieth of its steps and twenty more.
 //
-// Before some triples of steps the World takes them as one, goes back, and goes on. A method of order p errs in the
-// three by e = d / (1 - 3^p), d being the difference (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary
-// Differential Equations I", 1993, II.4). That formula need not hold for a step of three times the length.
+// Before some three or four steps the World takes them as one, goes back, and goes on. A method of order p errs in the
+// n steps by e = d / (1 - n^p), d being the difference (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary
+// Differential Equations I", 1993, II.4). That formula need not hold for a step of n times the length.
 // Where such steps fail, are divided, or promise a warning, steps are taken in parts from there on: dearer, and true at
 // longer steps. For sweeps a second World takes the step, with more of them. RK4 tells its errors by its own rates, but
 // for steps with events.
@@ -55,6 +55,7 @@ class ErrorEstimate {
   enum class By { own_rates, longer_steps, shorter_steps, more_sweeps };
 
   void choose(By by);
+  int longest_window() const;  // of By::longer_steps, in steps
   // Of a sample, in steps of the run.
   double price() const;
   long long never() const { return steps_ + 1; }
