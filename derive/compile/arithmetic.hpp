@@ -14,6 +14,11 @@ inline constexpr const char* arithmetic = R"(#ifndef CDOT_SCENE_ARITHMETIC
 #else
 #define CDOT_SCENE_INLINE inline
 #endif
+#if defined(__GNUC__)
+#define CDOT_SCENE_RARE [[gnu::noinline, gnu::cold]]
+#else
+#define CDOT_SCENE_RARE
+#endif
 namespace cdot::scenes {
 
 // The number in T: T itself, or that of a pack such as cdot::Pack<double, 8>.

@@ -11,7 +11,7 @@ namespace {
 
 std::string when(bool condition, const char* text) { return condition ? text : ""; }
 
-// As the World does it: runtime/solve/direct.cpp.
+// As runtime/solve/direct.cpp.
 constexpr const char* close_begins = R"(
   // Newton on C, with J as it is evaluated: anew where a round leaves more than the share `slow` of the error. Adds up
   // the moves{0}. Returns the error before. A lane that is done waits for the others unchanged.
@@ -71,22 +71,28 @@ constexpr const char* renews = R"(      const auto is_slow = goes_on && {0}worst
 constexpr const char* ends_rounds = R"(      if (is_back || !any(goes_on) || round == 20) {{
         const auto worse = worst > error;
         if (is_back || !any(worse)) return error;
-{0}        for (int i = 0; i < bodies; ++i) s.q[i] = choose(worse, free[i], s.q[i]);
-        for (int i = 0; i < bodies; ++i) moves[i] = choose(worse, still(), moves[i]);
-{1}        goes_on = T(1) < T(0), is_back = true;
+        take_back(s, worse, free, moves{});
+        goes_on = T(1) < T(0), is_back = true;
         continue;
       }}
 )";
 
-// All that rounds have summed up is nothing any more.
-std::string takes_back_all(const Contents& has) {
-  constexpr const char* none = "        for (T& of_row : {0}) of_row = select(worse, T(0), of_row);\n";
-  std::string text;
-  for (const auto& [sums, of] : {std::pair{has.foresees, "total"},
-                                 {has.weighs && has.weighs_joints(), "gained"},
-                                 {has.weighs && has.ends, "gained_by_ends"}})
-    if (sums) text += fmt::format(none, of);
-  return fmt::format(ends_rounds, when(has.foresees, "        turn(free);\n"), text);
+constexpr const char* take_back = R"(
+  // Of these lanes: poses as before the rounds, and nothing that the rounds have summed up.
+  CDOT_SCENE_RARE static void take_back(State& s, const Mask& these, Pose (&free)[bodies],
+                                        Velocity (&moves)[bodies]{0}) {{
+{1}    for (int i = 0; i < bodies; ++i) s.q[i] = choose(these, free[i], s.q[i]);
+    for (int i = 0; i < bodies; ++i) moves[i] = choose(these, still(), moves[i]);
+{2}  }}
+)";
+
+std::string takes_back(const Contents& has) {
+  constexpr const char* none = "    for (T& of_row : {0}) of_row = select(these, T(0), of_row);\n";
+  std::string nothing = has.foresees ? fmt::format(none, "total") : "";
+  if (has.weighs && has.weighs_joints()) nothing += fmt::format(none, "gained");
+  if (has.weighs && has.ends) nothing += fmt::format(none, "gained_by_ends");
+  return fmt::format(take_back, when(has.foresees, ", T (&total)[rows]") + parameters_of_gained(has),
+                     when(has.foresees, "    turn(free);\n"), nothing);
 }
 
 constexpr const char* moves_of_rows = R"(      T lambda[rows];
@@ -166,7 +172,6 @@ constexpr const char* projects_rows = R"(    rates(s.J, s.v, rate);
     solve($qs.J, rate, lambda, d);
     for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] - d[i];
 )";
-constexpr const char* shares_projected = "    share(s.J, lambda);\n";
 
 // A lane without a held row keeps its bits.
 constexpr const char* projects_held_rows = R"(    Mask held[bounded], some = T(1) < T(0);
@@ -338,6 +343,7 @@ std::string corrections_of(double tolerance, const Contents& has, const std::str
   std::string text;
   if (has.closes()) {
     if (has.foresees) text += foresight(has.rattle);
+    text += takes_back(has);
     text += fmt::format(close_begins, has.foresees ? " and multipliers to those foreseen" : "",
                         has.foresees ? "Mask foreseen, " : "",
                         (has.foresees ? ", T (&total)[rows]" : "") + parameters_of_gained(has));
@@ -356,11 +362,12 @@ std::string corrections_of(double tolerance, const Contents& has, const std::str
     text +=
         fmt::format(round_begins, tolerance, has.foresees ? "(first ? select(foreseen, T(-1), goal) : goal)" : "goal");
     text += when(has.ends && !has.modes, ends_join);
-    text += when(has.foresees, takes_back);
+    if (has.foresees) text += fmt::format(goes_astray, gained(has));
     text += fmt::format(
         renews, has.ends && !has.modes ? "!more && " : "",
         when(has.rows, "        evaluate($sat.q, at.time, s.J);\n") + when(has.ends, "        reached = false;\n"),
-        renew, has.foresees ? aims(has.spatial) : "", takes_back_all(has));
+        renew, has.foresees ? aims(has.spatial) : "",
+        fmt::format(ends_rounds, when(has.foresees, ", total") + gained(has)));
     const bool turns_with_ends = has.ends && has.gyroscopes && !has.modes;
     text += has.rows ? fmt::format(moves_of_rows, turns_with_ends ? "at.q, " : "$q", has.foresees ? "B, aimed, " : "")
                      : no_moves;
@@ -373,7 +380,7 @@ std::string corrections_of(double tolerance, const Contents& has, const std::str
   }
   if (has.weighs_joints()) text += project_with_impulses();
   else if (has.projects()) text += project_begins + when(has.rows, "    T rate[rows], lambda[rows];\n");
-  if (has.projects()) text += when(has.rows, projects_rows) + when(has.shares_impulses(), shares_projected);
+  if (has.projects()) text += when(has.rows, projects_rows) + when(has.shares_impulses(), "    share(s.J, lambda);\n");
   if (has.modes) text += fmt::format(projects_held_rows, has.rows ? "s.J, " : "");
   if (has.projects()) text += "  }\n";
   return text;

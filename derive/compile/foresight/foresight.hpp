@@ -19,17 +19,14 @@ std::string foresight(bool rattle);
 std::string moves_as_foreseen(bool spatial);
 
 // Foreseen moves that leave slow rounds are taken back: rounds without them decide whether J is to be renewed.
-inline constexpr const char* takes_back = R"(      const auto astray = goes_on && foreseen && worst > slow * before;
-      if (any(astray)) {
-        turn(free);
-        for (int i = 0; i < bodies; ++i) s.q[i] = choose(astray, free[i], s.q[i]);
-        for (int i = 0; i < bodies; ++i) moves[i] = choose(astray, still(), moves[i]);
-        for (int i = 0; i < rows; ++i) total[i] = select(astray, T(0), total[i]);
+inline constexpr const char* goes_astray = R"(      const auto astray = goes_on && foreseen && worst > slow * before;
+      if (any(astray)) {{
+        take_back(s, astray, free, moves, total{});
         before = select(astray, T(1e30), before);
         foreseen = foreseen && !astray, aimed = aimed && !astray;
         --round;
         continue;
-      }
+      }}
 )";
 
 // Aims, where rounds on K would be many.
