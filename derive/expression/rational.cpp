@@ -75,10 +75,16 @@ Rational operator+(Rational a, Rational b) {
   return reduced(Wide(a.num_) * b.den_ + Wide(b.num_) * a.den_, Wide(a.den_) * b.den_);
 }
 
-Rational operator*(Rational a, Rational b) { return reduced(Wide(a.num_) * b.num_, Wide(a.den_) * b.den_); }
+// Most numbers of a program are 1 or -1, and a product by one of these is known as it stands.
+Rational operator*(Rational a, Rational b) {
+  if (a.den_ == 1 && (a.num_ == 1 || a.num_ == -1)) std::swap(a, b);
+  if (b.den_ == 1 && (b.num_ == 1 || b.num_ == -1)) return b.num_ == 1 ? a : -a;
+  return reduced(Wide(a.num_) * b.num_, Wide(a.den_) * b.den_);
+}
 
 Rational operator/(Rational a, Rational b) {
   if (b.num_ == 0) throw NumberTooLarge();
+  if (b.den_ == 1 && (b.num_ == 1 || b.num_ == -1)) return a * b;
   const int sign = b.num_ < 0 ? -1 : 1;
   return reduced(Wide(a.num_) * b.den_ * sign, Wide(a.den_) * b.num_ * sign);
 }

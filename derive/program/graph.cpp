@@ -1,5 +1,6 @@
 #include "derive/program/graph.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -13,11 +14,12 @@ Graph::Graph(const Program& program, Effort& effort) : effort_(effort), outputs_
   for (std::size_t i = 0; i < n; ++i) {
     const int op = static_cast<int>(i);
     ops_.push_back(program.ops[i]);
-    place_.push_back(op), now_.push_back(op), order_.push_back(op);
+    place_.push_back(0), now_.push_back(op);
+    append(op);
     for (const int arg : program.ops[i].args) users_[index(arg)].push_back(op);
     hash_[i] = hash_of(program.ops[i]);
     if (uses_[i] > 0) enter(op);
-    else state_[i] = State::unneeded;
+    else state_[i] = State::unneeded, unneeded_.push_back(op);
   }
   effort_.spend(n);
 }
@@ -35,12 +37,13 @@ void Graph::leave(int op) {
 
 bool Graph::is_placed(int op) const {
   const auto place = index(place_[index(op)]);
-  return place < order_.size() && order_[place] == op;
+  return place < placed_ && order_[place] == op;
 }
 
 void Graph::append(int op) {
-  place_[index(op)] = static_cast<int>(order_.size());
-  order_.push_back(op);
+  if (placed_ == order_.size()) order_.resize(2 * placed_ + 64);
+  place_[index(op)] = static_cast<int>(placed_);
+  order_[placed_++] = op;
 }
 
 // The known operation equal to `op` or to its negative; -1 if there is none.
@@ -110,15 +113,14 @@ void Graph::make_pending(int op) {
   state = State::pending;
 }
 
-// Forgets what the last rewriting left without use and marks `ops`. Returns the operations from the first change on, in
-// order; they have no place now.
-std::vector<int> Graph::begin(const std::vector<int>& ops) {
+// Forgets what the last rewriting left without use and marks `ops`. Takes the operations from the first change on out
+// of the order, into `rest_`.
+void Graph::begin(const std::vector<int>& ops) {
   changes_ = {};
-  std::size_t first = order_.size();
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    const int op = order_[i];
-    if (state_[index(op)] != State::unneeded) continue;
-    first = std::min(first, i);
+  std::size_t first = placed_;
+  std::ranges::sort(unneeded_, {}, [&](int op) { return place(op); });
+  for (const int op : unneeded_) {
+    first = std::min(first, index(place(op)));
     state_[index(op)] = State::gone;
     for (const int arg : at(op).args) {
       Users& users = users_[index(arg)];
@@ -126,18 +128,19 @@ std::vector<int> Graph::begin(const std::vector<int>& ops) {
       users.pop_back();
     }
   }
+  unneeded_.clear();
   for (const int op : ops) {
     make_pending(op);
     state_[index(op)] = State::marked;
     first = std::min(first, index(place(op)));
   }
-  std::vector<int> rest(order_.begin() + static_cast<std::ptrdiff_t>(first), order_.end());
-  order_.resize(first);
-  return rest;
+  rest_.assign(order_.data() + first, order_.data() + placed_);
+  placed_ = first;
 }
 
 void Graph::rewrite(const std::vector<int>& ops, const Rewrite& rewrite) {
-  for (const int op : begin(ops)) {
+  begin(ops);
+  for (const int op : rest_) {
     if (state_[index(op)] == State::gone) continue;
     if (is_placed(op)) {  // moved to the front
       const auto late = late_names_.find(op);
@@ -151,7 +154,7 @@ void Graph::rewrite(const std::vector<int>& ops, const Rewrite& rewrite) {
   }
   late_names_.clear();
   drop_unneeded();
-  effort_.spend(1 + order_.size() / 8);
+  effort_.spend(1 + placed_ / 8);
 }
 
 void Graph::settle(int op, const Rewrite& rewrite) {
@@ -163,7 +166,7 @@ void Graph::settle(int op, const Rewrite& rewrite) {
     for (int& arg : args) arg = now(arg);
     made = rebuild(at(op), std::move(args));
   }
-  if (index(*made) >= known && *made == order_.back() && *made + 1 == size()) take_over(op, *made);
+  if (index(*made) >= known && *made == order_[placed_ - 1] && *made + 1 == size()) take_over(op, *made);
   else forward(op, *made);
   effort_.spend(8 + at(op).args.size());
 }
@@ -181,7 +184,7 @@ void Graph::take_over(int op, int made) {
   state_[to] = State::settled;
   enter(op);
   place_[to] = place_[from];
-  order_.back() = op;
+  order_[placed_ - 1] = op;
   ops_.pop_back(), uses_.pop_back(), place_.pop_back(), now_.pop_back(), next_.pop_back();
   hash_.pop_back(), users_.pop_back(), state_.pop_back();
   changes_.ops.back() = op;
@@ -214,6 +217,7 @@ void Graph::drop_unneeded() {
     if (op >= size() || state_[index(op)] != State::settled || uses_[index(op)] > 0) continue;
     leave(op);
     state_[index(op)] = State::unneeded;
+    unneeded_.push_back(op);
     changes_.ops.push_back(op);
     for (const int arg : at(op).args) {
       if (--uses_[index(arg)] == 0) without_use_.push_back(arg);
@@ -224,9 +228,9 @@ void Graph::drop_unneeded() {
 
 Program Graph::program() const {
   Program program;
-  program.ops.reserve(order_.size());
+  program.ops.reserve(placed_);
   std::vector<int> to(ops_.size(), -1);
-  for (const int op : order_) {
+  for (const int op : order()) {
     if (state_[index(op)] != State::settled) continue;
     to[index(op)] = static_cast<int>(program.ops.size());
     Operation& copy = program.ops.emplace_back(at(op));

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "derive/program/builder.hpp"
@@ -35,7 +36,7 @@ class Graph final : public Builder {
   // The users of an operation, those included that the last rewriting left without use.
   const Users& users(int op) const { return users_[index(op)]; }
   // All operations from front to back, those included that the last rewriting left without use.
-  const std::vector<int>& order() const { return order_; }
+  std::span<const int> order() const { return {order_.data(), placed_}; }
 
   // By the last rewriting: operations that are new, others or gone; used more or less often; placed before others.
   struct Changes {
@@ -62,7 +63,7 @@ class Graph final : public Builder {
   void leave(int op);
   bool is_placed(int op) const;
   void append(int op);
-  std::vector<int> begin(const std::vector<int>& ops);
+  void begin(const std::vector<int>& ops);
   void settle(int op, const Rewrite& rewrite);
   void take_over(int op, int made);
   void forward(int op, int made);
@@ -79,7 +80,10 @@ class Graph final : public Builder {
   std::vector<std::size_t> hash_;
   std::vector<Users> users_;
   std::vector<int> slots_;  // hash table: the first operation in each slot, or -1
-  std::vector<int> order_;
+  std::vector<int> order_;  // the first `placed_` of it
+  std::size_t placed_ = 0;
+  std::vector<int> rest_;                 // in `rewrite`: what has no place yet
+  std::vector<int> unneeded_;             // without use since the last rewriting
   std::map<int, SharedText> late_names_;  // of operations that moved to the front: given at their old place
   std::vector<int> without_use_;          // candidates
   Changes changes_;

@@ -8,18 +8,19 @@ namespace {
 
 std::size_t at_index(int i) { return static_cast<std::size_t>(i); }
 
-}  // namespace
-
-std::size_t PairTable::Hash::operator()(const Key& key) const {
+std::size_t hash_of(int x, int y, Rational ratio) {
   std::uint64_t hash = 0;
-  for (const std::int64_t n : {std::int64_t{key.x}, std::int64_t{key.y}, key.ratio.num(), key.ratio.den()}) {
+  for (const std::int64_t n : {std::int64_t{x}, std::int64_t{y}, ratio.num(), ratio.den()}) {
     hash = (hash ^ static_cast<std::uint64_t>(n)) * 0x9E3779B97F4A7C15u;
     hash ^= hash >> 32;
   }
   return hash;
 }
 
-PairTable::PairTable(const Graph& graph, OpKind kind, Effort& effort) : graph_(graph), kind_(kind), effort_(effort) {
+}  // namespace
+
+PairTable::PairTable(const Graph& graph, OpKind kind, Effort& effort)
+    : graph_(graph), kind_(kind), effort_(effort), slots_(64, -1) {
   for (int op = 0; op < graph.size(); ++op) update(op);
 }
 
@@ -96,16 +97,33 @@ void PairTable::add_pair(const Counted& counted, std::size_t i, std::size_t j, i
 }
 
 int PairTable::entry(const Key& key) {
-  const auto [found, is_new] = find_.try_emplace(key, 0);
-  if (!is_new) return found->second;
+  const std::size_t hash = hash_of(key.x, key.y, key.ratio);
+  for (int known = slots_[hash & (slots_.size() - 1)]; known >= 0; known = entries_[at_index(known)].next)
+    if (entries_[at_index(known)].hash == hash && entries_[at_index(known)].key == key) return known;
   if (free_.empty()) {
     free_.push_back(static_cast<int>(entries_.size()));
     entries_.emplace_back();
+    if (entries_.size() > slots_.size()) {  // no entry is free
+      slots_.assign(2 * slots_.size(), -1);
+      for (int other = 0; other < free_.back(); ++other) enter(other);
+    }
   }
-  found->second = free_.back();
+  const int made = free_.back();
   free_.pop_back();
-  entries_[at_index(found->second)].key = key;
-  return found->second;
+  entries_[at_index(made)].key = key, entries_[at_index(made)].hash = hash;
+  enter(made);
+  return made;
+}
+
+void PairTable::enter(int entry) {
+  int& first = slots_[entries_[at_index(entry)].hash & (slots_.size() - 1)];
+  entries_[at_index(entry)].next = std::exchange(first, entry);
+}
+
+void PairTable::leave(int entry) {
+  int* link = &slots_[entries_[at_index(entry)].hash & (slots_.size() - 1)];
+  while (*link != entry) link = &entries_[at_index(*link)].next;
+  *link = entries_[at_index(entry)].next;
 }
 
 void PairTable::move_to_bucket(int id, int count) {
@@ -122,7 +140,7 @@ void PairTable::move_to_bucket(int id, int count) {
     entry.slot = buckets_[at_index(count)].size();
     buckets_[at_index(count)].push_back(id);
   } else if (count == 0) {
-    find_.erase(entry.key);
+    leave(id);
     free_.push_back(id);
   }
 }

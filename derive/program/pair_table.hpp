@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -33,9 +32,6 @@ class PairTable {
     Rational ratio;
     friend bool operator==(const Key&, const Key&) = default;
   };
-  struct Hash {
-    std::size_t operator()(const Key& key) const;
-  };
   struct Occurrence {
     int op = 0, times = 0;
   };
@@ -43,6 +39,8 @@ class PairTable {
     Key key;
     int count = 0;
     std::size_t slot = 0;  // in its bucket
+    std::size_t hash = 0;
+    int next = -1;  // the next entry in the same slot of the hash table
     Few<Occurrence, 2> in;
   };
   // The operands of an operation when it was last counted.
@@ -58,6 +56,8 @@ class PairTable {
   int times(const Counted& counted, std::size_t i, std::size_t j) const;
   std::vector<bool> changed(const Counted& from, const Counted& to);
   int entry(const Key& key);
+  void enter(int entry);
+  void leave(int entry);
   void move_to_bucket(int entry, int count);
   Rank rank(const Entry& entry) const;
   std::pair<std::size_t, std::size_t> positions(const Entry& entry, int op) const;
@@ -67,7 +67,7 @@ class PairTable {
   Effort& effort_;
   std::vector<Counted> counted_;       // by operation
   std::vector<std::size_t> position_;  // by operand, in `changed`
-  std::unordered_map<Key, int, Hash> find_;
+  std::vector<int> slots_;             // hash table: the first entry in each slot, or -1
   std::vector<Entry> entries_;
   std::vector<int> free_;
   std::vector<std::vector<int>> buckets_;  // entries by count, from two on

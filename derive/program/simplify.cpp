@@ -180,6 +180,7 @@ Program searched(const Program& program, Effort& effort) {
   std::deque<Step> steps;
   std::deque<Program> starts;  // of this turn and of those before, from which steps are known
   Program best = program;
+  int least = weight(count(best));
   for (bool improved = true; improved && !effort.spent();) {
     improved = false;
     const auto tidied = [](const Program& p, bool coefficients_out) {
@@ -192,15 +193,16 @@ Program searched(const Program& program, Effort& effort) {
         const Program* last = start[coefficients_out];
         for (const Pass pass : order) last = &after(*last, pass, steps, effort);
         Program candidate = tidied(*last, coefficients_out);
-        if (weight(count(candidate)) >= weight(count(best))) continue;
-        best = std::move(candidate);
+        const int candidate_weight = weight(count(candidate));
+        if (candidate_weight >= least) continue;
+        best = std::move(candidate), least = candidate_weight;
         improved = true;
       }
     }
   }
   // Of equals, x - w (2 y + z) rather than x + w (-2 y - z).
   Program positive = flatten_sums(take_out_coefficients(best));
-  return weight(count(positive)) <= weight(count(best)) ? positive : best;
+  return weight(count(positive)) <= least ? positive : best;
 }
 
 Program cheaper(Program a, Program b) { return weight(count(a)) <= weight(count(b)) ? std::move(a) : std::move(b); }
