@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <type_traits>
 #include <utility>
@@ -46,30 +47,38 @@ struct Lanes<packs::Packs> {
 template <class T, class Struct, std::size_t bytes = sizeof(Struct)>
 inline constexpr std::size_t numbers_in = bytes / sizeof(T);
 
+// The loops are instantiated once for each scalar type: for each struct they would take a tenth of the compile time.
+template <class T>
+void load_numbers(std::byte* target, std::size_t count, std::span<const Inputs> lanes,
+                  std::vector<double> Inputs::*member) {
+  for (std::size_t i = 0; i < count; ++i) {
+    T x;
+    for (std::size_t lane = 0; lane < Lanes<T>::count; ++lane) Lanes<T>::set(x, lane, (lanes[lane].*member)[i]);
+    std::memcpy(target + i * sizeof x, &x, sizeof x);
+  }
+}
 template <class T, class Target>
 void load(Target& target, std::span<const Inputs> lanes, std::vector<double> Inputs::*member) {
-  if constexpr (!std::is_empty_v<Target>) {
-    std::array<T, numbers_in<T, Target>> numbers;
-    for (std::size_t lane = 0; lane < Lanes<T>::count; ++lane) {
-      for (std::size_t i = 0; i < numbers.size(); ++i) {
-        Lanes<T>::set(numbers[i], lane, (lanes[lane].*member)[i]);
-      }
-    }
-    std::memcpy(&target, numbers.data(), sizeof target);
-  }
+  if constexpr (!std::is_empty_v<Target>)
+    load_numbers<T>(reinterpret_cast<std::byte*>(&target), numbers_in<T, Target>, lanes, member);
 }
 
 // Appends the result of `function` and, if T counts, its cost.
-template <class T, class Source>
-void keep(std::vector<Outputs>& outputs, Function function, const Source& source) {
+template <class T>
+void keep_numbers(std::vector<Outputs>& outputs, Function function, const std::byte* source, std::size_t count) {
   if constexpr (requires { T::taken; }) outputs[0].cost[function] += std::exchange(T::taken, {});
-  if constexpr (!std::is_empty_v<Source>) {
-    std::array<T, numbers_in<T, Source>> numbers;
-    std::memcpy(numbers.data(), &source, sizeof source);
-    for (std::size_t lane = 0; lane < Lanes<T>::count; ++lane) {
-      for (const T& x : numbers) outputs[lane].of[function].push_back(Lanes<T>::get(x, lane));
+  for (std::size_t lane = 0; lane < Lanes<T>::count; ++lane) {
+    for (std::size_t i = 0; i < count; ++i) {
+      T x;
+      std::memcpy(&x, source + i * sizeof x, sizeof x);
+      outputs[lane].of[function].push_back(Lanes<T>::get(x, lane));
     }
   }
+}
+template <class T, class Source>
+void keep(std::vector<Outputs>& outputs, Function function, const Source& source) {
+  constexpr std::size_t count = std::is_empty_v<Source> ? 0 : numbers_in<T, Source>;
+  keep_numbers<T>(outputs, function, reinterpret_cast<const std::byte*>(&source), count);
 }
 
 template <class Scalar>

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <functional>
 #include <gtest/gtest.h>
+#include <string>
 
 #include "tests/kernels/any_block.hpp"
 #include "tests/kernels/sample.hpp"
@@ -34,6 +35,9 @@ void expect_near(const AnyBlock& block, std::string_view law, const Eigen::Matri
 
 // Checks the law for every block at several random inputs.
 void for_all(const std::function<void(const AnyBlock&, const Inputs&)>& law);
+
+// The folder of the specs behind blocks<double>(). Each program that obeys the laws defines it.
+std::string specs_folder();
 
 // False where these laws run over specs without effects.
 bool has_effects();

@@ -14,8 +14,8 @@ namespace {
 
 // The text of the spec and of its includes without comments, read without the generator.
 std::string spec_text(const std::string& space, const std::string& joint) {
-  std::ifstream file(CDOT_SPECS "/" + space + "/" + joint + ".joint");
-  if (!file) file.open(CDOT_SPECS "/" + space + "/" + joint + ".effect");
+  std::ifstream file(specs_folder() + "/" + space + "/" + joint + ".joint");
+  if (!file) file.open(specs_folder() + "/" + space + "/" + joint + ".effect");
   EXPECT_TRUE(file) << "no spec of " << joint;
   std::string all, line;
   while (std::getline(file, line)) {

@@ -15,6 +15,8 @@
 
 using namespace cdot;
 
+std::string cdot::specs_folder() { return CDOT_SPECS; }
+
 namespace {
 
 template <class T>

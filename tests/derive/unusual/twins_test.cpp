@@ -7,6 +7,8 @@
 
 using namespace cdot;
 
+std::string cdot::specs_folder() { return CDOT_SPECS; }
+
 namespace {
 
 std::vector<AnyBlock> blocks_of(const std::string& joint) {
