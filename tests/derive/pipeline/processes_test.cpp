@@ -136,7 +136,9 @@ TEST_F(DeriveAtOnce, LeavesNoProcessBehind) {
 TEST_F(DeriveAtOnce, ShowsOnATerminalHowFarItIs) {
   EXPECT_EQ(cdot("derive").text.find("of 2]"), std::string::npos);
   const std::string shown = run("script -qec '" CDOT " derive --fresh' /dev/null").text;
-  EXPECT_NE(shown.find("[1 of 2] specs/planar/line.joint"), std::string::npos) << shown;
+  const bool line_is_last = shown.find("[1 of 2] specs/planar/line.joint") != std::string::npos;
+  const bool angle_is_last = shown.find("[1 of 2] specs/planar/angle.joint") != std::string::npos;
+  EXPECT_NE(line_is_last, angle_is_last) << shown;
 }
 
 }  // namespace
