@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <cdot/spaces.hpp>
 
@@ -144,7 +143,8 @@ void look_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>&
                   typename S::Scalar ahead) {
   Flow<S>& flow = island.flow;
   if (!flow.end_kept) keep_end(world, island, method, time);
-  const auto before = std::exchange(flow.ahead, ahead);
+  const typename S::Scalar before = flow.ahead;  // a copy: another StateNumber may share its place
+  flow.ahead = ahead;
   interpolate(flow, method);
   flow.ahead = before;
   set_numbers(world, island, flow.now.data());
