@@ -11,7 +11,7 @@ namespace {
 
 std::string when(bool condition, const char* text) { return condition ? text : ""; }
 
-// As runtime/solve/direct.cpp.
+// As in the World: runtime/solve/direct.cpp.
 constexpr const char* close_begins = R"(
   // Newton on C, with J as it is evaluated: anew where a round leaves more than the share `slow` of the error. Adds up
   // the moves{0}. Returns the error before. A lane that is done waits for the others unchanged.
