@@ -57,7 +57,11 @@ class EquationWriter {
     if (mechanism_.method == Method::rattle && (out_.exerts || !mechanism_.bounded.empty())) list_groups();
     // Ends that a guess passes are other ones than those that the step passes. By RATTLE forces that change with rates
     // pull beside the joints. Rows of velocities have no error by which a wrong guess is taken back.
-    if (system().size() > 0 && foresees()) write_foreseen();
+    if (system().size() > 0 && foresees()) {
+      if (mechanism_.method == Method::euler && mechanism_.effects.empty() && mechanism_.bounded.empty())
+        out_.freedom = freedom_of(blocks_, joints_, out_.constants);
+      if (!out_.freedom.exists()) write_foreseen();
+    }
     drop_unread();
     out_.coordinates = read_coordinates(blocks_, out_.constants);
     if (system().size() > 0) out_.reactions = read_reactions(blocks_, joints_, out_.constants);
@@ -265,12 +269,14 @@ class EquationWriter {
 }  // namespace
 
 std::vector<const Program*> programs_of_equations(const Equations& e) {
-  return {&e.evaluate, &e.errors,        &e.rates,     &e.accelerate, &e.solve,     &e.apply,
-          &e.aim,      &e.solve_aimed,   &e.fall,      &e.kick,       &e.potential, &e.reach,
-          &e.past,     &e.along,         &e.angles,    &e.dampen,     &e.notice,    &e.look,
-          &e.finish,   &e.exert,         &e.distances, &e.guard,      &e.resolve,   &e.carry,
-          &e.weigh,    &e.stiffen,       &e.improve,   &e.displace,   &e.nearest,   &e.strain,
-          &e.draw,     &e.drift_of_ends, &e.bear,      &e.bear_start, &e.bear_end,  &e.share};
+  std::vector<const Program*> programs = programs_of_freedom(e.freedom);
+  programs.insert(programs.end(), {&e.evaluate, &e.errors,        &e.rates,     &e.accelerate, &e.solve,     &e.apply,
+                                   &e.aim,      &e.solve_aimed,   &e.fall,      &e.kick,       &e.potential, &e.reach,
+                                   &e.past,     &e.along,         &e.angles,    &e.dampen,     &e.notice,    &e.look,
+                                   &e.finish,   &e.exert,         &e.distances, &e.guard,      &e.resolve,   &e.carry,
+                                   &e.weigh,    &e.stiffen,       &e.improve,   &e.displace,   &e.nearest,   &e.strain,
+                                   &e.draw,     &e.drift_of_ends, &e.bear,      &e.bear_start, &e.bear_end,  &e.share});
+  return programs;
 }
 
 std::set<std::string> functions_of(const Program& program) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "derive/compile/one_freedom/programs.hpp"
 #include "derive/compile/rows/row_blocks.hpp"
 
 namespace cdot::compile {
@@ -25,6 +26,7 @@ struct Equations {
   Program aim;                     // q, time, J -> B: Aim, the factor of J' M^-1 J^T with J' of q
   Program solve_aimed;             // J, B, b -> lambda with J' M^-1 J^T lambda = b, d = M^-1 J^T lambda
   std::vector<std::string> aimed;  // the numbers that `aim` writes
+  FreedomPrograms freedom;         // by Euler's steps, of a mechanism of one freedom
   bool apart = false;              // by explicit Runge-Kutta methods: no stage reads a centre of mass or its velocity
   // Without:
   Program fall;       // q, v, time -> a
@@ -73,6 +75,11 @@ struct Equations {
   Program guard;                         // by Runge-Kutta methods (methods/modes.hpp): q, v, time -> B
   Program carry;                         // q, time, J, lambda, force -> load: the forces with which bounds grow
   Program resolve;                       // q, v, time, a, force, h -> of_value, of_rate, of_force: resolutions
+};
+// A function of the header.
+struct FunctionText {
+  std::string comment, head;
+  const Program* program;
 };
 // Of steps.
 std::vector<const Program*> programs_of_equations(const Equations& equations);

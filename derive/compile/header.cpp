@@ -20,6 +20,7 @@
 #include "derive/compile/methods/tables.hpp"
 #include "derive/compile/midpoint/implicit.hpp"
 #include "derive/compile/midpoint/tension.hpp"
+#include "derive/compile/one_freedom/step.hpp"
 #include "derive/compile/readings/readings.hpp"
 #include "derive/compile/steps.hpp"
 #include "derive/compile/texts.hpp"
@@ -60,8 +61,9 @@ class HeaderWriter {
     write_step();
     text_ += "};\n\n}  // namespace cdot::scenes\n";
     const auto [bodies_moving, rates, centres] = slope_size(mechanism_, has().apart);
-    return {unrolled(with_arguments(std::move(text_)), {bodies_moving, equations_.rows.size(), rates, centres}), name_,
-            operations_of(equations_, calls_of(mechanism_.method, has())),
+    return {unrolled(with_arguments(std::move(text_)),
+                     {bodies_moving, equations_.rows.size(), rates, centres, equations_.freedom.angles.size()}),
+            name_, operations_of(equations_, calls_of(mechanism_.method, has())),
             state_bytes_of(mechanism_, equations_, has())};
   }
 
@@ -135,7 +137,8 @@ class HeaderWriter {
     line();
     line("  // " + comment + ": " + derive::text(derive::count(program)));
     const std::string arguments = with_arguments(head);
-    const bool inlined = head.starts_with("solve(") && derive::count(program).total() <= few_operations;
+    const bool is_of_steps = head.starts_with("solve(") || head.find("Freedom& F") != std::string::npos;
+    const bool inlined = is_of_steps && derive::count(program).total() <= few_operations;
     const std::string kind = inlined ? "  CDOT_SCENE_INLINE static void " : "  static void ";
     for (const std::string& wrapped : derive::wrapped(kind + arguments + " {")) line(wrapped);
     derive::Printing printing;
@@ -151,8 +154,8 @@ class HeaderWriter {
     if (declares && has().events) line("    (void)events;");
     if (declares && has().bonds) line("    (void)bonds;");
     for (const std::string argument :
-         {"q", "v",     "a",     "time", "J",      "B", "b", "h",  "lambda", "force",  "C",    "rate",
-          "K", "guess", "given", "end",  "before", "W", "g", "mu", "mean",   "missed", "side", "load"})
+         {"q",     "v",   "a",      "time", "J", "B",  "b",    "h",      "lambda", "force", "C", "rate", "K", "guess",
+          "given", "end", "before", "W",    "g", "mu", "mean", "missed", "side",   "load",  "F", "free", "d"})
       if (reads(arguments, argument)) line(fmt::format("    (void){};", argument));
     const bool writes = std::ranges::any_of(program.outputs, [](const auto& o) { return o.name.starts_with("W["); });
     if (!writes && arguments.find("(&W)") != std::string::npos) line("    (void)W;");
@@ -179,7 +182,8 @@ class HeaderWriter {
                      "solve($gconst Jacobian& J, const T (&b)[rows], T (&lambda)[rows], Velocity (&d)[bodies])",
                      equations_.solve);
     }
-    if (has().foresees) write_foreseen(at);
+    for (const auto& functions : {functions_of_foresight(equations_), functions_of_freedom(equations_.freedom)})
+      for (const auto& [comment, head, program] : functions) write_function(comment, head, *program);
     if (has_effects())
       write_function("Potential energy of the effects", "potential(" + at + ", T& E)", equations_.potential);
     if (has().rattle) write_rattle(at, moving);
@@ -302,17 +306,6 @@ class HeaderWriter {
     text_ += BodyTexts{mechanism_, names_.bodies}.judged();
   }
 
-  void write_foreseen(const std::string& at) {
-    write_function("d = M^-1 J^T lambda", "apply($gconst Jacobian& J, const T (&lambda)[rows], Velocity (&d)[bodies])",
-                   equations_.apply);
-    write_function("The factor of J' M^-1 J^T with J' of the pose", "aim(" + at + ", const Jacobian& J, Aim& B)",
-                   equations_.aim);
-    write_function("J' M^-1 J^T lambda = b, d = M^-1 J^T lambda",
-                   "solve($gconst Jacobian& J, const Aim& B, const T (&b)[rows], T (&lambda)[rows], "
-                   "Velocity (&d)[bodies])",
-                   equations_.solve_aimed);
-  }
-
   void write_ends(const std::string& at, const std::string& moving) {
     write_function("The part of rows with ends in a projection",
                    "reach(" + at + (has().rows ? ", const Jacobian& J" : "") + ", Bounded& B)", equations_.reach);
@@ -372,6 +365,8 @@ class HeaderWriter {
       step.replace(step.find(step_head), step_head.size(), "advance(State& s, const T& h)");
       step += step_in_parts(mechanism_.method, has());
     }
+    if (has().one_freedom)
+      step = by_rows(step) + step_of_freedom(equations_.freedom, equations_.turning, mechanism_.tolerance);
     text_ += step;
   }
 

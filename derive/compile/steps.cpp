@@ -10,6 +10,7 @@
 #include "derive/compile/methods/runge_kutta.hpp"
 #include "derive/compile/methods/weights.hpp"
 #include "derive/compile/midpoint/implicit.hpp"
+#include "derive/compile/one_freedom/step.hpp"
 #include "derive/compile/texts.hpp"
 #include "derive/compile/types.hpp"
 
@@ -197,6 +198,7 @@ Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
           .weighs = mechanism.weighs(),
           .drags = std::ranges::any_of(mechanism.bodies, &Body::drags),
           .foresees = !equations.apply.outputs.empty(),
+          .one_freedom = equations.freedom.exists(),
           .open = mechanism.open,
           .feeds = mechanism.fed_back > 0,
           .turns = std::ranges::any_of(mechanism.bodies, &Body::turns),
@@ -206,6 +208,7 @@ Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
 }
 
 Calls calls_of(Method method, const Contents& has) {
+  if (has.one_freedom) return {};                                   // beside those of its angles
   Calls calls{.evaluate = 1, .errors = 2, .rates = 1, .solve = 2};  // the corrections
   if (has.ends) calls.past = has.approaches() ? 3 : 2;
   if (has.events) calls.distances = 1;
@@ -265,7 +268,7 @@ long operations_of(const Equations& e, const Calls& calls) {
                                                      {1, &e.bear},
                                                      {1, &e.bear_start},
                                                      {1, &e.bear_end}};
-  long sum = calls.newton;
+  long sum = calls.newton + operations_of_freedom(e.freedom);
   for (const auto& [times, program] : programs) sum += long{times} * derive::count(*program).total();
   return sum;
 }
@@ -286,8 +289,8 @@ long state_bytes_of(const Mechanism& mechanism, const Equations& equations, cons
   for (const Body& body : mechanism.bodies) of_bodies += numbers_of(mechanism, body, has.pulls());
   const long of_rows = long{has.foresees ? 1 + foreseen_by(has.rattle) : 1} * long(equations.rows.size()) +
                        long(equations.stored.size()) + (has.closes() ? 1 : 0) + (has.foresees ? 2 : 0) +
-                       (has.exerts ? equations.groups : 0) + numbers_of_modes(mechanism, has) +
-                       (has.weighs_blows() ? 3 : 2) * mechanism.breakable() +
+                       numbers_of_freedom(equations.freedom) + (has.exerts ? equations.groups : 0) +
+                       numbers_of_modes(mechanism, has) + (has.weighs_blows() ? 3 : 2) * mechanism.breakable() +
                        (has.bears ? long(equations.first_borne.back()) : 0) +
                        (has.events ? 3 * long(mechanism.bounded.size()) : 0);
   return long{sizeof(double)} *
@@ -365,6 +368,7 @@ std::string begin_of(Method method, const Contents& has) {
   }
   if (has.repeats()) text += "    for (T& of_row : s.repeats) of_row = T(0);\n";
   text += closing_of(method, has);
+  if (has.one_freedom) text += begins_freedom;
   if (has.pulls()) text += "    for (Velocity& of_body : s.pull) of_body = still();\n";
   if (has.exerts) text += "    for (T& of_group : s.begins) of_group = T(1);\n";
   return text + "  }\n";

@@ -49,7 +49,8 @@ std::string unrolled(const std::string& text, const Counts& counts) {
   } loops[] = {{"for (int i = 0; i < bodies; ++i) ", counts.bodies, 16},
                {"for (int i = 0; i < rows; ++i) ", counts.rows, 16},
                {"for (int i = 0; i < Slope::size; ++i) ", counts.rates, few_rates},
-               {"for (int i = 0; i < Slope::centres; ++i) ", counts.centres, few_rates}};
+               {"for (int i = 0; i < Slope::centres; ++i) ", counts.centres, few_rates},
+               {"for (int i = 0; i < angles_kept; ++i) ", counts.angles, 16}};
   std::string lines;
   std::istringstream all(text);
   for (std::string line; std::getline(all, line);) {

@@ -13,7 +13,7 @@ namespace cdot::compile {
 std::string head_of(const Mechanism& mechanism, const std::string& command, bool with_cmath);
 
 struct Counts {
-  std::size_t bodies, rows, rates, centres;  // rates and centres: of a slope, SlopeSize
+  std::size_t bodies, rows, rates, centres, angles;  // rates and centres: of a slope, SlopeSize
 };
 // Loops over the numbers of a slope of a Runge-Kutta method are lines up to so many.
 constexpr std::size_t few_rates = 24;

@@ -5,6 +5,7 @@
 #include "derive/compile/gyroscopes.hpp"
 #include "derive/compile/methods/bonds.hpp"
 #include "derive/compile/midpoint/tension.hpp"
+#include "derive/compile/one_freedom/step.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -230,6 +231,7 @@ std::string number_types_of(const Mechanism& mechanism, const Equations& equatio
   if (has.midpoint)
     text += fmt::format("  using Inertia = {};  // its inverse\n", mechanism.spatial() ? "Tensor<T>" : "T");
   if (has.taut) text += taut_type(equations.taut, equations.taut_numbers);
+  if (has.one_freedom) text += types_of_freedom(equations.freedom);
   if (has.foresees) text += "  struct Multipliers {\n    T of[rows];\n  };\n";
   if (has.events)
     add("Of rows with bounds: 1 if they have begun, if they have ended, if they act.", "Events",

@@ -82,7 +82,8 @@ class StatementPrinter {
       }
       return stem;
     }
-    const bool of_object = output.starts_with("J.") || output.starts_with("p.") || output.starts_with("B.");
+    const bool of_object =
+        output.size() > 2 && output[1] == '.' && std::string_view("JpBF").find(output[0]) != std::string_view::npos;
     const std::string name = output.substr(of_object ? 2 : 0);
     const std::size_t open = name.find('[');
     if (open == std::string::npos) return name;

@@ -21,16 +21,16 @@ constexpr const char* solves_either = R"(
 
 // Loops that compilers make wide: their numbers are read as wide as the last step stored them.
 constexpr const char* foresees = R"(
-  // Multipliers that continue the last ones as a polynomial, in units: the sum of their differences.
-  static void foresee(const State& s, const T& unit, T (&lambda)[rows]) {{
-    T sum[rows];
+  // Numbers that continue the last ones as a polynomial, in units: the sum of their differences.
+  static void foresee(const State& s, const T& unit, T (&lambda)[{7}]) {{
+    T sum[{7}];
     const T in_units = unit;
     if (any(s.known < T({0}.5))) {{
-      for (int i = 0; i < rows; ++i) sum[i] = {1};
+      for (int i = 0; i < {7}; ++i) sum[i] = {1};
     }} else {{
-      for (int i = 0; i < rows; ++i) sum[i] = {2};
+      for (int i = 0; i < {7}; ++i) sum[i] = {2};
     }}
-    for (int i = 0; i < rows; ++i) lambda[i] = in_units * sum[i];
+    for (int i = 0; i < {7}; ++i) lambda[i] = in_units * sum[i];
   }}
   static void append(const T& d_0{4}) {{
     const T {5};
@@ -38,19 +38,19 @@ constexpr const char* foresees = R"(
   }}
   // The ones found instead. Where they were not much better foreseen than by the last ones, a series begins; not if
   // `well`, when all were foreseen almost to the goal.
-  static void remember(State& s, const Mask& fits, const Mask& well, const T& unit, const T (&found)[rows],
-                       const T (&foreseen)[rows]) {{
-    T now[rows];
+  static void remember(State& s, const Mask& fits, const Mask& well, const T& unit, const T (&found)[{7}],
+                       const T (&foreseen)[{7}]) {{
+    T now[{7}];
     const T rate = T(1) / unit;
-    for (int i = 0; i < rows; ++i) now[i] = rate * found[i];
+    for (int i = 0; i < {7}; ++i) now[i] = rate * found[i];
     auto goes_on = fits && (well || s.known < T(1.5));
     if (any(!goes_on)) {{
-      T misses[rows], changes[rows];
-      for (int i = 0; i < rows; ++i) misses[i] = now[i] - rate * foreseen[i];
-      for (int i = 0; i < rows; ++i) changes[i] = now[i] - s.past[0].of[i];
+      T misses[{7}], changes[{7}];
+      for (int i = 0; i < {7}; ++i) misses[i] = now[i] - rate * foreseen[i];
+      for (int i = 0; i < {7}; ++i) changes[i] = now[i] - s.past[0].of[i];
       goes_on = goes_on || (fits && T(2) * largest(misses) < largest(changes));
     }}
-    for (int i = 0; i < rows; ++i) append(now[i]{3});
+    for (int i = 0; i < {7}; ++i) append(now[i]{3});
     s.known = select(goes_on, select(s.known < T({0}.5), s.known + T(1), s.known), T(1));
   }}
 )";
@@ -77,10 +77,20 @@ constexpr const char* aiming = R"(      if (round < 8) {{
 
 }  // namespace
 
+std::vector<FunctionText> functions_of_foresight(const Equations& equations) {
+  if (equations.apply.outputs.empty()) return {};
+  return {{"d = M^-1 J^T lambda", "apply($gconst Jacobian& J, const T (&lambda)[rows], Velocity (&d)[bodies])",
+           &equations.apply},
+          {"The factor of J' M^-1 J^T with J' of the pose",
+           "aim($dconst Pose (&q)[bodies], const T& time, const Jacobian& J, Aim& B)", &equations.aim},
+          {"J' M^-1 J^T lambda = b, d = M^-1 J^T lambda",
+           "solve($gconst Jacobian& J, const Aim& B, const T (&b)[rows], T (&lambda)[rows], Velocity (&d)[bodies])",
+           &equations.solve_aimed}};
+}
+
 // As long as the step is the same, multipliers are a smooth series. Its next number, by a polynomial through the last k
 // ones, is the sum of their backward differences of the orders 0 to k - 1.
-std::string foresight(bool rattle) {
-  const int count = foreseen_by(rattle);
+std::string foresight_of(const std::string& numbers, int count) {
   std::string known, all, differences, stores;
   for (int k = count; k-- > 0;) {
     const std::string d = fmt::format("s.past[{}].of[i]", k),
@@ -88,14 +98,16 @@ std::string foresight(bool rattle) {
     all = all.empty() ? d : fmt::format("{} + ({})", d, all);
     known = known.empty() ? known_d : fmt::format("{} + ({})", known_d, known);
   }
-  std::string numbers, members;
+  std::string places, members;
   for (int k = 0; k < count; ++k) {
-    numbers += fmt::format(", s.past[{}].of[i]", k), members += fmt::format(", T& past_{}", k);
+    places += fmt::format(", s.past[{}].of[i]", k), members += fmt::format(", T& past_{}", k);
     stores += fmt::format("{0}past_{1} = d_{1}", k == 0 ? "" : ", ", k);
     if (k > 0) differences += fmt::format("{0}d_{1} = d_{2} - past_{2}", k == 1 ? "" : ", ", k, k - 1);
   }
-  return solves_either + fmt::format(foresees, count - 1, known, all, numbers, members, differences, stores);
+  return fmt::format(foresees, count - 1, known, all, places, members, differences, stores, numbers);
 }
+
+std::string foresight(bool rattle) { return solves_either + foresight_of("rows", foreseen_by(rattle)); }
 
 // In the plane sines come from their angles, so that no round-off gathers over the steps.
 std::string moves_as_foreseen(bool spatial) {

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include "derive/compile/equations.hpp"
 
 namespace cdot::compile {
 
@@ -10,8 +13,12 @@ namespace cdot::compile {
 // goes on to round-off.
 constexpr int foreseen_by(bool rattle) { return rattle ? 6 : 5; }
 
+// Of the corrections; none: nothing is foreseen on K.
+std::vector<FunctionText> functions_of_foresight(const Equations& equations);
 // foresee() and remember(); solve() on K, or on another matrix in the lanes that aim.
 std::string foresight(bool rattle);
+// foresee() and remember() alone, of `numbers` numbers, an int of the struct, by so many steps.
+std::string foresight_of(const std::string& numbers, int count);
 
 // --- in close() ---
 

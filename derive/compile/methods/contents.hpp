@@ -34,6 +34,7 @@ struct Contents {
   bool weighs = false;         // by Euler's steps or RATTLE: the impulses of corrections count as loads
   bool drags = false;          // some body has drag
   bool foresees = false;       // the multipliers of the next projection, by those of the last steps
+  bool one_freedom = false;    // by Euler's steps: they go in a few angles
   bool open = false;           // no step projects its end
   bool feeds = false;          // velocities take a share of C back
   bool turns = false;          // some body does
@@ -52,7 +53,9 @@ struct Contents {
   bool approaches() const { return late_ends && closes(); }
   bool stiffens() const { return midpoint && (rows || bounded) && (turns || taut); }  // by tension
   bool weighs_blows() const { return snaps && modes; }                                // of impacts, as loads of joints
-  bool replaces() const { return strides() || midpoint || collocated > 0 || approaches(); }  // some lanes of a State
+  bool replaces() const {
+    return strides() || midpoint || collocated > 0 || approaches() || one_freedom;
+  }                                                           // some lanes of a State
   bool pulls() const { return rattle && (rows || bounded); }  // a State has its joints' accelerations
 };
 

@@ -5,6 +5,7 @@
 
 #include "derive/compile/foresight/foresight.hpp"
 #include "derive/compile/methods/modes.hpp"
+#include "derive/compile/one_freedom/step.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -46,6 +47,7 @@ std::string of_rows(const Mechanism& mechanism, const Contents& has) {
         foreseen_by(mechanism.method == Method::rattle),
         mechanism.method == Method::rattle ? "forces of first halves"
                                            : "corrections' multipliers by the step's square");
+  if (has.one_freedom) text += state_of_freedom();
   if (has.bounded)
     text += fmt::format(
         "    T hold[bounded];  // of the rows with bounds: -1 at the lower one, 1 at the upper one, 0 between{}\n",

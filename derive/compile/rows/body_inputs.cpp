@@ -99,6 +99,16 @@ void RowBlocks::add_body(Algebra& algebra, Values& in, const std::string& L, int
   add_masses(algebra, in, L, index);
 }
 
+void RowBlocks::replace_places(Values& in, const RowBlock& block, const Values& places) const {
+  for (std::size_t k = 0; k < block.spec->bodies.size(); ++k) {
+    const int index = (*block.bodies)[k];
+    if (!body(index).moves) continue;
+    const std::string &L = block.spec->bodies[k], &name = body_name(index);
+    in["x_" + L + "_x"] = places.at(name + ".x"), in["x_" + L + "_y"] = places.at(name + ".y");
+    in["theta_" + L] = places.at(name + ".w");
+  }
+}
+
 void RowBlocks::replace_velocities(Values& in, const RowBlock& block, const Values& velocities) const {
   for (std::size_t k = 0; k < block.spec->bodies.size() && !velocities.empty(); ++k) {
     const int index = (*block.bodies)[k];

@@ -80,6 +80,8 @@ class RowBlocks {
   Values inputs_with_jacobian(Algebra& algebra, const RowBlock& block) const;
   // Puts these in place of v in the inputs; by the names of components, "rod.x"; empty: leaves v.
   void replace_velocities(Values& in, const RowBlock& block, const Values& velocities) const;
+  // The same of places in the plane: "rod.x", "rod.y", and "rod.w" for its angle.
+  void replace_places(Values& in, const RowBlock& block, const Values& places) const;
   // One of its functions. Where the joint broke all is 0, but for a diagonal of 1 of K.
   Values call(Algebra& algebra, const RowBlock& block, const std::string& function, const Values& in) const;
   // M^-1 f of a body in a column, from f by columns.
