@@ -190,6 +190,17 @@ def scene_commands():
             claim(status == 0, f"`{line}` goes well" + ("" if status == 0 else ": " + said))
 
 
+def scripts():
+    """Each script that a page of tests/ names by its path can be run."""
+    named = 0
+    for page in sorted(source.glob("tests/**/README.md")):
+        for _, _, lines in blocks(page.relative_to(source)):
+            for path in (line.split()[0] for line in lines if line.startswith("tests/")):
+                named += 1
+                claim(os.access(source / path, os.X_OK), f"{path} of {page.relative_to(source)} can be run")
+    claim(named > 3, f"{named} scripts are named in pages of tests/")
+
+
 with tempfile.TemporaryDirectory() as folder:
     place = Path(folder) / "tree"
     place.mkdir()
@@ -209,5 +220,6 @@ with tempfile.TemporaryDirectory() as folder:
     scene_keys()
     scene_commands()
     own_joint()
+    scripts()
 print(f"{len(failures)} claims fail")
 sys.exit(1 if failures else 0)

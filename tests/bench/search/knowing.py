@@ -51,14 +51,18 @@ def counted(program, scene, integrator, steps):
     """Instructions of the process and of each part: up to a search for advice, and with it."""
     with tempfile.TemporaryDirectory() as folder:
         profile = os.path.join(folder, "profile")
-        subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={profile}", f"--dump-before={ADVICE}",
-                        program, "simulate", scene, "--integrator", integrator, "--step", str(STEP), "--until",
-                        str(steps * STEP)],
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)  # a failed run counts as well
+        run = subprocess.run(["valgrind", "-q", "--tool=callgrind", f"--callgrind-out-file={profile}",
+                              f"--dump-before={ADVICE}", program, "simulate", scene, "--integrator", integrator,
+                              "--step", str(STEP), "--until", str(steps * STEP)],
+                             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
+        if run.returncode not in (0, 1):  # a run that fails counts as well
+            sys.exit(f"{scene} by {integrator}: {run.stderr.strip() or f'exit status {run.returncode}'}")
         last, before = counts_in(profile), profile + ".1"
-        if not os.path.exists(before):
+        first = counts_in(before) if os.path.exists(before) else last
+        if not known_in(first):
+            sys.exit(f"{scene}: no part of the cost is in its profile: have its functions other names?")
+        if first is last:
             return last, last
-        first = counts_in(before)
         return first, {key: first[key] + last[key] for key in first}
 
 
@@ -102,6 +106,8 @@ def main():
     if len(sys.argv) > 4:
         check(program, integrator, sys.argv[3], sys.argv[4:])
     scenes = sorted(str(scene) for scene in Path("specs/scenes").glob("**/*.toml"))
+    if not scenes:
+        sys.exit("specs/scenes: no scenes here; run it at the top of the tree")
     for steps in [int(sys.argv[3])] if len(sys.argv) > 3 else COUNTS:
         study(program, integrator, steps, scenes)
 

@@ -8,6 +8,10 @@ cdot=${1:-$root/build/dev/derive/cdot}
 folder=${2:-$(mktemp -d)}
 jolt=${JOLT:-/usr/include}
 failed=0
+if [ ! -x "$cdot" ]; then
+  echo "$cdot: no such program" >&2
+  exit 2
+fi
 
 # A header by which an engine is known to be installed, and the flags to include it.
 header_of() {
@@ -98,6 +102,7 @@ emit_all() {
       made+="template void make<$kernel, $class>($(arguments_of "$engine"));"$'\n'
     elif ! grep -qE "it is (planar|spatial), and the bodies" "$said"; then
       echo "$space/$joint: $(grep "cannot be emitted" "$said" || tail -1 "$said")"
+      if ! grep -q "cannot be emitted" "$said"; then failed=1; fi
     fi
   done
   maker_of "$engine" >> "$program"
