@@ -130,6 +130,8 @@ struct Workspace {
   Paces* paces = nullptr;
   // [m], [rad] of C: RATTLE's rounds may leave so much in a step that is only compared with others.
   double enough = 0;
+  // A longer step, only compared with others: it fails where it would be taken in parts, or by J of other poses.
+  bool at_once = false;
   // Of islands' rows by steps on velocities, by the direct solver: their price where rows press on each other.
   long long solves = 0;
   std::vector<int> awake;  // islands, in order

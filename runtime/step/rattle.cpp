@@ -358,6 +358,10 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   const bool by_sweeps = !island.solver->exact;
   if (by_sweeps || !drift_onto_joints(world, island, h)) {
     if (!by_sweeps) {
+      if (world.at_once) {
+        island.trouble = StepProblem::joints_apart;
+        return;
+      }
       halt_immovable_bodies(world, island);
       start_half(world, island, h, share);
       island.residual = at_start, island.left = island.flow.start_left;

@@ -180,8 +180,8 @@ StepResult BasicWorld<S>::step(double h) {
   StepResult result = attempt(world, h, world.settings.substeps);
   if (!result) {
     roll_back(world);
-    if (world.on_failure == OnFailure::retry) result = try_again(world, h);
-    if (!result) {
+    if (world.on_failure == OnFailure::retry && !world.at_once) result = try_again(world, h);
+    if (!result && !world.at_once) {
       blame(world, result);
       roll_back(world);  // blame() evaluated rows
     }

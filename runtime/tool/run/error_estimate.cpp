@@ -24,14 +24,15 @@ constexpr int more_substeps = 3, more_iterations = 4;
 // centre, all of a run's error may be made in one step.
 constexpr double affordable = 0.05, free_steps = 20, price_of_return = 1;
 // Samples by parts are twice as dear, and RK4 asks for few others: in shorter runs they cost at most so many steps and
-// this share more.
-constexpr double free_parts = 6, free_share = 0.1;
+// a share more. The share is smaller for RK4, whose samples by rates cost next to nothing of theirs.
+constexpr double free_parts = 6, free_share = 0.1, free_share_by_rates = 0.05;
 // A run of up to some thousand steps has at most this many samples. A longer run has one within some steps. In a run of
 // some dozen steps, where they are dearest, there are fewer, and more where one by rates costs no step. In runs of up
 // to some dozen steps such a sample is shorter, so that it costs less to make anew.
 constexpr long long usual_samples = 7, fewer_samples = 6, some_dozens[] = {40, 140}, by_rates_samples = 14,
                     most_spacing = 700;
-// Of the difference in the sample before: what RATTLE's rounds may leave of C in a step that is taken to be compared.
+// Of the difference that the sample before lets expect: what RATTLE's rounds may leave of C in a step that is taken to
+// be compared.
 constexpr double hardly = 0.03;
 // Of the share that warns: an estimate by longer steps, or by rates, that promises more by the end of the run is made
 // anew.
@@ -68,6 +69,12 @@ long long divisions(const BasicWorld<S>& world) {
   return world.step_counts().retried + world.step_counts().rejected;
 }
 
+// Of samples by parts that cost `share` of the run more.
+double budget_of_parts(long long steps, double share) {
+  const auto count = static_cast<double>(steps);
+  return affordable * count + std::min(free_parts + share * count, free_steps);
+}
+
 Scene with_more_sweeps(Scene scene) {
   scene.settings.substeps *= more_substeps;
   scene.settings.iterations *= more_iterations;
@@ -89,8 +96,9 @@ ErrorEstimate<S>::ErrorEstimate(const Scene& scene, long long steps)
   const bool divides = settings.integrator == Integrator::implicit;  // the midpoint rule does so unseen to long steps
   const bool exact = sizeof(typename S::Scalar) == sizeof(double);   // floats round by more than steps of RK4 err
   const bool tells = exact && settings.integrator == Integrator::rk4 && settings.substeps == 1;
-  const double few = divides || tells ? free_parts + free_share * static_cast<double>(steps) : free_steps;
-  budget_ = affordable * static_cast<double>(steps) + std::min(few, free_steps);
+  budget_ = divides ? budget_of_parts(steps, free_share)
+            : tells ? budget_of_parts(steps, free_share_by_rates)
+                    : affordable * static_cast<double>(steps) + free_steps;
   parts_ = divides ? parts_of_halved : parts_of_one;
   const bool whole = steps >= longest_window() && !divides;
   choose(sweeps(settings.solver)            ? By::more_sweeps
@@ -109,14 +117,19 @@ int ErrorEstimate<S>::longest_window() const {
 template <class S>
 double ErrorEstimate<S>::price() const {
   if (by_ == By::own_rates) return price_of_return;
-  const int more = by_ == By::longer_steps ? 1 : by_ == By::shorter_steps ? parts_ : more_substeps * more_iterations;
-  return more + price_of_return;
+  return (by_ == By::more_sweeps ? more_substeps * more_iterations : steps_instead()) + price_of_return;
+}
+
+template <class S>
+int ErrorEstimate<S>::steps_instead() const {
+  return by_ == By::shorter_steps ? parts_ : 1;
 }
 
 template <class S>
 void ErrorEstimate<S>::choose(By by) {
   by_ = by;
-  window_ = by == By::own_rates ? rates_.steps() : by == By::longer_steps ? longest_window() : 1;
+  window_ = by == By::own_rates ? rates_.steps() : by == By::longer_steps ? longest_window() : by == By::pairs ? 2 : 1;
+  if (window_ <= 2 && by != By::more_sweeps) budget_ = std::min(budget_, spent_ + budget_of_parts(steps_, free_share));
   const auto paid = static_cast<long long>(budget_ / price());
   const bool dear = steps_ > some_dozens[0] && steps_ < some_dozens[1];
   const long long usual = dear ? fewer_samples : by == By::own_rates ? by_rates_samples : usual_samples;
@@ -142,20 +155,30 @@ void ErrorEstimate<S>::before_step(BasicWorld<S>& run, long long k, double h) {
   const bool by_sweeps = by_ == By::more_sweeps;
   if (by_sweeps && !sweeper_) sweeper_ = build_world_in<S>(with_more_sweeps(scene_));
   if (by_sweeps) sweeper_->restore(start_);
-  taken_ = take_instead(by_sweeps ? *sweeper_ : run, by_ == By::shorter_steps ? parts_ : 1);
+  taken_ = take_instead(by_sweeps ? *sweeper_ : run, steps_instead(), error_of_step_ * window_);
   if (!by_sweeps) run.restore(start_);
+  while (!taken_ && window_ > 1) take_fewer(run);
 }
 
 template <class S>
-bool ErrorEstimate<S>::take_instead(BasicWorld<S>& world, int steps) {
+void ErrorEstimate<S>::take_fewer(BasicWorld<S>& run) {
+  choose(window_ > 2 && steps_ < some_dozens[1] ? By::pairs : By::shorter_steps);
+  spent_ += price();
+  taken_ = take_instead(run, steps_instead());
+  run.restore(start_);
+}
+
+template <class S>
+bool ErrorEstimate<S>::take_instead(BasicWorld<S>& world, int steps, double expected) {
   const long long divided = divisions(world);
   const bool longer = steps < window_;
   const double parts = by_ == By::more_sweeps ? more_substeps : static_cast<double>(steps) / window_;
   share_ = 1 / (1 - std::pow(parts, -row_of(scene_.settings.integrator).order));
-  world.data().enough = longer ? hardly * difference_ : 0;
+  world.data().enough = hardly * expected / std::abs(share_);
+  world.data().at_once = longer;
   bool stepped = true;
   for (int k = 0; stepped && k < steps; ++k) stepped = bool(world.step(window_ * length_ / steps));
-  world.data().enough = 0;
+  world.data().enough = 0, world.data().at_once = false;
   if (!stepped) return false;
   instead_ = states_of(world, static_cast<int>(total_.sums.size()));
   return !longer || divisions(world) == divided;
@@ -167,7 +190,7 @@ bool ErrorEstimate<S>::accept(const Frame& before, const Frame& after, long long
   Total kept = total_;
   add(before, after, k);
   const double promised = total_.error.share * static_cast<double>(steps_) / static_cast<double>(k);
-  if (window_ == 1 || promised <= most * warned_) return true;
+  if (window_ <= 2 || promised <= most * warned_) return true;
   total_ = std::move(kept);
   return false;
 }
@@ -177,26 +200,28 @@ void ErrorEstimate<S>::after_step(BasicWorld<S>& run, const Frame& before, const
   if (k < next_) return;
   const bool by_rates = by_ == By::own_rates;
   if (by_rates) taken_ = taken_ && rates_.add(run.data(), static_cast<int>(k - next_), length_);
+  if (k <= next_ + 1) firsts_[k - next_] = after.bodies;
   if (k != next_ + window_ - 1) return;
   if (by_rates && taken_) rates_.read(run.data(), sample_);
-  else if (taken_) compare(after);
+  else if (taken_) compare(after.bodies);
   bool accepted = accept(before, after, k, by_rates ? doubted_by_rates : doubted);
   if (by_rates && !taken_) {
-    take_anew(run, after, window_ / 2);
+    take_anew(run, after.bodies, window_ / 2);
     accepted = accept(before, after, k, doubted);
   }
-  if (!accepted && window_ > 1) {
-    by_ = By::shorter_steps;
-    take_anew(run, after, parts_ * window_);
-    if (taken_) add(before, after, k);
-    choose(by_);
+  if (!accepted && window_ > 2) {
+    run.snapshot_into(end_);
+    run.restore(start_);
+    for (taken_ = false; !taken_ && window_ > 1;) take_fewer(run);
+    run.restore(end_);
+    if (taken_) compare(firsts_[window_ - 1]), add(before, after, k);
   }
   find_next(k);
   if (taken_) last_ = k;
 }
 
 template <class S>
-void ErrorEstimate<S>::take_anew(BasicWorld<S>& run, const Frame& after, int steps) {
+void ErrorEstimate<S>::take_anew(BasicWorld<S>& run, const std::vector<BodyState>& after, int steps) {
   spent_ += steps + 2 * price_of_return;
   run.snapshot_into(end_);
   run.restore(start_);
@@ -211,9 +236,9 @@ void ErrorEstimate<S>::finish(const Frame& last, long long steps) {
 }
 
 template <class S>
-void ErrorEstimate<S>::compare(const Frame& after) {
+void ErrorEstimate<S>::compare(const std::vector<BodyState>& after) {
   for (std::size_t i = 0; i < sample_.size(); ++i) {
-    const BodyState &to = after.bodies[i], &other = instead_[i];
+    const BodyState &to = after[i], &other = instead_[i];
     sample_[i] = {};
     add_to(sample_[i].position, minus(position(to), position(other)), share_);
     add_to(sample_[i].angle, turn<S>(other, to), share_);
@@ -234,11 +259,11 @@ void ErrorEstimate<S>::add(const Frame& before, const Frame& after, long long k)
   }
   ++total_.error.samples, window_of_sample_ = window_;
   add_sums(after, k);
-  find_difference();
+  find_error_of_step();
 }
 
 template <class S>
-void ErrorEstimate<S>::find_difference() {
+void ErrorEstimate<S>::find_error_of_step() {
   double largest = 0, least_size = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < sample_.size(); ++i) {
     largest = std::max(largest, norm(sample_[i].angle));
@@ -246,7 +271,7 @@ void ErrorEstimate<S>::find_difference() {
     largest = std::max(largest, norm(sample_[i].position) / size_[i]);
     least_size = std::min(least_size, size_[i]);
   }
-  difference_ = std::isfinite(least_size) ? largest * least_size / std::abs(share_) : 0;
+  error_of_step_ = std::isfinite(least_size) ? largest * least_size / window_ : 0;
 }
 
 template <class S>

@@ -3,9 +3,9 @@
 // Before some three or four steps the World takes them as one, goes back, and goes on. A method of order p errs in the
 // n steps by e = d / (1 - n^p), d being the difference (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary
 // Differential Equations I", 1993, II.4). That formula need not hold for a step of n times the length.
-// Where such steps fail, are divided, or promise a warning, steps are taken in parts from there on: dearer, and true at
-// longer steps. For sweeps a second World takes the step, with more of them. RK4 tells its errors by its own rates, but
-// for steps with events.
+// Where such a step fails, is divided, or promises a warning, fewer are taken from its start on: two as one in short
+// runs, or one in parts, dearer and true at longer steps. For sweeps a second World takes the step, with more of them.
+// RK4 tells its errors by its own rates, but for steps with events.
 //
 // The errors of the steps add up with their signs, as those of a symplectic method cancel along an orbit: an error s of
 // velocities displaces a body by s T, where T is the time in which the motion changes, the root of sum v^2 / sum a^2.
@@ -52,24 +52,27 @@ class ErrorEstimate {
     Vector speeds{}, changes{};
     TrajectoryError error;
   };
-  enum class By { own_rates, longer_steps, shorter_steps, more_sweeps };
+  enum class By { own_rates, longer_steps, pairs, shorter_steps, more_sweeps };
 
   void choose(By by);
   int longest_window() const;  // of By::longer_steps, in steps
+  int steps_instead() const;   // of the run's World in a sample
   // Of a sample, in steps of the run.
   double price() const;
   long long never() const { return steps_ + 1; }
   // Finds the next sample after one that ends with step `k`.
   void find_next(long long k);
   // Takes the window in so many steps, from its start on, and compares.
-  void take_anew(BasicWorld<S>& run, const Frame& after, int steps);
-  // False if one of them fails, or is divided.
-  bool take_instead(BasicWorld<S>& world, int steps);
-  void compare(const Frame& after);
+  void take_anew(BasicWorld<S>& run, const std::vector<BodyState>& after, int steps);
+  // False if one of them fails, or is divided. `expected`: the error of the window [m], 0 if it is not known.
+  bool take_instead(BasicWorld<S>& world, int steps, double expected = 0);
+  // From here on two steps as one or, if they were, parts of one. Takes them from the window's start on, and goes back.
+  void take_fewer(BasicWorld<S>& run);
+  void compare(const std::vector<BodyState>& after);
   // Adds the sample, unless there is none or it promises more than `most` of the share that warns.
   bool accept(const Frame& before, const Frame& after, long long k, double most);
   void add(const Frame& before, const Frame& after, long long k);
-  void find_difference();
+  void find_error_of_step();
   // The last sample stands for the steps since the one before it, and at the end of the run for those that follow.
   void add_sums(const Frame& after, long long k);
   void judge(const Frame& after, std::size_t body, double linear, double angular);
@@ -79,19 +82,20 @@ class ErrorEstimate {
   const double warned_;  // a share
   ErrorsByRates<S> rates_;
   By by_;
-  int window_;                            // steps of the run in a sample
-  long long spacing_, next_, last_ = 0;   // first step of the next sample, last step of the previous one
-  int parts_;                             // of a step, By::shorter_steps
-  double budget_, spent_ = 0;             // for all samples, and on those so far, in steps
-  Snapshot start_, end_;                  // of a window
-  double length_ = 0;                     // of a step in it [s]
-  bool taken_ = false;                    // the steps instead were, or those of the run tell their errors
-  double share_ = 1;                      // of a difference that is the run's error
-  std::optional<BasicWorld<S>> sweeper_;  // the second World
-  std::vector<BodyState> instead_;        // at the end of the steps taken instead
-  std::vector<BodyError> sample_;         // the last one: errors of a window
+  int window_;                                    // steps of the run in a sample
+  long long spacing_, next_, last_ = 0;           // first step of the next sample, last step of the previous one
+  int parts_;                                     // of a step, By::shorter_steps
+  double budget_, spent_ = 0;                     // for all samples, and on those so far, in steps
+  Snapshot start_, end_;                          // of a window
+  double length_ = 0;                             // of a step in it [s]
+  bool taken_ = false;                            // the steps instead were, or those of the run tell their errors
+  double share_ = 1;                              // of a difference that is the run's error
+  std::optional<BasicWorld<S>> sweeper_;          // the second World
+  std::vector<BodyState> instead_;                // at the end of the steps taken instead
+  std::array<std::vector<BodyState>, 2> firsts_;  // after the first two steps of the window, of the run
+  std::vector<BodyError> sample_;                 // the last one: errors of a window
   int window_of_sample_ = 1;
-  double difference_ = 0;  // in the last sample, as a share of its mechanism, times the size of the smallest [m]
+  double error_of_step_ = 0;  // in the last sample, as a share of its mechanism, times the size of the smallest [m]
   Total total_;
   std::vector<double> size_;  // of the mechanism of each body [m]; of a single point the distance that it travels
   std::vector<bool> is_point_;
