@@ -8,6 +8,9 @@ namespace {
 
 constexpr double round_off = 1e-15;  // of what is compared
 constexpr double far = 0.8;          // of a size or of a radian: larger distances say nothing about errors
+// Where stability bounds the steps, a loose run does not resolve the fast oscillations. Its distance stays at their
+// size, however far it is off: from this distance on no more than this gain is sure.
+constexpr double far_if_dear = 0.03, gain_if_dear = 10;
 
 // Of the distance: an energy that is off by less says nothing about the motion. A motor keeps a wheel's energy whatever
 // its angle is.
@@ -21,7 +24,7 @@ constexpr double local_errors = 30, unseen = 0.1;
 // A local error allows each velocity an error that is larger in proportion to 1 + the velocity, and it goes on until
 // the end. Where forces have kinks within steps, the error may be so many of them.
 constexpr double velocity_errors = 3;
-// Up to the accuracy asked for, a claim is so many times the error that seems sure.
+// Up to the accuracy asked for, a claim is so many times the error that seems sure, or what the distance allows.
 constexpr double margin = 1.5;
 constexpr double unlike = 2;  // the error in units of the distance of two methods of different kind
 // The distances of runs by fixed steps must fall by this: a first one says nothing about that, as long steps may have
@@ -95,7 +98,9 @@ double sure_gain(const Yardstick& yardstick, const Attempt& coarse, const Attemp
   const double noise = yardstick.of_largest(events ? share_of_events : strictest_local_error);
   const bool tells_of_energy = coarse.energy_share >= witness * apart;
   const double of_energy = tells_of_energy ? coarse.energy_share / std::max(round_off, fine.energy_share) : 1;
-  return sure_gain(fine.knob.row(), gain(coarse.knob, fine.knob, rescued, noise), of_energy);
+  const double sure = sure_gain(fine.knob.row(), gain(coarse.knob, fine.knob, rescued, noise), of_energy);
+  const bool unresolved = fine.knob.adaptive() && fine.dear && apart > far_if_dear;
+  return unresolved ? std::min(sure, gain_if_dear) : sure;
 }
 
 bool same_steps(const Attempt& a, const Attempt& b) {
@@ -140,8 +145,10 @@ void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse
   fine.knows_means = agrees && fine.result.may_break && !fine.knob.adaptive();
   fine.reached = agrees && !fine.knows_means;
   if (fine.reached) fine.holds_until = scene.duration;
-  const double claim =
-      rescued ? std::max(apart, coarse.apart) : std::max(margin * fine.achieved, unseen_error(yardstick, fine));
+  // Errors on the same side, of which one is g times the other, are apart by g - 1 times the smaller one.
+  const double same_side = gained > 1 ? apart / (gained - 1) : std::numeric_limits<double>::infinity();
+  const double claim = rescued ? std::max(apart, coarse.apart)
+                               : std::max({margin * fine.achieved, same_side, unseen_error(yardstick, fine)});
   fine.claimed = std::max(fine.achieved, std::min(claim, yardstick.asked()));
 }
 

@@ -30,6 +30,7 @@ struct Attempt {
   double claimed = std::numeric_limits<double>::infinity();   // Choice::achieved
   double holds_until = 0;
   bool reached = false;
+  bool dear = false;         // explicit steps seemed dear, as where a fast oscillation bounds their length
   bool knows_means = false;  // it would have reached the accuracy, but equal steps know the mean of a load alone
   double foreseen = 0;       // distance from the run before at the end, if it made the run end early
 };

@@ -12,6 +12,9 @@ inline constexpr double most_first_runs = 50;
 // If nobody asked for the accuracy, they take less: so much work, some seconds, or if it is more, so many times that
 // price. After two that did not end, or left steps to another method, few of the next ones get any further.
 inline constexpr double unasked_work = 7e7, unasked_work_of_others = 5e6, most_unasked_runs = 4;
+// A run that promises to be the last goes beyond the budget if it should cost at most `dearest_last` times the one
+// before, as one of order 8 by a thousandth of the local error. That price is known to about the margin.
+inline constexpr double dearest_last = 2.4, margin_of_last = 1.25;
 // A scene is surely stiff if an oscillation of tensions and springs at the start makes explicit steps `dear`. It may be
 // if a run has taken `suspicious` evaluations, is on the way to `dear`, and the fastest oscillation explains a share of
 // that price. Then methods for stiff scenes get such a share to be cheaper.

@@ -64,6 +64,7 @@ class Search {
   bool done() const { return stopped_ || given_up_ || best_.reached || out_of_budget(); }
   bool in_reach(const Attempt& now, double most) const;
   double price_after(const Attempt& last, const Try& knob) const;
+  double lacking_for_last(const Attempt& now, const std::optional<Try>& next, double rest) const;
   // Of this share of the steps.
   double price_of_fixed(const Try& knob, const RunResult& so_far, double share = 1) const {
     return std::max(share * price_of(knob), static_cast<double>(so_far.solves));
@@ -98,7 +99,8 @@ class Search {
   double stiff_at_start_ = 0;
   double first_price_ = 0;  // foreseen, of explicit steps that became dear; while stiff candidates run
   double stiff_price_ = 0;  // the part of it that stiffness explains
-  bool may_be_dear_ = true, stopped_ = false, given_up_ = false;
+  bool may_be_dear_ = true, dear_ = false, stopped_ = false, given_up_ = false;
+  bool extended_ = false;         // the budget, once
   bool sensitive_ = false;        // refined in vain: the motion itself forbids more
   int runs_ = 0, of_others_ = 0;  // of these, some did not end or left steps to another method
   double price_ = 0, cpu_ = 0;    // of all runs
@@ -108,7 +110,7 @@ class Search {
 // Attempt::foreseen, or fixed steps where they differ.
 Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool judged) {
   Attempt attempt;
-  attempt.knob = knob;
+  attempt.knob = knob, attempt.dear = dear_;
   if (knob.adaptive()) attempt.paces = std::make_shared<Paces>(knob.local_error, safety);
   if (last.whole && knob.adaptive()) attempt.paced_by = last.paces;
   Scene solved = solved_by(choice_of(attempt), scene_);
@@ -142,7 +144,7 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool 
     const double mechanisms = yardstick_.mechanisms();
     if (!may_be_dear_ || attempt.price < suspicious * mechanisms || foreseen < dear * mechanisms)
       return attempt.price <= most;
-    first_price_ = foreseen;
+    first_price_ = foreseen, dear_ = true;
     return false;
   };
   std::string ignored;
@@ -236,6 +238,15 @@ double Search::price_after(const Attempt& last, const Try& knob) const {
   return price_of(knob) * (last.whole ? last.price / price_of(last.knob) : 1);
 }
 
+// What the `rest` of the budget lacks, once, for a run that promises to be the last: two runs by steps of their own
+// were near each other, and it should cost little more than the second of them.
+double Search::lacking_for_last(const Attempt& now, const std::optional<Try>& next, double rest) const {
+  const bool measured = now.whole && now.achieved < now.apart && now.left_steps == 0 && balanced(now);
+  if (extended_ || !measured || !next || !next->adaptive() || first_price_ > 0) return 0;
+  const double dearer = std::pow(now.knob.local_error / next->local_error, 1.0 / next->row().order);
+  return dearer > dearest_last ? 0 : std::max(0.0, margin_of_last * dearer * now.price - rest);
+}
+
 // Its runs may have this price altogether. `reach`: and with those that may follow later, if that is more.
 void Search::try_candidate(Integrator integrator, double most, double reach) {
   const bool adaptive = row_of(integrator).level == Level::acceleration;
@@ -278,6 +289,8 @@ void Search::try_candidate(Integrator integrator, double most, double reach) {
     if (now.result.stopped && last.whole) break;  // it may go on from the last one
     const bool goes_on = share && in_reach(now, std::max(most, reach) - spent);
     knob = goes_on ? finer(*knob, *share, shorter_after(now, scene_.duration)) : std::nullopt;
+    const double lacks = lacking_for_last(now, knob, std::min(left_, most - spent));
+    extended_ |= lacks > 0, left_ += lacks, most += lacks;
     last = std::move(now), between = {};
   }
   begun_ = {std::move(last), knob, idle};
@@ -322,7 +335,7 @@ RunResult Search::run() {
   });
   first_price_ = stiff_at_start_ = stiff_price_at_start(scene_);
   if (first_price_ > dear * yardstick_.mechanisms()) {
-    may_be_dear_ = false;
+    may_be_dear_ = false, dear_ = true;
     try_stiff(share_of_surely_stiff * first_price_);
   }
   first_price_ = 0;

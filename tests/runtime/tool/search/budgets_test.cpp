@@ -49,6 +49,24 @@ TEST(Budgets, OfCollocationEndWhereImpactsMakeItDear) {
   EXPECT_NE(summary_text(scene, result).find("the search ended at its budget, after "), std::string::npos);
 }
 
+// The search has measured two runs by then, and the third one costs little more than twice as much as the second.
+TEST(Budgets, GrowForARunThatPromisesToBeTheLast) {
+  const Scene scene = read_scene((source_dir() / "tests/runtime/tool/search/slack_bridge.toml").string());
+  std::string warnings;
+  const auto with_budget = [&](double evaluations) {
+    RunOptions options;
+    options.search_work = evaluations * work_of_evaluation(scene);
+    return simulate(scene, options, warnings).choice.value();
+  };
+  const Choice whole = with_budget(1e7);
+  const auto last = static_cast<double>(whole.evaluations), before = static_cast<double>(whole.evaluations_before);
+  ASSERT_TRUE(whole.reached);
+  const Choice bounded = with_budget(before + last / 4);
+  EXPECT_TRUE(bounded.reached);
+  EXPECT_EQ(bounded.local_error, whole.local_error);
+  EXPECT_FALSE(with_budget(0.4 * before).reached);  // two runs were not measured
+}
+
 // Where rows press on each other, a step by fixed steps takes many factorisations. These count as evaluations do.
 TEST(Budgets, CountTheSolvesOfFixedSteps) {
   const Scene scene = rattling_fingers(3, "integrator = \"implicit\"\nstep = 0.01");

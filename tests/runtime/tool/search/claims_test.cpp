@@ -9,7 +9,6 @@
 
 #include "runtime/text/files.hpp"
 #include "runtime/tool/run/trajectory.hpp"
-#include "runtime/tool/search/attempt.hpp"
 #include "tests/runtime/tool/support.hpp"
 
 namespace cdot::test::claims_test {
@@ -308,57 +307,22 @@ TEST(Claims, WantDistancesOfEqualStepsToFallAsErrorsShould) {
   EXPECT_LE(off, result.choice->achieved);
 }
 
-Scene box(const TemporaryFolder& folder, double size) {
-  const std::string file = (folder / "box.toml").string();
-  text::write_file(file, fmt::format("duration = 1\naccuracy = 1e-4\n[[body]]\nname = \"box\"\nmass = 1\n"
-                                     "shape = {{ box = [{0}, {0}] }}\n",
-                                     size));
-  return read_scene(file);
-}
-
-// A body whose error grows with time, from 0.1 s on, to 2e4 local errors of a run, but to no more than 0.2 m: so far
-// apart are all loose runs of a mechanism that magnifies differences. The energy's error falls with the local errors.
-Attempt attempt_of(double local_error, int intervals, double share_of_time) {
-  constexpr double magnified = 2e4, most = 0.2;
-  Attempt attempt;
-  attempt.knob = {Integrator::dop853, local_error, 1, intervals};
-  attempt.energy_share = local_error, attempt.whole = share_of_time == 1;
-  for (int k = 0; k <= intervals * share_of_time; ++k) {
-    Frame frame;
-    frame.time = static_cast<double>(k) / intervals;
-    frame.bodies.resize(1);
-    frame.bodies[0].x = std::min(most, magnified * local_error) * std::clamp(4 * (frame.time - 0.1), 0.0, 1.0);
-    attempt.frames.push_back(frame);
-  }
-  return attempt;
-}
-
-// The first run tells nothing about the error of the last one. That of the run between them, which ended after a
-// quarter of the time since it was too far from the first, tells.
-TEST(Claims, CountARunBetweenThatEndedEarly) {
-  const Scene scene = box(TemporaryFolder(), 1);
-  const Yardstick yardstick(scene);
-  for (const double fine : {2e-8, 9e-9, 2e-9, 2e-10, 2e-11}) {
-    const Attempt coarse = attempt_of(2e-2, 16, 1), between = attempt_of(2e-6, 64, 0.25);
-    Attempt now = attempt_of(fine, 64, 1);
-    judge(scene, yardstick, coarse, between, now);
-    const double off = now.frames.back().bodies[0].x;
-    fmt::print("  local error {:.0e}: claims {:.1e}, is off by {:.1e}\n", fine, now.claimed, off);
-    EXPECT_LT(off, now.claimed) << fine;
-    EXPECT_EQ(now.reached, fine < 1e-9) << fine;
-    EXPECT_GT(now.holds_until, 0.09) << fine;  // by the ends of the coarse run's intervals it is 0.0625
-  }
-}
-
-// At 1000 m/s a local error allows a thousand times as much of the velocity. An error of one such step goes on for a
-// second, but the loose run happens to make none.
-TEST(Claims, CountTheErrorsOfFastBodies) {
-  const Scene scene = box(TemporaryFolder(), 1);
-  Attempt coarse = attempt_of(2e-5, 16, 1), fine = attempt_of(1e-9, 64, 1);
-  for (Frame& frame : coarse.frames) frame.bodies[0].x = 0;
-  for (Frame& frame : fine.frames) frame.bodies[0].vx = 1000, frame.bodies[0].x = 1e-6 * frame.time;
-  judge(scene, Yardstick(scene), coarse, {}, fine);
-  EXPECT_GT(fine.claimed, 1e-6);
+// Waves of light planks under tension meet, and errors grow a hundredfold. By then the loose run's are as large as they
+// get, so its distance from the second run tells nothing about that one's.
+TEST(Claims, HoldWhereALooseRunMissesFastWaves) {
+  Scene scene = read_scene((source_dir() / "tests/runtime/tool/search/slack_bridge.toml").string());
+  const auto [result, rows] = recorded(scene, 0.25);
+  EXPECT_TRUE(result.choice.value().reached);
+  scene.settings.integrator = Integrator::dop853, scene.settings.local_error = 1e-11;
+  scene.step = scene.duration / intervals_of_own_steps;
+  const std::vector<Frame> truth = recorded(scene, 0.25).rows;
+  ASSERT_EQ(rows.size(), truth.size());
+  double off = 0;  // [rad]; in sizes of the bridge positions are off by less
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (std::size_t body = 0; body < rows[k].bodies.size(); ++body)
+      off = std::max(off, std::abs(rows[k].bodies[body].angle - truth[k].bodies[body].angle));
+  fmt::print("  claims {:.1e}, is off by {:.1e} rad\n", result.choice->achieved, off);
+  EXPECT_LT(off, 3 * result.choice->achieved);  // round-off makes 1e-5 to 4e-5
 }
 
 // At 0.79 s a ball meets a rough bowl some 600 times within 5 ms. Runs at local errors from 1e-9 to 1e-13, by two
@@ -381,19 +345,6 @@ TEST(Claims, CountEveryEventOfALongRow) {
                result.choice->achieved, off);
     EXPECT_LT(off, 2 * result.choice->achieved) << accuracy;
   }
-}
-
-// Local errors of 1e-6 and of 1e-12 promise errors of 1e6 : 1. Where events are located to 1e-9 m, 1e3 : 1 is left;
-// where they are located to 1e-9 of 1000 m, nothing is.
-TEST(Claims, CountWhatLocatedEventsLeave) {
-  const TemporaryFolder folder;
-  const Yardstick of_a_metre(box(folder, 0.7)), of_a_kilometre(box(folder, 700));
-  Attempt coarse, fine;
-  coarse.knob = {Integrator::rk4, 1e-6}, fine.knob = {Integrator::rk4, 1e-12};
-  EXPECT_NEAR(sure_gain(of_a_metre, coarse, fine, 1e-5), std::sqrt(1e6), 0.01 * std::sqrt(1e6));
-  fine.result.counts.events = 1;
-  EXPECT_NEAR(sure_gain(of_a_metre, coarse, fine, 1e-5), std::sqrt(1e3), 0.01 * std::sqrt(1e3));
-  EXPECT_LT(sure_gain(of_a_kilometre, coarse, fine, 1e-5), 1.5);
 }
 
 }  // namespace

@@ -1,0 +1,110 @@
+// The claim that a distance of two runs allows, by runs whose errors are known.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "runtime/text/files.hpp"
+#include "runtime/tool/search/attempt.hpp"
+#include "tests/runtime/tool/support.hpp"
+
+namespace cdot::test::judge_test {
+namespace {
+
+Scene box(const TemporaryFolder& folder, double size) {
+  const std::string file = (folder / "box.toml").string();
+  text::write_file(file, fmt::format("duration = 1\naccuracy = 1e-4\n[[body]]\nname = \"box\"\nmass = 1\n"
+                                     "shape = {{ box = [{0}, {0}] }}\n",
+                                     size));
+  return read_scene(file);
+}
+
+// A body whose error grows with time, from 0.1 s on, to 2e4 local errors of a run, but to no more than 0.2 m: so far
+// apart are all loose runs of a mechanism that magnifies differences. The energy's error falls with the local errors.
+Attempt attempt_of(double local_error, int intervals, double share_of_time) {
+  constexpr double magnified = 2e4, most = 0.2;
+  Attempt attempt;
+  attempt.knob = {Integrator::dop853, local_error, 1, intervals};
+  attempt.energy_share = local_error, attempt.whole = share_of_time == 1;
+  for (int k = 0; k <= intervals * share_of_time; ++k) {
+    Frame frame;
+    frame.time = static_cast<double>(k) / intervals;
+    frame.bodies.resize(1);
+    frame.bodies[0].x = std::min(most, magnified * local_error) * std::clamp(4 * (frame.time - 0.1), 0.0, 1.0);
+    attempt.frames.push_back(frame);
+  }
+  return attempt;
+}
+
+// The first run tells nothing about the error of the last one. That of the run between them, which ended after a
+// quarter of the time since it was too far from the first, tells.
+TEST(Claims, CountARunBetweenThatEndedEarly) {
+  const Scene scene = box(TemporaryFolder(), 1);
+  const Yardstick yardstick(scene);
+  for (const double fine : {2e-8, 9e-9, 2e-9, 2e-10, 2e-11}) {
+    const Attempt coarse = attempt_of(2e-2, 16, 1), between = attempt_of(2e-6, 64, 0.25);
+    Attempt now = attempt_of(fine, 64, 1);
+    judge(scene, yardstick, coarse, between, now);
+    const double off = now.frames.back().bodies[0].x;
+    fmt::print("  local error {:.0e}: claims {:.1e}, is off by {:.1e}\n", fine, now.claimed, off);
+    EXPECT_LT(off, now.claimed) << fine;
+    EXPECT_EQ(now.reached, fine < 1e-9) << fine;
+    EXPECT_GT(now.holds_until, 0.09) << fine;  // by the ends of the coarse run's intervals it is 0.0625
+  }
+}
+
+// At 1000 m/s a local error allows a thousand times as much of the velocity. An error of one such step goes on for a
+// second, but the loose run happens to make none.
+TEST(Claims, CountTheErrorsOfFastBodies) {
+  const Scene scene = box(TemporaryFolder(), 1);
+  Attempt coarse = attempt_of(2e-5, 16, 1), fine = attempt_of(1e-9, 64, 1);
+  for (Frame& frame : coarse.frames) frame.bodies[0].x = 0;
+  for (Frame& frame : fine.frames) frame.bodies[0].vx = 1000, frame.bodies[0].x = 1e-6 * frame.time;
+  judge(scene, Yardstick(scene), coarse, {}, fine);
+  EXPECT_GT(fine.claimed, 1e-6);
+}
+
+// A loose run that does not resolve a fast oscillation is 0.05 rad off, of 1e-4 asked for, as far as it gets. Where
+// stability bounds the steps that may be so, whatever the energy says; else it is a distance like any other.
+TEST(Claims, TrustNoLargeGainWhereStabilityBoundsTheSteps) {
+  const Scene scene = box(TemporaryFolder(), 1);
+  const auto judged = [&](double distance, bool dear) {
+    Attempt coarse = attempt_of(2e-2, 64, 1), fine = attempt_of(2e-7, 64, 1);
+    coarse.dear = fine.dear = dear;
+    for (std::size_t k = 0; k < coarse.frames.size(); ++k)
+      fine.frames[k].bodies[0].x = 0, coarse.frames[k].bodies[0].x = distance * coarse.frames[k].time;
+    judge(scene, Yardstick(scene), coarse, {}, fine);
+    return fine;
+  };
+  EXPECT_TRUE(judged(0.05, false).reached);
+  EXPECT_FALSE(judged(0.05, true).reached);
+  EXPECT_GT(judged(0.05, true).achieved, 0.001);
+  EXPECT_TRUE(judged(0.01, true).reached);
+}
+
+// Local errors of 10 : 1 surely gain 1.8. If the errors fall by no more and have one sign, half of the coarse error is
+// no part of the distance.
+TEST(Claims, CountErrorsOnTheSameSide) {
+  const Scene scene = box(TemporaryFolder(), 1);
+  Attempt coarse = attempt_of(1e-11, 64, 1), fine = attempt_of(1e-12, 64, 1);
+  for (Frame& frame : coarse.frames) frame.bodies[0].x = 1.9e-8 * frame.time;
+  for (Frame& frame : fine.frames) frame.bodies[0].x = 1e-8 * frame.time;
+  judge(scene, Yardstick(scene), coarse, {}, fine);
+  EXPECT_GT(fine.claimed, 1e-8);
+}
+
+// Local errors of 1e-6 and of 1e-12 promise errors of 1e6 : 1. Where events are located to 1e-9 m, 1e3 : 1 is left;
+// where they are located to 1e-9 of 1000 m, nothing is.
+TEST(Claims, CountWhatLocatedEventsLeave) {
+  const TemporaryFolder folder;
+  const Yardstick of_a_metre(box(folder, 0.7)), of_a_kilometre(box(folder, 700));
+  Attempt coarse, fine;
+  coarse.knob = {Integrator::rk4, 1e-6}, fine.knob = {Integrator::rk4, 1e-12};
+  EXPECT_NEAR(sure_gain(of_a_metre, coarse, fine, 1e-5), std::sqrt(1e6), 0.01 * std::sqrt(1e6));
+  fine.result.counts.events = 1;
+  EXPECT_NEAR(sure_gain(of_a_metre, coarse, fine, 1e-5), std::sqrt(1e3), 0.01 * std::sqrt(1e3));
+  EXPECT_LT(sure_gain(of_a_kilometre, coarse, fine, 1e-5), 1.5);
+}
+
+}  // namespace
+}  // namespace cdot::test::judge_test
