@@ -86,6 +86,12 @@ template <class S>
 void put_in(WorldData<S>& world, Source source, double work);
 template <class S>
 void take(WorldData<S>& world, Source source, double work);
+// Put in if the energy has risen by this, else taken.
+template <class S>
+void book_change(WorldData<S>& world, Source source, double risen) {
+  if (risen > 0) put_in(world, source, risen);
+  else take(world, source, -risen);
+}
 // Call before a change from outside.
 template <class S>
 void note_change(WorldData<S>& world);

@@ -162,12 +162,29 @@ void project_velocities_at_start(WorldData<S>& world, Island<S>& island) {
   island.kinked = -1;
   const double before = kinetic_energy(world, island);
   project_velocities(world, island);
-  const double gained = kinetic_energy(world, island) - before;
-  if (gained > 0) put_in(world, source, gained);
-  else take(world, source, -gained);
+  book_change(world, source, kinetic_energy(world, island) - before);
 }
 
 namespace {
+
+// The source of the end that is passed furthest, if by more than `near`, as find_errors() found it; -1 if there is
+// none.
+template <class S>
+int passed_source(const Island<S>& island, typename S::Scalar near) {
+  int source = -1;
+  each_row(island, [&](const Batch<S>& batch, int i) {
+    if (batch.law && batch.law->guard && std::abs(batch.error[i]) > near)
+      near = std::abs(batch.error[i]), source = static_cast<int>(batch.source);
+  });
+  return source;
+}
+
+// Kinetic, since inertia tensors turn with the poses, and potential.
+template <class S>
+double energy_now(WorldData<S>& world) {
+  const Energy energy = energy_of(world, world.one_slot);
+  return energy.kinetic + energy.potential;
+}
 
 // Of the rows of joints, as find_errors() left them.
 template <class S>
@@ -193,6 +210,9 @@ void project_start(WorldData<S>& world, Island<S>& island, typename S::Scalar ti
   const bool goes_on = std::isfinite(island.residual);
   const T error = find_errors(world, island, time), near = foreign<T> * island.scale;
   const bool fitted = error_of_joints(island) <= near;
+  // An end that moves bodies at once does the work that this takes.
+  const int mover = fitted && error > near ? passed_source(island, near) : -1;
+  const double before = mover < 0 ? 0 : energy_now(world);
   island.solver->positions(world, island, time, true);
   // An end that began to hold where no pose of the joints reaches it would tear them apart.
   if (exact && goes_on && fitted && error_of_joints(island) > near) island.trouble = StepProblem::joints_apart;
@@ -205,6 +225,7 @@ void project_start(WorldData<S>& world, Island<S>& island, typename S::Scalar ti
     island.residual = find_errors(world, island, time);
     note_errors(island);
   }
+  if (mover >= 0) book_change(world, static_cast<Source>(mover), energy_now(world) - before);
   scale_corrections(island, T(0));  // the motion does not need them, so they are no load for its friction
   island.evaluated = island.factored = false;
 }

@@ -77,6 +77,32 @@ TEST(OwnEnds, AnEndThatIsPassedAsItBeginsHoldsAgainstAForce) {
   }
 }
 
+// The same end moves the slider back against the force, and does that work at once; it also takes the motion.
+TEST(OwnEnds, AnEndThatMovesABodyBackDoesTheWork) {
+  constexpr double v = 1, force = 0.5, begin = 0.303, top = 0.1, h = 0.01;
+  const std::string type = late_end();
+  for (const Solver solver : {Solver::direct, Solver::iterative})
+    for (const IntegratorRow& row : integrator_rows) {
+      if (solver == Solver::iterative && row.integrator == Integrator::radau5) continue;
+      Settings by = settings(solver);
+      by.integrator = row.integrator;
+      World<double> world(by);
+      const int body = world.add_body({.vx = v, .mass = 1, .inertia = 1, .force_x = force});
+      const int guide =
+          world.add_joint({"prismatic", {body, world.ground()}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0, 1}}}, {}});
+      add_effect(world, guide, "slide", SpecEffect{type, {{"top", {top}}, {"begin", {begin}}}});
+      for (int k = 0; k < 40; ++k) ASSERT_TRUE(world.step(h));
+      double work = 0;
+      for (const WorkOfSource& source : world.work_by_source()) work += source.name == type ? source.work : 0;
+      // Methods that do not locate the event lose or gain the work of the force in half a step.
+      const double half_step = force * (v + force * begin) * h / 2;
+      const double tolerance = row.level != Level::acceleration ? half_step : solver == Solver::direct ? 1e-9 : 1e-5;
+      EXPECT_NEAR(world.pose(body).x, top, 1e-5) << row.name;
+      EXPECT_NEAR(work, -force * top - v * v / 2, tolerance) << row.name;
+      EXPECT_NEAR(world.balance().method(), 0, tolerance) << row.name;
+    }
+}
+
 // A rod of 1 m holds a slider at 0.8 m, where an end at 0.5 m begins to hold: no pose reaches it. Shared among all
 // rows, its error would open the joints by decimetres.
 TEST(OwnEnds, AnEndThatNoPoseReachesTearsNoJoint) {
