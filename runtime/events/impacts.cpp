@@ -49,11 +49,13 @@ Blow what_hits(Island<S>& island) {
   return blow;
 }
 
-// Bounds of impulses: rows at their ends only push; motors with a bounded force do not act.
+// Bounds of impulses: rows at their ends only push; motors with a bounded force do not act. Loads begin at none:
+// friction that jams would keep a load that it once had.
 template <class S>
 void offer_impulses(Island<S>& island) {
   using T = typename S::Scalar;
   clear_laws(island);
+  fill_lambda(island, T(0));
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
     if (!may_strike(guard, resolution, batch.law->by_load != nullptr)) return;
     batch.lower[i] = std::isinf(guard.lower) ? guard.lower : T(0);
@@ -124,7 +126,6 @@ void strike_faster(WorldData<S>& world, Island<S>& island, typename S::Scalar sh
     });
   };
   for (int i : island.bodies) all.velocity[i] = all.displacement[i];
-  fill_lambda(island, T(0));  // a jam would keep its load
   offer_impulses(island);
   meet_faster(share);
   solve(world, island, all.velocity.data());

@@ -282,5 +282,27 @@ TEST(LoadedEffects, TheErrorOfStepsDecidesWhetherARodJams) {
   EXPECT_EQ(run(1e-6, -slowly, 0.2).second.undecided, 0);
 }
 
+// The same rod stands on the line, which then bears 8.5 N. Struck, it slides on and leaves the line at a 40th of that
+// speed, while a ball beside it meets its own ground. From the load of before, the ball's blow would find a jam.
+TEST(LoadedEffects, ABlowBeginsWithoutTheLoadsOfForces) {
+  constexpr double m = 1, l = 1, I = m * l * l / 3, v = 4, up = 0.1, fall = 1, short_time = 1e-6;
+  const double tilt = std::atan(2.0), s = std::sin(tilt), c = std::cos(tilt);
+  Settings settings = with(Integrator::dop853, -10);
+  World<double> world(settings);
+  const int rod = world.add_body({.x = -l * c, .y = l * s, .mass = m, .inertia = I});
+  const int ball = world.add_body({.x = 5, .mass = m, .inertia = I});
+  world.add_joint(
+      {"rough_line", {rod, world.ground()}, {{"pa", {l * c, -l * s}}, {"pb", {0, 0}}, {"n", {0, 1}}, {"mu", {2}}}, {}});
+  world.add_joint({"rough_line", {ball, world.ground()}, {{"pb", {5, 0}}, {"n", {0, 1}}, {"mu", {0}}}, {}});
+  world.add_joint({"spring", {rod, ball}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"rest", {5}}, {"k", {1e-9}}}, {}});
+  ASSERT_TRUE(world.step(short_time));
+  world.set_velocity(rod, {v, up, 0});
+  world.set_velocity(ball, {0, -fall, 0});
+  ASSERT_TRUE(world.step(short_time));
+  EXPECT_NEAR(world.velocity(rod).x, v, 1e-4);
+  EXPECT_NEAR(world.velocity(rod).y, up, 1e-4);
+  EXPECT_NEAR(world.velocity(ball).y, 0, 1e-9);
+}
+
 }  // namespace
 }  // namespace cdot::test
