@@ -22,9 +22,9 @@ struct SpringRow {
 };
 
 // Forces of a slot's rows at rest next to C, which tells their stiffness; on the other side where there is no force, as
-// of a gas spring shorter than 0.
-template <class S, class Forces>
-std::vector<double> find_ways_to(Batch<S>& rows, int slot, const Forces& no_rate, Forces& forces) {
+// of a gas spring shorter than 0. forces_of(rows, slot, forces)
+template <class S, class Forces, class Law>
+std::vector<double> find_ways_to(Batch<S>& rows, int slot, const Law& forces_of, Forces& forces) {
   using T = typename S::Scalar;
   const auto count = static_cast<std::size_t>(rows.ops->rows), first = static_cast<std::size_t>(slot) * count;
   const std::vector<T> C(&rows.C[first], &rows.C[first] + count);
@@ -34,40 +34,61 @@ std::vector<double> find_ways_to(Batch<S>& rows, int slot, const Forces& no_rate
       ways[r] = share * std::max(std::abs(double(C[r])), 1e-6);
       rows.C[first + r] = T(double(C[r]) - ways[r]);
     }
-    rows.law->force(rows, slot, no_rate.data(), forces.data());
+    forces_of(rows, slot, forces.data());
     std::copy(C.begin(), C.end(), &rows.C[first]);
     if (std::all_of(forces.begin(), forces.end(), [](T force) { return std::isfinite(force); })) break;
   }
   return ways;
 }
 
-// Rows of batches under a law with a force, at the present poses.
+// The rows of a slot under forces_of(rows, slot, forces); tangent(row, stiffness) of the difference.
+template <class S, class Law, class Tangent>
+void add_rows_of(const WorldData<S>& state, Batch<S>& rows, int slot, const Law& forces_of, const Tangent& tangent,
+                 std::vector<SpringRow>& springs) {
+  using T = typename S::Scalar;
+  const int count = rows.ops->rows, joint = rows.joint[static_cast<std::size_t>(slot)];
+  const double whole = state.joints[static_cast<std::size_t>(joint)].broken ? 0 : 1;
+  const bool by_frequency = rows.law->by_mass && rows.law->by_mass(rows, slot);
+  std::vector<T> force(static_cast<std::size_t>(count)), further(force);
+  forces_of(rows, slot, force.data());
+  const std::vector<double> ways = find_ways_to(rows, slot, forces_of, further);
+  for (int r = 0; r < count; ++r) {
+    const auto of_row = static_cast<std::size_t>(r);
+    const auto i = static_cast<std::size_t>(slot * count + r);
+    const auto k = static_cast<std::size_t>(slot * rows.triangle() + r * (r + 1) / 2 + r);
+    const double stiffness = double(further[of_row] - force[of_row]) / ways[of_row];
+    springs.push_back({joint, double(rows.C[i]), double(rows.rate[i]), whole * double(force[of_row]), stiffness,
+                       tangent(of_row, stiffness), whole * double(rows.factor[k]), by_frequency});
+  }
+}
+
+// Rows of batches under a law with a force, at the present poses. What an energy stores and the rest of the force may
+// cancel, but each does its own work: two rows.
 template <class S>
 void add_spring_rows(const WorldData<S>& state, const Batch<S>& batch, std::vector<SpringRow>& springs) {
   using T = typename S::Scalar;
   Batch<S> rows = batch;  // a copy, because the next step may start from the World's own rows
-  const int count = rows.ops->rows;
-  const std::vector<T> no_rate(static_cast<std::size_t>(count));
-  std::vector<T> force(no_rate), further(no_rate);
-  std::vector<SpringNumbers<T>> slopes(static_cast<std::size_t>(count));
+  const auto count = static_cast<std::size_t>(rows.ops->rows);
+  const std::vector<T> no_rate(count);
+  std::vector<SpringNumbers<T>> slopes(count);
   rows.ops->evaluate(rows, 0, rows.count(), state.bodies, T(state.time));
   rows.ops->effective_mass(rows, 0, rows.count(), state.bodies);
   rows.ops->velocity(rows, 0, rows.count(), state.bodies.velocity.data(), rows.rate.data());
+  const auto unstored = [&](const Batch<S>& of, int slot, T* to) { of.law->unstored(of, slot, no_rate.data(), to); };
+  const auto stored = [&](const Batch<S>& of, int slot, T* to) {
+    std::vector<T> rest(count);
+    of.law->force(of, slot, no_rate.data(), to);
+    if (of.law->stores_part) unstored(of, slot, rest.data());
+    for (std::size_t r = 0; r < count; ++r) to[r] -= rest[r];
+  };
   for (int slot = 0; slot < rows.count(); ++slot) {
-    const int joint = rows.joint[static_cast<std::size_t>(slot)];
-    const double whole = state.joints[static_cast<std::size_t>(joint)].broken ? 0 : 1;
-    rows.law->force(rows, slot, no_rate.data(), force.data());
-    const bool by_frequency = rows.law->by_mass && rows.law->by_mass(rows, slot);
     if (rows.law->spring) rows.law->spring(rows, slot, slopes.data());
-    const std::vector<double> ways = find_ways_to(rows, slot, no_rate, further);
-    for (int r = 0; r < count; ++r) {
-      const auto of_row = static_cast<std::size_t>(r);
-      const auto i = static_cast<std::size_t>(slot * count + r);
-      const auto k = static_cast<std::size_t>(slot * rows.triangle() + r * (r + 1) / 2 + r);
-      springs.push_back({joint, double(rows.C[i]), double(rows.rate[i]), whole * double(force[of_row]),
-                         double(further[of_row] - force[of_row]) / ways[of_row], double(slopes[of_row].k),
-                         whole * double(rows.factor[k]), by_frequency});
-    }
+    std::vector<double> left(count);
+    for (std::size_t r = 0; r < count; ++r) left[r] = double(slopes[r].k);
+    const auto own = [&](std::size_t r, double stiffness) { return left[r] -= stiffness, stiffness; };
+    if (rows.law->stores_part) add_rows_of(state, rows, slot, unstored, own, springs);
+    add_rows_of(
+        state, rows, slot, stored, [&](std::size_t r, double) { return left[r]; }, springs);
   }
 }
 
