@@ -108,6 +108,16 @@ bool errors_stay(const WorldData<S>& world, const Island<S>& island, typename S:
   return stay;
 }
 
+// False for rows within bounds that do nothing, as those of a slack rope.
+template <class S>
+bool acts(const Segment<S>& segment) {
+  const Batch<S>& batch = *segment.batch;
+  const int rows = batch.ops->rows;
+  for (int i = segment.begin * rows; i < segment.end * rows; ++i)
+    if (batch.lambda[i] != 0 || batch.correction[i] != 0 || batch.error[i] != 0) return true;
+  return false;
+}
+
 }  // namespace
 
 template <class S>
@@ -185,7 +195,7 @@ template <class S>
 bool may_contradict(const Island<S>& island, typename S::Scalar at_start) {
   const auto prescribes = [](const Segment<S>& segment) {
     const Batch<S>& batch = *segment.batch;
-    return batch.law ? !batch.law->force : batch.explicit_time() || has_velocity_rows(batch);
+    return batch.law ? !batch.law->force && acts(segment) : batch.explicit_time() || has_velocity_rows(batch);
   };
   return !(at_start <= foreign<typename S::Scalar> * island.scale) ||
          std::any_of(island.segments.begin(), island.segments.end(), prescribes);

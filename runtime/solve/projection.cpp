@@ -186,12 +186,12 @@ double energy_now(WorldData<S>& world) {
   return energy.kinetic + energy.potential;
 }
 
-// Of the rows of joints, as find_errors() left them.
+// Of the rows of joints, ropes too, as find_errors() left them.
 template <class S>
 typename S::Scalar error_of_joints(Island<S>& island) {
   typename S::Scalar worst = 0;
   each_row(island, [&](const Batch<S>& batch, int i) {
-    if (!batch.law) worst = std::max(worst, std::abs(batch.error[i]));
+    if (!batch.law || batch.law->reported) worst = std::max(worst, std::abs(batch.error[i]));
   });
   return worst;
 }
@@ -201,6 +201,7 @@ typename S::Scalar error_of_joints(Island<S>& island) {
 template <class S>
 void project_start(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   using T = typename S::Scalar;
+  constexpr T way_left = T(0.1);  // the rest of a way that Newton does not find
   if (world.settings.drift != Drift::projection || island.segments.empty()) return;
   if (!(island.residual > foreign<T> * island.scale)) return;
   clear_correction(world, island);
@@ -209,13 +210,15 @@ void project_start(WorldData<S>& world, Island<S>& island, typename S::Scalar ti
   for (size_t k = 0; exact && k < island.bodies.size(); ++k) island.flow.pose[k] = all.pose[island.bodies[k]];
   const bool goes_on = std::isfinite(island.residual);
   const T error = find_errors(world, island, time), near = foreign<T> * island.scale;
-  const bool fitted = error_of_joints(island) <= near;
+  const bool fitted = error_of_joints(island) <= near, stays = stays_misfit(world, island, error, time - T(world.time));
   // An end that moves bodies at once does the work that this takes.
   const int mover = fitted && error > near ? passed_source(island, near) : -1;
   const double before = mover < 0 ? 0 : energy_now(world);
   island.solver->positions(world, island, time, true);
   // An end that began to hold where no pose of the joints reaches it would tear them apart.
-  if (exact && goes_on && fitted && error_of_joints(island) > near) island.trouble = StepProblem::joints_apart;
+  const bool unreached = island.residual > std::max(near, way_left * error);
+  if (exact && goes_on && fitted && !stays && (unreached || error_of_joints(island) > near))
+    island.trouble = StepProblem::joints_apart;
   if (exact) fail_if_moved_far(world, island, double(error), 0);
   // Joints that contradict each other may have no pose near by, and Newton leads away from all.
   if (exact && island.residual > error) {
