@@ -83,16 +83,16 @@ class Stiffness {
   double largest_ = 0;
 };
 
-// Moves the island's bodies to generic poses, at which no direction is singular.
+// Moves the island's bodies to generic poses `far` sizes away, at which no direction is singular.
 template <class S>
-void move_elsewhere(const Island<S>& island, Bodies<S>& at) {
+void move_elsewhere(const Island<S>& island, const Bodies<S>& from, double far, Bodies<S>& at) {
   using T = typename S::Scalar;
-  const T size = island.size;
   Arbitrary arbitrary;
   for (int body : island.bodies) {
     T numbers[S::freedom];
-    for (int k = 0; k < S::freedom; ++k) numbers[k] = T(4 * arbitrary() - 2) * (k < S::lengths ? size : T(1));
-    at.pose[body] = S::moved(at.pose[body], S::read_velocity(numbers));
+    for (int k = 0; k < S::freedom; ++k)
+      numbers[k] = T(4 * arbitrary() - 2) * (k < S::lengths ? T(far * double(island.size)) : T(1));
+    at.pose[body] = S::moved(from.pose[body], S::read_velocity(numbers));
   }
 }
 
@@ -134,17 +134,30 @@ void leave_to_row(typename S::Stiffness& own, const double* w, double pivot) {
   S::subtract(own, taken, 0);
 }
 
+// Of every slot with rows, in the order of the segments. Where a slot has none close by, it may have some further away,
+// as a slack cord has: without them the start would decide how a taut one is solved.
+template <class S>
+std::vector<int> count_rows(const WorldData<S>& world, const Island<S>& island, Bodies<S>& at) {
+  std::vector<int> rows;
+  for (const double far : {1.0, 30.0, 1000.0}) {
+    move_elsewhere(island, world.bodies, far, at);
+    size_t k = 0;
+    for (const Segment<S>& segment : island.segments)
+      for (int slot = segment.begin; segment.batch->ops->rows > 0 && slot < segment.end; ++slot, ++k) {
+        if (rows.size() == k) rows.push_back(0);
+        if (rows[k] == 0) rows[k] = rows_of(world, *segment.batch, slot, at);
+      }
+  }
+  return rows;
+}
+
 }  // namespace
 
 template <class S>
 std::vector<int> tension_rows(const WorldData<S>& world, const Island<S>& island, Bodies<S>& at) {
   const IntegratorRow& method = row_of(world.settings.integrator);
   if (!method.stiffens && method.level != Level::acceleration) return {};
-  move_elsewhere(island, at);
-  std::vector<int> rows;
-  for (const Segment<S>& segment : island.segments)
-    for (int slot = segment.begin; segment.batch->ops->rows > 0 && slot < segment.end; ++slot)
-      rows.push_back(rows_of(world, *segment.batch, slot, at));
+  const std::vector<int> rows = count_rows(world, island, at);
   return std::count(rows.begin(), rows.end(), 0) == std::ssize(rows) ? std::vector<int>{} : rows;
 }
 
