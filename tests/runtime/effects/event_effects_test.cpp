@@ -335,5 +335,24 @@ TEST(EventEffects, NoToothIsNarrowerThanAStep) {
   });
 }
 
+// A slider creeps into its latch more slowly than what counts as rest. It sleeps before the latch or in it, not beyond.
+TEST(EventEffects, ALatchThatClosesKeepsItsBodyAwake) {
+  constexpr double at = 0.3, v = 1e-3, h = 0.01;
+  for (const IntegratorRow& row : integrator_rows)
+    for (int steps = 3; steps < 9; ++steps) {
+      Settings settings = with(row.integrator);
+      settings.sleep_speed = 10 * v, settings.sleep_after = (steps - 0.5) * h;
+      World<double> world(settings);
+      const int slider = world.add_body({.x = -5.5 * v * h, .vx = v, .mass = 2, .inertia = 1});
+      const int rail = world.add_joint(
+          {"prismatic", {slider, world.ground()}, {{"pa", {0, 0}}, {"pb", {-at, 0}}, {"t", {0, 1}}}, {}});
+      add_effect(world, rail, "slide", SpecEffect{"latch", {{"at", {at}}}});
+      advance(world, 12 * h, h);
+      const double x = world.pose(slider).x;
+      EXPECT_LE(x, 1e-9) << row.name << ", asleep after " << steps << " steps";
+      EXPECT_NEAR(x, steps < 6 ? (steps - 5.5) * v * h : 0, 1e-9) << row.name << ", asleep after " << steps << " steps";
+    }
+}
+
 }  // namespace
 }  // namespace cdot::test
