@@ -198,6 +198,15 @@ TEST(Snapshot, AStateOfAnotherWorldIsRefused) {
   };
   World<double> weak = breakable(500);
   expect_refused(weak, breakable(501).snapshot(), "its joints, their parameters, effects, springs or gravity");
+  const auto shortened = [&](double amount) {
+    World<double> chain = chain_of(3, 1, direct);
+    const Profile length = Profile::function([=](double t) -> ProfileValue { return {2 - amount * t, -amount, 0}; });
+    chain.add_joint({"distance", {1, chain.ground()}, {{"pa", {0, 0}}, {"pb", {0, 0}}, in_time("l", {length})}, {}});
+    return chain;
+  };
+  World<double> slow = shortened(0.1);
+  EXPECT_NO_THROW(slow.restore(shortened(0.1).snapshot()));
+  expect_refused(slow, shortened(0.2).snapshot(), "its joints, their parameters, effects, springs or gravity");
   expect_refused(world, Snapshot{}, "the snapshot is empty");
   World<float> floats(direct);
   add_chain(floats, 3, 0.3);
