@@ -200,7 +200,9 @@ TEST(Snapshot, AStateOfAnotherWorldIsRefused) {
   expect_refused(weak, breakable(501).snapshot(), "its joints, their parameters, effects, springs or gravity");
   const auto shortened = [&](double amount) {
     World<double> chain = chain_of(3, 1, direct);
-    const Profile length = Profile::function([=](double t) -> ProfileValue { return {2 - amount * t, -amount, 0}; });
+    const Profile length = Profile::function([=, now = chain.time()](double t) -> ProfileValue {
+      return {2 - amount * (t - now), -amount, 0};
+    });
     chain.add_joint({"distance", {1, chain.ground()}, {{"pa", {0, 0}}, {"pb", {0, 0}}, in_time("l", {length})}, {}});
     return chain;
   };
