@@ -41,6 +41,9 @@ constexpr int most_astray = 5;
 // Of the longest step: a shorter one is not looked at for events that it leaps over. In such a step behind an impact,
 // ways are round-off and what Newton leaves.
 constexpr double shortest_leap = 1e-3;
+// Where a joint jams, Euler's step finds the impulse. Its order is 1, so it takes this share of step(h), and so many
+// times as much where the joint still jams.
+constexpr double shortest_jam = 1e-9, longer_jam = 1000;
 // In units of Island::size and [rad]: a step with a larger estimated error is meaningless, for example if tension makes
 // a chain too stiff for the step.
 constexpr double absurd = 0.3;
@@ -303,16 +306,16 @@ Way<typename S::Scalar> way_from(WorldData<S>& world, Island<S>& island, typenam
 }
 
 // Takes a step as long as its error allows; its length goes to Flow::length. False if there is none: fall_back() has
-// gone all the way.
+// gone all the way, or `jam` of it where a joint jams.
 template <class S>
 bool take_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
-               const Way<typename S::Scalar>& way, typename S::Scalar h) {
+               const Way<typename S::Scalar>& way, typename S::Scalar h, typename S::Scalar jam) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
   const bool goes_on = flow.known;
   begin(world, island, time, h);
   if (island.jams) {
-    fall_back(world, island, time, way.left, true);
+    fall_back(world, island, time, flow.length = jam, true);
     return false;
   }
   keep_start(world, island, method, time, goes_on);
@@ -325,7 +328,7 @@ bool take_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& me
                                                : take_fixed_step(world, island, method, time, way.left, h, reach);
   if (flow.length > T(0)) return true;
   const bool costly = method.implicit && std::ssize(island.bodies) > most_to_carry_on;
-  fall_back(world, island, time, way.left, flow.astray || costly);
+  fall_back(world, island, time, flow.length = way.left, flow.astray || costly);
   return false;
 }
 
@@ -337,14 +340,16 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
   Flow<S>& flow = island.flow;
   const int most = most_steps_after(flow.exhausted), most_now = most_events + flow.guarded;
   int steps = 0;
+  T jam = world.settings.local_error > 0 ? T(shortest_jam) * h : h;
   for (int events = 0; done < h; ++steps) {
     const T time = T(world.time) + done;
     const Way<T> way = way_from(world, island, done, h);
     const bool spent = static_cast<double>(world.counts->evaluations) > world.most_evaluations;
     const bool chatters = spent || events > most_now || flow.slivers > most_slivers || steps >= most;
     if (chatters) fall_back(world, island, time, way.left, false);
-    if (chatters || !take_step(world, island, method, time, way, h)) {
-      done = way.end;
+    if (chatters || !take_step(world, island, method, time, way, h, std::min(jam, way.left))) {
+      done = chatters || flow.length == way.left ? way.end : done + flow.length;
+      jam *= T(longer_jam);
       continue;
     }
     flow.longest = std::max<T>(flow.longest, flow.length);

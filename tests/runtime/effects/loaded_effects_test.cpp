@@ -52,6 +52,30 @@ TEST(LoadedEffects, ASlidingBallStartsToRoll) {
   }
 }
 
+// Painlevé's rod: no finite force balances the friction that grows with its own load, and an impulse at the end that
+// slides stops it at once. About that end the rod keeps its angular momentum; then it turns about it as about a pin.
+TEST(LoadedEffects, AJamTakesNoTime) {
+  constexpr double mass = 1, inertia = 5.0 / 3, x = -1, y = 2, v = 4, lasts = 0.05;
+  for (const Integrator integrator : {Integrator::rk4, Integrator::dop853, Integrator::radau5}) {
+    Settings settings = with(integrator, -weight);
+    settings.local_error = 1e-10;
+    World<double> jams(settings), turns(settings);
+    const int rod = jams.add_body({.x = x, .y = y, .vx = v, .mass = mass, .inertia = inertia});
+    jams.add_joint(
+        {"rough_line", {rod, jams.ground()}, {{"pa", {-x, -y}}, {"pb", {0, 0}}, {"n", {0, 1}}, {"mu", {2}}}, {}});
+    const double w = -mass * y * v / (inertia + mass * (x * x + y * y));
+    const int pinned =
+        turns.add_body({.x = x, .y = y, .vx = -w * y, .vy = w * x, .w = w, .mass = mass, .inertia = inertia});
+    turns.add_joint({"revolute", {turns.ground(), pinned}, {{"pa", {0, 0}}, {"pb", {-x, -y}}}, {}});
+    ASSERT_TRUE(jams.step(lasts));
+    ASSERT_TRUE(turns.step(lasts));
+    const auto name = name_of(integrators, integrator);
+    EXPECT_NEAR(jams.pose(rod).angle, turns.pose(pinned).angle, 1e-8) << name;
+    EXPECT_NEAR(jams.velocity(rod).w, turns.velocity(pinned).w, 1e-8) << name;
+    EXPECT_EQ(jams.step_counts().rescued, 1) << name;
+  }
+}
+
 TEST(LoadedEffects, ASliderOnARailSlowsByItsWeight) {
   constexpr double mu = 0.15, v0 = 2;
   for (const IntegratorRow& row : integrator_rows) {
