@@ -49,6 +49,7 @@ bool has_strong_motor(Island<S>& island) {
 template <class S>
 bool offer_bounds(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
+  const bool driven = has_strong_motor(island);
   bool open = false;
   find_rates(world, island);
   clear_laws(island);
@@ -56,7 +57,8 @@ bool offer_bounds(WorldData<S>& world, Island<S>& island) {
       island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
         if (batch.law->cone_rows > 0) return;
         const T missing = guard.rate - (batch.rate[i] + batch.bias[i]);
-        const bool slow = std::abs(missing) <= T(4) * resolution.rate || batch.mode[i] == Mode::held;
+        const bool struck = batch.mode[i] == Mode::held;
+        const bool slow = std::abs(missing) <= T(4) * resolution.rate || struck;
         batch.mode[i] = Mode::held;
         batch.lower[i] = guard.lower;
         batch.upper[i] = guard.upper;
@@ -65,6 +67,10 @@ bool offer_bounds(WorldData<S>& world, Island<S>& island) {
         if (guard.one_sided() && !(slow && guard.gap() <= resolution.C)) {
           batch.mode[i] = Mode::off;
           batch.lower[i] = batch.upper[i] = 0;
+        } else if (guard.one_sided() && struck && driven) {
+          // Beside a motor that has lost against it no force presses on the end that is met. Let go, it is met again.
+          if (guard.lower < T(0)) batch.upper[i] += resolution.force;
+          else batch.lower[i] -= resolution.force;
         } else if (!guard.one_sided() && !slow) {
           batch.mode[i] = missing > T(0) ? Mode::pushed : Mode::pulled;
           batch.lower[i] = batch.upper[i] = missing > T(0) ? guard.upper : guard.lower;

@@ -113,6 +113,26 @@ TEST(Motor, StandsStillAtTheLimitThatItRunsInto) {
   }
 }
 
+// It drives the rod once and then loses against the limit, which takes that energy. Were the end let go, the motor
+// would drive the rod into it again.
+TEST(Motor, IsStoppedOnceByALimit) {
+  for (const double local_error : {0.0, 1e-2, 1e-6}) {
+    Settings s = settings(Solver::direct, Drift::projection, 0);
+    s.integrator = Integrator::dop853, s.local_error = local_error;
+    World<double> world(s);
+    const int bar = world.add_body(rod(0.5, 0, 0));
+    const int joint = revolute(world, world.ground(), bar, 0, 0, -0.5, 0);
+    add_motor(world, joint, "angle", {.speed = 3});
+    add_limit(world, joint, "angle", {.lower = -1, .upper = 0.4});
+    ASSERT_TRUE(world.step(0.1));
+    const double driven = world.energy();
+    for (int k = 0; k < 10; ++k) ASSERT_TRUE(world.step(0.1));
+    EXPECT_NEAR(world.coordinate(joint, "angle"), 0.4, 1e-8);
+    EXPECT_NEAR(world.balance().put_in, driven, 1e-6) << local_error;
+    EXPECT_EQ(world.step_counts().events, 1) << local_error;
+  }
+}
+
 TEST(DryFriction, HoldsUpToItsForceAndBrakesAboveIt) {
   for (Solver solver : both) {
     for (double torque : {0.4, 0.7}) {
