@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "runtime/number/lu.hpp"
+#include "runtime/state/world_data.hpp"
 #include "runtime/step/runge_kutta_tables.hpp"
 #include "tests/runtime/mechanisms.hpp"
 #include "tests/runtime/spatial_support.hpp"
