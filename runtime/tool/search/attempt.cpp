@@ -128,6 +128,7 @@ void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse
     const auto [left, agrees_until] = distance(yardstick, between, fine);
     gained = std::min(gained, gain_by(yardstick, coarse, between, fine, left));
     fine.holds_until = std::max(fine.holds_until, agrees_until);
+    fine.unmeasured = apart > far;
   }
   fine.achieved = std::max({std::min(apart, least_sure), apart / gained, refusing_error(yardstick, fine)});
   const bool known = fine.knob.adaptive() ? fine.knob.parts > coarse.knob.parts ||

@@ -32,7 +32,9 @@ struct Attempt {
   bool reached = false;
   bool dear = false;         // explicit steps seemed dear, as where a fast oscillation bounds their length
   bool knows_means = false;  // it would have reached the accuracy, but equal steps know the mean of a load alone
-  double foreseen = 0;       // distance from the run before at the end, if it made the run end early
+  // It aimed at the accuracy after a run that ended early, and the run before is too far off to measure it.
+  bool unmeasured = false;
+  double foreseen = 0;  // distance from the run before at the end, if it made the run end early
 };
 
 struct Distance {

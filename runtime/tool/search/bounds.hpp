@@ -24,5 +24,8 @@ inline constexpr double steps_of_collocation = 10;  // half of its first run, or
 // mechanisms a unit takes a microsecond. A run of collocation that has left a step to another method, which ends few
 // searches, ends after less.
 inline constexpr double first_work_of_collocation = 2e6, work_of_lowest_order = 5e6, work_if_rescued = 5e5;
+// Even motions: steps have grown without bound, in so few evaluations. They get explicit steps of equal length if
+// stable ones cost at most `slow`.
+inline constexpr double even = 150, slow = 150;
 
 }  // namespace cdot

@@ -33,6 +33,8 @@ bool is_eighth_order(const IntegratorRow& row);
 // The share of the last local error that a further run takes: of order 8 a thousandth, of others at the same ratio of
 // prices.
 double stricter_for(const IntegratorRow& row);
+// The same for a run that only has to measure the one before.
+inline constexpr double share_to_measure = 0.04;
 // The same for the second run.
 double second_share(const Try& first, double accuracy);
 

@@ -27,10 +27,6 @@ constexpr double aim = 0.5;  // share of the accuracy that a further run aims at
 // twice as large (knobs.cpp), and fewer steps are rejected.
 constexpr double safety = 0.8;
 
-// --- Even motions: steps have grown without bound, in so few evaluations. They get explicit steps of equal length if
-// stable ones cost at most `slow`.
-constexpr double even = 150, slow = 150;
-
 constexpr int most_idle = 3;  // refinements in a row by fixed steps that do not converge, or runs that do not end
 
 class Search {
@@ -200,6 +196,7 @@ std::optional<double> Search::next_share(const Attempt& last, const Attempt& now
   sensitive_ |= now.knob.strictest() && now.result.counts.rescued == 0;
   idle = converges(last, now) ? 0 : idle + 1;
   if (!now.knob.adaptive() && idle > most_idle) return {};
+  if (now.unmeasured) return share_to_measure;
   // Where the motion magnifies every difference, runs agree no more at all: then the time counts.
   return std::max(least, aim * yardstick_.asked() / now.achieved);
 }

@@ -11,12 +11,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double short_start = 1e-9;  // of an interval
-
-bool jams_at_start(const Run& run, double interval) {
-  return run.result.counts.rescued > 0 && run.result.first_rescue < 1.5 * interval;
-}
-
 Run run_with(RunOptions options, const Scene& scene, const std::vector<double>& times, std::string& warnings) {
   Run run;
   options.row_times = times;
@@ -80,26 +74,8 @@ Run run_of(const Scene& scene, Integrator integrator, double local_error, double
 Run reference_of(const Scene& scene, double local_error, const std::vector<double>& times, double most) {
   const double interval = scene.duration / intervals_of_own_steps;
   Run run = run_of(scene, Integrator::dop853, local_error, interval, times, most);
-  const bool jams = jams_at_start(run, interval);
+  const bool jams = run.result.counts.rescued == 1 && run.result.first_rescue < 1.5 * interval;
   if (run.result.counts.rescued > 0 && !jams) run.whole = false;  // another method has taken long steps
-  if (!run.whole || !jams) return run;
-  Scene begun = named(scene, Integrator::dop853, local_error, short_start * interval);
-  begun.duration = begun.step;
-  RunOptions options;
-  options.save_at = begun.duration;
-  std::string warnings;
-  const RunResult start = simulate(begun, options, warnings);
-  const auto later = std::upper_bound(times.begin(), times.end(), begun.duration);
-  const std::vector<double> rest(later, times.end());
-  std::vector<Frame> rows(run.rows.begin(), run.rows.begin() + (later - times.begin()));  // at the start
-  options = {};
-  options.from = start.state, options.row_times = rest;
-  options.row = [&](const Frame& frame) { rows.push_back(frame); };
-  const Scene solved = named(scene, Integrator::dop853, local_error, interval);
-  run.result = simulate(solved, options, warnings);
-  run.whole = failure(solved, run.result).empty() && run.result.counts.rescued == start.counts.rescued &&
-              rows.size() == times.size();
-  run.rows = std::move(rows);
   return run;
 }
 

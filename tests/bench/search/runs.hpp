@@ -30,8 +30,7 @@ Run search_of(const Scene& scene, const std::vector<double>& times, double most_
 Run run_of(const Scene& scene, Integrator integrator, double local_error, double step, const std::vector<double>& times,
            double most);
 
-// The same by dop853. Where a joint jams at the start, a single step of order 1 finds the impulse, over all of the
-// first interval: there the first interval is so short that this step errs by less than the rest.
+// The same by dop853. Where a joint jams at the start, a single step of order 1 finds the impulse, in an instant.
 Run reference_of(const Scene& scene, double local_error, const std::vector<double>& times, double most);
 
 // The largest at one time, in the units of the yardstick.
