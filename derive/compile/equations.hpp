@@ -76,11 +76,6 @@ struct Equations {
   Program carry;                         // q, time, J, lambda, force -> load: the forces with which bounds grow
   Program resolve;                       // q, v, time, a, force, h -> of_value, of_rate, of_force: resolutions
 };
-// A function of the header.
-struct FunctionText {
-  std::string comment, head;
-  const Program* program;
-};
 // Of steps.
 std::vector<const Program*> programs_of_equations(const Equations& equations);
 // The functions that it calls, beside those of every header.

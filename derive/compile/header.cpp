@@ -182,7 +182,8 @@ class HeaderWriter {
                      "solve($gconst Jacobian& J, const T (&b)[rows], T (&lambda)[rows], Velocity (&d)[bodies])",
                      equations_.solve);
     }
-    for (const auto& functions : {functions_of_foresight(equations_), functions_of_freedom(equations_.freedom)})
+    for (const auto& functions : {functions_of_foresight(equations_.apply, equations_.aim, equations_.solve_aimed),
+                                  functions_of_freedom(equations_.freedom)})
       for (const auto& [comment, head, program] : functions) write_function(comment, head, *program);
     if (has_effects())
       write_function("Potential energy of the effects", "potential(" + at + ", T& E)", equations_.potential);

@@ -77,15 +77,14 @@ constexpr const char* aiming = R"(      if (round < 8) {{
 
 }  // namespace
 
-std::vector<FunctionText> functions_of_foresight(const Equations& equations) {
-  if (equations.apply.outputs.empty()) return {};
-  return {{"d = M^-1 J^T lambda", "apply($gconst Jacobian& J, const T (&lambda)[rows], Velocity (&d)[bodies])",
-           &equations.apply},
+std::vector<FunctionText> functions_of_foresight(const Program& apply, const Program& aim, const Program& solve_aimed) {
+  if (apply.outputs.empty()) return {};
+  return {{"d = M^-1 J^T lambda", "apply($gconst Jacobian& J, const T (&lambda)[rows], Velocity (&d)[bodies])", &apply},
           {"The factor of J' M^-1 J^T with J' of the pose",
-           "aim($dconst Pose (&q)[bodies], const T& time, const Jacobian& J, Aim& B)", &equations.aim},
+           "aim($dconst Pose (&q)[bodies], const T& time, const Jacobian& J, Aim& B)", &aim},
           {"J' M^-1 J^T lambda = b, d = M^-1 J^T lambda",
            "solve($gconst Jacobian& J, const Aim& B, const T (&b)[rows], T (&lambda)[rows], Velocity (&d)[bodies])",
-           &equations.solve_aimed}};
+           &solve_aimed}};
 }
 
 // As long as the step is the same, multipliers are a smooth series. Its next number, by a polynomial through the last k

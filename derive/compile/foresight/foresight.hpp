@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "derive/compile/equations.hpp"
+#include "derive/compile/rows/algebra.hpp"
 
 namespace cdot::compile {
 
@@ -14,7 +14,7 @@ namespace cdot::compile {
 constexpr int foreseen_by(bool rattle) { return rattle ? 6 : 5; }
 
 // Of the corrections; none: nothing is foreseen on K.
-std::vector<FunctionText> functions_of_foresight(const Equations& equations);
+std::vector<FunctionText> functions_of_foresight(const Program& apply, const Program& aim, const Program& solve_aimed);
 // foresee() and remember(); solve() on K, or on another matrix in the lanes that aim.
 std::string foresight(bool rattle);
 // foresee() and remember() alone, of `numbers` numbers, an int of the struct, by so many steps.

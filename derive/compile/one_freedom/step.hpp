@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "derive/compile/equations.hpp"
+#include "derive/compile/one_freedom/programs.hpp"
 
 namespace cdot::compile {
 
