@@ -2,6 +2,7 @@
 // price.
 #include <functional>
 
+#include "runtime/state/world_data.hpp"
 #include "tests/runtime/spatial_support.hpp"
 
 namespace cdot::test {
