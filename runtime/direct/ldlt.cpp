@@ -175,7 +175,7 @@ dense::Numbers<Real> BasicLdlt<Real>::numbers(const Real* added) {
           panel_row_.data(),
           dependent_.data(),
           factored_ ? 1 : dense::lasting_count,
-          std::max(share_, blur_),
+          std::max(share_, double(blur_)),
           std::max(share_, pivot_share_of_soft),
           noise_.data(),
           doubtful_.data()};

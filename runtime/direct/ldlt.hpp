@@ -139,6 +139,7 @@ class BasicLdlt {
   // Its State.
   StateArray<unsigned char>& dependent() { return dependent_; }
   StateNumber<bool>& factored() { return factored_; }
+  StateNumber<double>& blur() { return blur_; }
 
   // Of one factor() and one solve(), a measure of the order of elimination.
   long multiplications() const;
@@ -182,7 +183,8 @@ class BasicLdlt {
   StateNumber<bool> factored_ = false;   // State: not the first
   std::vector<unsigned char> definite_;  // written by factor_definite(), never read
   bool any_out_ = false;
-  double share_ = pivot_share<Real>, blur_ = 0;
+  double share_ = pivot_share<Real>;
+  StateNumber<double> blur_ = 0;  // State: of the last projection
   std::vector<Real> unscaled_, given_;
 };
 

@@ -124,6 +124,7 @@ struct StateList {
     visit.item("system.active_set", index, true), visit(system.active_set());
     visit.item("system.redundant", index, true), visit(system.factors().dependent()),
         visit(system.factors().factored());
+    visit.item("system.blur", index, true), visit(system.factors().blur());
   }
 };
 
