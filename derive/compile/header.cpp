@@ -155,7 +155,7 @@ class HeaderWriter {
     if (declares && has().bonds) line("    (void)bonds;");
     for (const std::string argument :
          {"q",     "v",   "a",      "time", "J", "B",  "b",    "h",      "lambda", "force", "C", "rate", "K", "guess",
-          "given", "end", "before", "W",    "g", "mu", "mean", "missed", "side",   "load",  "F", "free", "d"})
+          "given", "end", "before", "W",    "g", "mu", "mean", "missed", "side",   "load",  "F", "free", "d", "found"})
       if (reads(arguments, argument)) line(fmt::format("    (void){};", argument));
     const bool writes = std::ranges::any_of(program.outputs, [](const auto& o) { return o.name.starts_with("W["); });
     if (!writes && arguments.find("(&W)") != std::string::npos) line("    (void)W;");
@@ -366,8 +366,7 @@ class HeaderWriter {
       step.replace(step.find(step_head), step_head.size(), "advance(State& s, const T& h)");
       step += step_in_parts(mechanism_.method, has());
     }
-    if (has().one_freedom)
-      step = by_rows(step) + step_of_freedom(equations_.freedom, equations_.turning, mechanism_.tolerance);
+    if (has().one_freedom) step = by_rows(step) + step_of_freedom(equations_.freedom, mechanism_.tolerance);
     text_ += step;
   }
 

@@ -37,7 +37,8 @@ std::set<std::string> taken_names() {
       "by_velocity body_of begins ends widest begin_of end_of set_difference take_difference side_at_start off "
       "Coordinate coordinates coordinates_of Reaction reactions reactions_of value side_at_end settle_share "
       "settle_loads "
-      "change_loads beyond approach by find_tangent go_along find_impulses place aim_angles step_by_rows Freedom "
+      "change_loads beyond approach by find_tangent go_along find_impulses place aim_angles step_by_rows turn_exactly "
+      "Freedom "
       "Excess "
       "angles_kept F fits found foreseen missed other turns");
   std::set<std::string> names;

@@ -238,9 +238,8 @@ Calls calls_of(Method method, const Contents& has) {
     calls.newton = operations_of_collocation(has.collocated);
     return calls;
   }
-  const int stages = stages_of(method);
-  calls.evaluate += stages - 1;
-  calls.fall = calls.accelerate = stages;
+  calls.fall = calls.accelerate = stages_of(method);
+  calls.evaluate += calls.fall - 1;
   return calls;
 }
 
@@ -390,6 +389,12 @@ std::string step_of(const Mechanism& mechanism, const Contents& has) {
   std::string text = text_of_step(mechanism, has);
   if (has.approaches()) text.insert(text.find('\n', text.find(step_head)) + 1, "    approach(s);\n");
   return text;
+}
+
+std::string by_rows(std::string step) {
+  step.replace(step.find(step_head), step_head.size() + 3,
+               std::string("step_by_rows(State& s, const T& h) {\n") + evaluates);
+  return step.insert(step.find("static T step_by_rows"), "CDOT_SCENE_RARE ");
 }
 
 }  // namespace cdot::compile

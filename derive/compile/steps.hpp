@@ -30,4 +30,7 @@ std::string approach_of(const Mechanism& mechanism, const std::string& late, con
 std::string begin_of(Method method, const Contents& has);
 std::string step_of(const Mechanism& mechanism, const Contents& has);
 
+// The step of a mechanism of one freedom on its rows, as step_by_rows().
+std::string by_rows(std::string step);
+
 }  // namespace cdot::compile

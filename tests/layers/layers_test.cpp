@@ -89,8 +89,8 @@ const std::vector<std::string> rooms = {
     "derive/compile/borne", // forces of effects that may break
     "derive/compile/readings", // coordinates and what joints carry
     "derive/compile/foresight", // rounds of Newton that begin close to the end
+    "derive/compile/one_freedom", // a mechanism of one freedom in a few angles
     "derive/compile/methods",  // its steps as text
-    "derive/compile/one_freedom", // those in few angles, in programs and text
     "derive/compile/midpoint", // the implicit midpoint rule, in programs and text
     "derive/compile/collocation", // Radau IIA as text
     "derive/compile",      // a scene to a header of its own
@@ -99,8 +99,7 @@ const std::vector<std::string> rooms = {
     "derive/python",       // `import cdot`
 };
 // One room in two folders, which may include each other.
-const std::map<std::string, std::string> annexes = {{"derive/language/hand", "derive/language"}, {"derive/diff/slips", "derive/diff"},
-    {"derive/compile/one_freedom", "derive/compile/methods"}};
+const std::map<std::string, std::string> annexes = {{"derive/language/hand", "derive/language"}, {"derive/diff/slips", "derive/diff"}};
 // clang-format on
 
 constexpr int most_files = 25;

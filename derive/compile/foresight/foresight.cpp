@@ -77,7 +77,8 @@ constexpr const char* aiming = R"(      if (round < 8) {{
 
 }  // namespace
 
-std::vector<FunctionText> functions_of_foresight(const Program& apply, const Program& aim, const Program& solve_aimed) {
+std::vector<FunctionText> functions_of_foresight(const derive::Program& apply, const derive::Program& aim,
+                                                 const derive::Program& solve_aimed) {
   if (apply.outputs.empty()) return {};
   return {{"d = M^-1 J^T lambda", "apply($gconst Jacobian& J, const T (&lambda)[rows], Velocity (&d)[bodies])", &apply},
           {"The factor of J' M^-1 J^T with J' of the pose",

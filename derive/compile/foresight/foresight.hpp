@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "derive/compile/rows/algebra.hpp"
+#include "derive/compile/foresight/function_text.hpp"
 
 namespace cdot::compile {
 
@@ -13,8 +13,9 @@ namespace cdot::compile {
 // goes on to round-off.
 constexpr int foreseen_by(bool rattle) { return rattle ? 6 : 5; }
 
-// Of the corrections; none: nothing is foreseen on K.
-std::vector<FunctionText> functions_of_foresight(const Program& apply, const Program& aim, const Program& solve_aimed);
+// Of the corrections: Equations::apply, aim and solve_aimed; none if these are empty.
+std::vector<FunctionText> functions_of_foresight(const derive::Program& apply, const derive::Program& aim,
+                                                 const derive::Program& solve_aimed);
 // foresee() and remember(); solve() on K, or on another matrix in the lanes that aim.
 std::string foresight(bool rattle);
 // foresee() and remember() alone, of `numbers` numbers, an int of the struct, by so many steps.

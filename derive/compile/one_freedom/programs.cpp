@@ -1,5 +1,6 @@
 #include "derive/compile/one_freedom/programs.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "derive/kernel/factor.hpp"
@@ -200,7 +201,8 @@ class FreedomWriter {
     return blocks_.call(algebra, block, "position", in).at(element("C", row - system.first_row(k)));
   }
 
-  // Rows are linear in the components that they give: x = -C(0) / coefficient.
+  // Rows are linear in the components that they give: x = -C(0) / coefficient. Moves of the angles are sums of small
+  // turns, since an angle of many turns has a coarse last place.
   Program place() const {
     Algebra algebra(constants_);
     Values places;
@@ -216,9 +218,14 @@ class FreedomWriter {
                      place);
     }
     Numbers moves;
-    for (const Component& c : few_.components) {
-      moves.push_back(algebra.sum({{places[c.name], algebra.input(c.in("free"))}, {1, -1}}));
-      algebra.output(c.in("moves"), moves.back());
+    for (std::size_t c = 0; c < few_.components.size(); ++c) {
+      const Component& component = this->component(c);
+      const auto angle = std::ranges::find(few_.angles, c);
+      const auto k = static_cast<std::size_t>(angle - few_.angles.begin());
+      moves.push_back(angle != few_.angles.end()
+                          ? algebra.input(element("found", k))
+                          : algebra.sum({{places[component.name], algebra.input(component.in("free"))}, {1, -1}}));
+      algebra.output(component.in("moves"), moves.back());
     }
     for (std::size_t l = 0; l < few_.loops.size(); ++l)
       algebra.output(element("missed", l), error(algebra, few_.loops[l], places));

@@ -21,7 +21,8 @@ struct FreedomPrograms {
   Program tangent;                  // q -> F: Freedom
   Program hold;                     // F, v -> next = t w t^T M v
   Program impulses;                 // q, F, d -> lambda: M d = J^T lambda
-  Program place;  // q, F, free -> q, moves = q - free, missed: errors of both equations; off: the last one's square
+  Program place;  // q, F, free, found: moves of the angles -> q, moves = q - free, missed: errors of both equations;
+                  // off: the last one's square
   Program
       approach;  // q, F, missed -> turn: a step of Newton's method; share^2 that one with A of the start would leave
   bool exists() const { return !angles.empty(); }

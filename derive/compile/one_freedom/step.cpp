@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "derive/compile/foresight/foresight.hpp"
-#include "derive/compile/methods/contents.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -11,6 +10,13 @@ namespace {
 constexpr int series = foreseen_by(false);
 
 constexpr const char* step_begins = R"(
+  // By d itself: after many turns an angle has a coarse last place.
+  CDOT_SCENE_INLINE static void turn_exactly(Pose& q, const T& d) {{
+    const T s_0 = q.s, c_0 = q.c;
+    q.angle = q.angle + d;
+    sin_cos_beside<true>(s_0, c_0, d, q.angle, q.s, q.c);
+  }}
+
   // Symplectic Euler of a mechanism of one freedom, in the angles at which its loops close: velocities with the joints'
   // impulses, then poses, then C = 0 and J v = 0. Where J turned so far that rounds on K renew it: on the rows.
   static T step(State& s, T h = T(default_step)) {{
@@ -31,7 +37,7 @@ constexpr const char* step_begins = R"(
     Mask goes_on = T(0) < T(1);
     T off, share = T(0), of_loops = T(0), first = T(0);
     for (int round = 0;; ++round) {{
-      place($ss.F, free, q, moves, missed, off);
+      place($ss.F, free, found, q, moves, missed, off);
 {2}      if (round == 0) first = of_loops;
       else goes_on = goes_on && (of_loops > goal || off > goal * goal);
       if (!any(goes_on) || round == 8) break;
@@ -39,8 +45,8 @@ constexpr const char* step_begins = R"(
       aim_angles($sq, s.F, missed, turns, left);
       share = select(goes_on, left, share);
 {3}    }}
-{4}    // Where the last step ended at C = 0, Newton has found both, and rounds on K would not renew J: from 1/5 on.
-    const Mask fits = s.residual <= goal && !goes_on && of_loops <= goal && share <= T(0.0361);
+    // Where the last step ended at C = 0, Newton has found both, and rounds on K would not renew J: from 1/5 on.
+    const Mask fits = s.residual <= T(10) * goal && !goes_on && of_loops <= goal && share <= T(0.0361);
     State other;
     if (any(!fits)) {{
       other = s;
@@ -77,7 +83,8 @@ std::vector<FunctionText> functions_of_freedom(const FreedomPrograms& f) {
       {"The poses at the angles, how far they are from the free ones, and how far they miss c = 0 and "
        "w t^T M (q - q_free) = 0",
        "place($d" + of_freedom +
-           "const Velocity (&free)[bodies], Pose (&q)[bodies], Velocity (&moves)[bodies], T (&missed)[angles_kept], "
+           "const Velocity (&free)[bodies], const T (&found)[angles_kept], Pose (&q)[bodies], Velocity "
+           "(&moves)[bodies], T (&missed)[angles_kept], "
            "T& off)",
        &f.place},
       {"A step of Newton's method, and the square of the share of an error that one with A of the start would leave",
@@ -115,27 +122,18 @@ std::string types_of_freedom(const FreedomPrograms& freedom) {
   return text + "  };\n  struct Excess {  // of angles, over their free motion\n    T of[angles_kept];\n  };\n";
 }
 
-std::string step_of_freedom(const FreedomPrograms& freedom, const std::set<std::string>& turning, double tolerance) {
-  std::string foreseen, errors = "      of_loops = T(0);\n", turns, found;
+std::string step_of_freedom(const FreedomPrograms& freedom, double tolerance) {
+  std::string foreseen, errors = "      of_loops = T(0);\n", turns;
   for (std::size_t k = 0; k < freedom.angles.size(); ++k) {
     const std::string& body = freedom.angles[k];
-    foreseen += fmt::format("    q[{0}].angle = q[{0}].angle + foreseen[{1}];\n", body, k);
+    foreseen += fmt::format("    found[{1}] = foreseen[{1}], q[{0}].angle = q[{0}].angle + found[{1}];\n", body, k);
     if (k + 1 < freedom.angles.size())
       errors += fmt::format("      of_loops = larger(of_loops, magnitude(missed[{}]));\n", k);
-    turns += fmt::format("      d[{}].w = select(goes_on, turns[{}], T(0));\n", body, k);
-    found += fmt::format("    found[{}] = moves[{}].w;\n", k, body);
+    turns += fmt::format("      d[{0}].w = select(goes_on, turns[{1}], T(0)), found[{1}] = found[{1}] + d[{0}].w;\n",
+                         body, k);
   }
-  for (const std::string& body : freedom.angles)
-    if (turning.contains(body)) turns += fmt::format("      sin_cos_after(q[{0}], d[{0}]);\n", body);
-  for (const std::string& body : freedom.angles)
-    turns += fmt::format("      q[{0}].angle = q[{0}].angle + d[{0}].w;\n", body);
-  return foresight_of("angles_kept", series) + fmt::format(step_begins, tolerance, foreseen, errors, turns, found);
-}
-
-std::string by_rows(std::string step) {
-  step.replace(step.find(step_head), step_head.size(), "step_by_rows(State& s, const T& h)");
-  step.insert(step.find('\n', step.find("step_by_rows")) + 1, evaluates);
-  return step.insert(step.find("static T step_by_rows"), "CDOT_SCENE_RARE ");
+  for (const std::string& body : freedom.angles) turns += fmt::format("      turn_exactly(q[{0}], d[{0}].w);\n", body);
+  return foresight_of("angles_kept", series) + fmt::format(step_begins, tolerance, foreseen, errors, turns);
 }
 
 }  // namespace cdot::compile

@@ -2,10 +2,10 @@
 // same poses; else on its rows.
 #pragma once
 
-#include <set>
 #include <string>
 #include <vector>
 
+#include "derive/compile/foresight/function_text.hpp"
 #include "derive/compile/one_freedom/programs.hpp"
 
 namespace cdot::compile {
@@ -25,9 +25,6 @@ inline constexpr const char* begins_freedom = R"(    s.known = T(0);
     find_tangent($ss.q, s.F);
 )";
 // step(), which calls step_by_rows() where the angles do not do.
-std::string step_of_freedom(const FreedomPrograms& freedom, const std::set<std::string>& turning, double tolerance);
-
-// The step on rows, as step_by_rows().
-std::string by_rows(std::string step);
+std::string step_of_freedom(const FreedomPrograms& freedom, double tolerance);
 
 }  // namespace cdot::compile

@@ -19,12 +19,6 @@ using derive::Program;
 using derive::Rational;
 using derive::Summands;
 
-// A function of the header.
-struct FunctionText {
-  std::string comment, head;
-  const Program* program;
-};
-
 struct Constants {
   std::set<std::string> inputs;         // names of those that a run may change: members of p
   std::map<std::string, double> named;  // those that the header names

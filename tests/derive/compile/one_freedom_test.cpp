@@ -170,6 +170,22 @@ TEST(OneFreedom, FollowsBlowsAndOtherSteps) {
   EXPECT_LT(cdot::distance<Compiled>(state, world), 1e-8);
 }
 
+// After 16,000 turns the last place of an angle is 1.5e-11 rad: moves must not be differences of such angles.
+TEST(OneFreedom, KeepsItsWayAfterManyTurns) {
+  using Compiled = slider_crank_euler<double>;
+  Compiled::State state, turned;
+  Compiled::reset(state), Compiled::reset(turned);
+  turned.q[0].angle += 16000 * 2 * 3.14159265358979323846;
+  Compiled::begin(turned);
+  for (int k = 0; k < 300; ++k) {
+    ASSERT_LT(Compiled::step(state), 1e-12);
+    ASSERT_LT(Compiled::step(turned), 1e-12);
+    ASSERT_GT(turned.known, 0) << "by its rows in step " << k;
+  }
+  EXPECT_NEAR(turned.v[0].w, state.v[0].w, 1e-6);
+  EXPECT_NEAR(turned.q[2].x, state.q[2].x, 1e-8);
+}
+
 // Joints that no pose meets: the step says so, and throws no body.
 TEST(OneFreedom, TellsOfLoopsThatCannotClose) {
   using Compiled = slider_crank_euler<double>;
