@@ -346,7 +346,7 @@ template <class S>
 void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   const T share = begin_kick_drift(world, island, h), at_start = island.residual;
-  const bool repeats = repeats_impulses(island);
+  const bool repeats = repeats_impulses(island), by_sweeps = !island.solver->exact;
   if (repeats) note_gaps(island);
   weigh_springs(world, island);
   begin_kick(world, island);
@@ -355,13 +355,9 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   keep_turns(island);
   island.flow.start_left.assign(island.left.begin(), island.left.end());
   start_half(world, island, h, share);
-  const bool by_sweeps = !island.solver->exact;
   if (by_sweeps || !drift_onto_joints(world, island, h)) {
+    if (!by_sweeps && world.at_once) return void(island.trouble = StepProblem::joints_apart);
     if (!by_sweeps) {
-      if (world.at_once) {
-        island.trouble = StepProblem::joints_apart;
-        return;
-      }
       halt_immovable_bodies(world, island);
       start_half(world, island, h, share);
       island.residual = at_start, island.left = island.flow.start_left;
