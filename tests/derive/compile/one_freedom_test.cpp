@@ -7,7 +7,9 @@
 #include <cdot/pack.hpp>
 
 #include "compound_pendulum_euler.hpp"
+#include "crank_by_rows.hpp"
 #include "crank_rocker_euler.hpp"
+#include "crank_with_inputs.hpp"
 #include "four_bar_euler.hpp"
 #include "slider_crank_euler.hpp"
 #include "tests/derive/compile/beside_world.hpp"
@@ -184,6 +186,28 @@ TEST(OneFreedom, KeepsItsWayAfterManyTurns) {
   }
   EXPECT_NEAR(turned.v[0].w, state.v[0].w, 1e-6);
   EXPECT_NEAR(turned.q[2].x, state.q[2].x, 1e-8);
+}
+
+// Other lengths of the links, which a run may set, beside the same step on rows.
+template <class Compiled>
+typename Compiled::State with_other_lengths() {
+  typename Compiled::State state;
+  Compiled::reset(state);
+  state.p.A_pb_x = -0.14, state.p.O_pb_y = 0.004, state.p.guide_pb_y = 0.01;
+  Compiled::begin(state);
+  return state;
+}
+
+TEST(OneFreedom, TakesLengthsOfARun) {
+  using Compiled = crank_with_inputs<double>;
+  using ByRows = crank_by_rows<double>;
+  auto state = with_other_lengths<Compiled>();
+  auto by_rows = with_other_lengths<ByRows>();
+  for (int k = 0; k < 300; ++k) Compiled::step(state), ByRows::step(by_rows);
+  EXPECT_NEAR(state.q[0].angle, by_rows.q[0].angle, 2e-9);
+  EXPECT_NEAR(state.q[2].y, 0.01, 1e-12);
+  EXPECT_GT(state.known, 0);
+  for (int row = 0; row < Compiled::rows; ++row) EXPECT_NEAR(state.lambda[row], by_rows.lambda[row], 1e-9) << row;
 }
 
 // Joints that no pose meets: the step says so, and throws no body.
