@@ -11,7 +11,7 @@ constexpr int series = foreseen_by(false);
 
 constexpr const char* step_begins = R"(
   // By d itself: after many turns an angle has a coarse last place.
-  CDOT_SCENE_INLINE static void turn_exactly(Pose& q, const T& d) {{
+  static void turn_exactly(Pose& q, const T& d) {{
     const T s_0 = q.s, c_0 = q.c;
     q.angle = q.angle + d;
     sin_cos_beside<true>(s_0, c_0, d, q.angle, q.s, q.c);
