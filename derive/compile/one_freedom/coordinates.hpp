@@ -31,7 +31,7 @@ struct FewCoordinates {
 // J of the pose.
 Columns jacobian_of(const RowBlocks& blocks, const RowSystem& system, Algebra& algebra);
 
-// None for another mechanism, and for one whose joints follow time, may break or turn bodies that cannot turn.
+// None for another mechanism, and for one whose joints follow time or may break, or with a body that cannot turn.
 std::optional<FewCoordinates> few_coordinates(const RowBlocks& blocks, const JointRows& joints, Constants& constants);
 
 }  // namespace cdot::compile

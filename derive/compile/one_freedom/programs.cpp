@@ -19,11 +19,11 @@ class FreedomWriter {
 
   FreedomPrograms write() {
     for (const std::size_t angle : few_.angles) out_.angles.push_back(blocks_.body_name(few_.components[angle].body));
-    out_.tangent = tangent();
-    out_.hold = hold();
-    out_.impulses = impulses();
+    out_.find_tangent = find_tangent();
+    out_.go_along = go_along();
+    out_.find_impulses = find_impulses();
     out_.place = place();
-    out_.approach = approach();
+    out_.aim_angles = aim_angles();
     return std::move(out_);
   }
 
@@ -49,17 +49,27 @@ class FreedomWriter {
     return dot(algebra, x, My, name);
   }
 
+  // J E of a row, by the angle k; of components that do not follow yet E is 0.
+  int slope(Algebra& algebra, const Numbers& row, const Columns& E, std::size_t k) const {
+    Summands terms;
+    for (std::size_t c = 0; c < E.size(); ++c)
+      if (row[c] >= 0) terms.add(1, algebra.times(row[c], E[c][k]));
+    return algebra.sum(terms);
+  }
+
+  static Numbers column(const Columns& E, std::size_t k) {
+    Numbers column;
+    for (const Numbers& of_component : E) column.push_back(of_component[k]);
+    return column;
+  }
+
   // E = dq/du at the pose, by components.
   Columns slopes(Algebra& algebra, const Columns& J) const {
     Columns E(few_.components.size(), Numbers(count(), algebra.value(0)));
     for (std::size_t k = 0; k < count(); ++k) {
       E[few_.angles[k]][k] = algebra.value(1);
-      for (const auto& [row, component, coefficient] : few_.eliminated) {
-        Summands terms;
-        for (std::size_t c = 0; c < E.size(); ++c)
-          if (J[row][c] >= 0 && c != component) terms.add(1, algebra.times(J[row][c], E[c][k]));
-        E[component][k] = algebra.times(algebra.value(-1 / coefficient), algebra.sum(terms));
-      }
+      for (const auto& [row, component, coefficient] : few_.eliminated)
+        E[component][k] = algebra.times(algebra.value(-1 / coefficient), slope(algebra, J[row], E, k));
     }
     return E;
   }
@@ -69,12 +79,7 @@ class FreedomWriter {
     Columns slopes;
     for (const std::size_t row : few_.loops) {
       slopes.emplace_back();
-      for (std::size_t k = 0; k < count(); ++k) {
-        Summands terms;
-        for (std::size_t c = 0; c < E.size(); ++c)
-          if (J[row][c] >= 0) terms.add(1, algebra.times(J[row][c], E[c][k]));
-        slopes.back().push_back(algebra.sum(terms));
-      }
+      for (std::size_t k = 0; k < count(); ++k) slopes.back().push_back(slope(algebra, J[row], E, k));
     }
     return slopes;
   }
@@ -104,11 +109,7 @@ class FreedomWriter {
   // w t^T M E
   Numbers last_row(Algebra& algebra, const Numbers& t, int w, const Columns& E) const {
     Numbers b;
-    for (std::size_t k = 0; k < count(); ++k) {
-      Numbers column;
-      for (const Numbers& of_component : E) column.push_back(of_component[k]);
-      b.push_back(algebra.times(w, weighed(algebra, column, t)));
-    }
+    for (std::size_t k = 0; k < count(); ++k) b.push_back(algebra.times(w, weighed(algebra, column(E, k), t)));
     return b;
   }
 
@@ -139,7 +140,7 @@ class FreedomWriter {
     return numbers;
   }
 
-  Program tangent() {
+  Program find_tangent() {
     Algebra algebra(constants_);
     const Columns J = jacobian_of(blocks_, joints_.system(), algebra), E = slopes(algebra, J), c = loops(algebra, J, E);
     const Numbers direction = this->direction(algebra, c);
@@ -154,7 +155,7 @@ class FreedomWriter {
     return algebra.finish();
   }
 
-  Program hold() const {
+  Program go_along() const {
     Algebra algebra(constants_);
     const Numbers t = tangents(algebra);
     const int rate = algebra.times(stored(algebra, "w"), weighed(algebra, t, inputs(algebra, "v"), "momentum"), "rate");
@@ -163,27 +164,23 @@ class FreedomWriter {
   }
 
   // First those of the loops, by c'^T lambda = E^T M d; then the others, each by what is left of its component.
-  Program impulses() const {
+  Program find_impulses() const {
     Algebra algebra(constants_);
     const Columns J = jacobian_of(blocks_, joints_.system(), algebra), E = slopes(algebra, J);
     Numbers left;
     const Numbers d = inputs(algebra, "d");
     for (std::size_t c = 0; c < d.size(); ++c) left.push_back(momentum(algebra, c, d[c]));
     Numbers along;
-    for (std::size_t k = 0; k < count(); ++k) {
-      Numbers column;
-      for (const Numbers& of_component : E) column.push_back(of_component[k]);
-      along.push_back(dot(algebra, column, left));
-    }
+    for (std::size_t k = 0; k < count(); ++k) along.push_back(dot(algebra, column(E, k), left));
     const auto give = [&](std::size_t row, int lambda) {
       algebra.output(element("lambda", row), lambda);
       for (std::size_t c = 0; c < left.size(); ++c)
         if (J[row][c] >= 0) left[c] = algebra.sum({{left[c], algebra.times(J[row][c], lambda)}, {1, -1}});
     };
     for (std::size_t l = 0; l < few_.loops.size(); ++l) {
-      Numbers column;
-      for (std::size_t k = 0; k < count(); ++k) column.push_back(stored(algebra, of_inverse(l, k)));
-      give(few_.loops[l], dot(algebra, column, along, "lambda_of_loop"));
+      Numbers of_loop;
+      for (std::size_t k = 0; k < count(); ++k) of_loop.push_back(stored(algebra, of_inverse(l, k)));
+      give(few_.loops[l], dot(algebra, of_loop, along, "lambda_of_loop"));
     }
     for (auto one = few_.eliminated.rbegin(); one != few_.eliminated.rend(); ++one)
       give(one->row, algebra.times(algebra.value(1 / one->coefficient), left[one->component]));
@@ -231,17 +228,15 @@ class FreedomWriter {
       algebra.output(element("missed", l), error(algebra, few_.loops[l], places));
     const int along = algebra.times(stored(algebra, "w"), weighed(algebra, moves, tangents(algebra)), "along");
     algebra.output(element("missed", few_.loops.size()), along);
-    Numbers squares;
+    Summands squares;
     for (const std::size_t angle : few_.angles)
-      squares.push_back(algebra.product({stored(algebra, of_component(angle)), along}, {2, 2}));
-    Summands terms;
-    for (const int square : squares) terms.add(1, square);
-    algebra.output("off", algebra.sum(terms));
+      squares.add(1, algebra.product({stored(algebra, of_component(angle)), along}, {2, 2}));
+    algebra.output("off", algebra.sum(squares));
     return algebra.finish();
   }
 
   // turn = -A^-1 missed; share^2 = |A_0^-1 A - 1|^2, by which rounds with J of the start would leave of an error.
-  Program approach() const {
+  Program aim_angles() const {
     Algebra algebra(constants_);
     const Columns J = jacobian_of(blocks_, joints_.system(), algebra), E = slopes(algebra, J), c = loops(algebra, J, E);
     const Numbers direction = this->direction(algebra, c);
@@ -279,7 +274,7 @@ class FreedomWriter {
 }  // namespace
 
 std::vector<const Program*> programs_of_freedom(const FreedomPrograms& f) {
-  return {&f.tangent, &f.hold, &f.impulses, &f.place, &f.approach};
+  return {&f.find_tangent, &f.go_along, &f.find_impulses, &f.place, &f.aim_angles};
 }
 
 FreedomPrograms freedom_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants) {

@@ -17,14 +17,16 @@ namespace cdot::compile {
 // Equations of the header; empty: the mechanism is another one.
 struct FreedomPrograms {
   std::vector<std::string> angles;  // bodies whose angles are kept: "crank"
-  std::vector<std::string> stored;  // the numbers of t, of w and of the columns of A^-1 that `tangent` writes
-  Program tangent;                  // q -> F: Freedom
-  Program hold;                     // F, v -> next = t w t^T M v
-  Program impulses;                 // q, F, d -> lambda: M d = J^T lambda
-  Program place;  // q, F, free, found: moves of the angles -> q, moves = q - free, missed: errors of both equations;
-                  // off: the last one's square
-  Program
-      approach;  // q, F, missed -> turn: a step of Newton's method; share^2 that one with A of the start would leave
+  std::vector<std::string> stored;  // the numbers of t, of w and of the columns of A^-1 that find_tangent() writes
+  // Functions of the header, by their names:
+  Program find_tangent;   // q -> F: Freedom
+  Program go_along;       // F, v -> next = t w t^T M v
+  Program find_impulses;  // q, F, d -> lambda: M d = J^T lambda
+  // F, free, found: moves of the angles -> q, moves = q - free, missed: errors of both equations, off: the square of
+  // the last one's
+  Program place;
+  // q, F, missed -> turn: a step of Newton's method; share: of an error, squared, that one with A of the start leaves
+  Program aim_angles;
   bool exists() const { return !angles.empty(); }
 };
 std::vector<const Program*> programs_of_freedom(const FreedomPrograms& freedom);

@@ -38,7 +38,8 @@ constexpr const char* step_begins = R"(
     T off, share = T(0), of_loops = T(0), first = T(0);
     for (int round = 0;; ++round) {{
       place($ss.F, free, found, q, moves, missed, off);
-{2}      if (round == 0) first = of_loops;
+      of_loops = {2};
+      if (round == 0) first = of_loops;
       else goes_on = goes_on && (of_loops > goal || off > goal * goal);
       if (!any(goes_on) || round == 8) break;
       T turns[angles_kept], left;
@@ -76,10 +77,11 @@ std::vector<FunctionText> functions_of_freedom(const FreedomPrograms& f) {
   const std::string poses = "$dconst Pose (&q)[bodies], ", of_freedom = "const Freedom& F, ";
   return {
       {"t of the velocities that the joints allow, w = 1 / (t^T M t), and A^-1",
-       "find_tangent(" + poses + "Freedom& F)", &f.tangent},
-      {"t w t^T M v", "go_along($d" + of_freedom + "const Velocity (&v)[bodies], Velocity (&next)[bodies])", &f.hold},
+       "find_tangent(" + poses + "Freedom& F)", &f.find_tangent},
+      {"t w t^T M v", "go_along($d" + of_freedom + "const Velocity (&v)[bodies], Velocity (&next)[bodies])",
+       &f.go_along},
       {"M d = J^T lambda", "find_impulses(" + poses + of_freedom + "const Velocity (&d)[bodies], T (&lambda)[rows])",
-       &f.impulses},
+       &f.find_impulses},
       {"The poses at the angles, how far they are from the free ones, and how far they miss c = 0 and "
        "w t^T M (q - q_free) = 0",
        "place($d" + of_freedom +
@@ -89,13 +91,13 @@ std::vector<FunctionText> functions_of_freedom(const FreedomPrograms& f) {
        &f.place},
       {"A step of Newton's method, and the square of the share of an error that one with A of the start would leave",
        "aim_angles(" + poses + of_freedom + "const T (&missed)[angles_kept], T (&turn)[angles_kept], T& share)",
-       &f.approach}};
+       &f.aim_angles}};
 }
 
 long operations_of_freedom(const FreedomPrograms& f) {
   long sum = 0;
   for (const auto& [times, program] :
-       {std::pair{1, &f.tangent}, {2, &f.hold}, {1, &f.impulses}, {2, &f.place}, {1, &f.approach}})
+       {std::pair{1, &f.find_tangent}, {2, &f.go_along}, {1, &f.find_impulses}, {2, &f.place}, {1, &f.aim_angles}})
     sum += times * derive::count(*program).total();
   return sum;
 }
@@ -123,12 +125,12 @@ std::string types_of_freedom(const FreedomPrograms& freedom) {
 }
 
 std::string step_of_freedom(const FreedomPrograms& freedom, double tolerance) {
-  std::string foreseen, errors = "      of_loops = T(0);\n", turns;
+  std::string foreseen, errors = "T(0)", turns;
   for (std::size_t k = 0; k < freedom.angles.size(); ++k) {
     const std::string& body = freedom.angles[k];
     foreseen += fmt::format("    found[{1}] = foreseen[{1}], q[{0}].angle = q[{0}].angle + found[{1}];\n", body, k);
     if (k + 1 < freedom.angles.size())
-      errors += fmt::format("      of_loops = larger(of_loops, magnitude(missed[{}]));\n", k);
+      errors = k == 0 ? "magnitude(missed[0])" : fmt::format("larger({}, magnitude(missed[{}]))", errors, k);
     turns += fmt::format("      d[{0}].w = select(goes_on, turns[{1}], T(0)), found[{1}] = found[{1}] + d[{0}].w;\n",
                          body, k);
   }
