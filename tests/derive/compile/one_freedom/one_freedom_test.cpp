@@ -22,6 +22,13 @@ using namespace cdot::scenes;
 
 constexpr const char* crank = "specs/scenes/slider_crank.toml";
 
+// test(mechanism): its struct.
+template <class Test>
+void of_each_mechanism(Test test) {
+  test(compound_pendulum_euler<double>{}), test(crank_rocker_euler<double>{}), test(four_bar_euler<double>{});
+  test(slider_crank_euler<double>{}), test(trammel_euler<double>{});
+}
+
 template <class Compiled>
 struct Numbers {
   using Velocity = typename Compiled::Velocity;
@@ -67,11 +74,7 @@ void projects_onto_the_joints() {
 }
 
 TEST(OneFreedom, ProjectsOntoTheJoints) {
-  projects_onto_the_joints<compound_pendulum_euler<double>>();
-  projects_onto_the_joints<crank_rocker_euler<double>>();
-  projects_onto_the_joints<four_bar_euler<double>>();
-  projects_onto_the_joints<slider_crank_euler<double>>();
-  projects_onto_the_joints<trammel_euler<double>>();
+  of_each_mechanism([]<class Compiled>(Compiled) { projects_onto_the_joints<Compiled>(); });
 }
 
 // d = M^-1 J^T lambda by the rows' own solve() gives its lambda back.
@@ -90,11 +93,7 @@ void finds_impulses() {
 }
 
 TEST(OneFreedom, FindsTheImpulsesOfTheRows) {
-  finds_impulses<compound_pendulum_euler<double>>();
-  finds_impulses<crank_rocker_euler<double>>();
-  finds_impulses<four_bar_euler<double>>();
-  finds_impulses<slider_crank_euler<double>>();
-  finds_impulses<trammel_euler<double>>();
+  of_each_mechanism([]<class Compiled>(Compiled) { finds_impulses<Compiled>(); });
 }
 
 // From rest to fast: where J turns far in a step, rounds on K renew it, in the World as here.
