@@ -235,7 +235,7 @@ double Search::price_after(const Attempt& last, const Try& knob) const {
   return price_of(knob) * (last.whole ? last.price / price_of(last.knob) : 1);
 }
 
-// What the `rest` of the budget lacks, once, for a run that promises to be the last: two runs by steps of their own
+// The work beyond the `rest` of the budget, once, for a run that promises to be the last: two runs by steps of their own
 // were near each other, and it should cost little more than the second of them.
 double Search::lacking_for_last(const Attempt& now, const std::optional<Try>& next, double rest) const {
   const bool measured = now.whole && now.achieved < now.apart && now.left_steps == 0 && balanced(now);

@@ -94,8 +94,8 @@ TEST(Soft, EnergyNeverRises) {
   expect_no_rise<Spatial<double>>("in space", [](SpatialWorld<double>& world) { test::add_free_mechanism(world); });
 }
 
-// What sweeps took from a chain they may give back to it, but not once it was set to another state.
-TEST(Soft, WhatAnotherStateLostIsNoCredit) {
+// Sweeps may give back to a chain the energy that they took from it, but not once it was set to another state.
+TEST(Soft, LossesOfAnotherStateAreNoCredit) {
   World<double> world(soft(1, 1));
   const auto rods = add_chain(world, 10, 0);
   const auto credit = [&] { return -double(world.data().islands[0].gained); };
