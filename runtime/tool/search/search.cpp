@@ -235,8 +235,8 @@ double Search::price_after(const Attempt& last, const Try& knob) const {
   return price_of(knob) * (last.whole ? last.price / price_of(last.knob) : 1);
 }
 
-// The work beyond the `rest` of the budget, once, for a run that promises to be the last: two runs by steps of their own
-// were near each other, and it should cost little more than the second of them.
+// The work beyond the `rest` of the budget, once, for a run that promises to be the last: two runs by steps of their
+// own were near each other, and it should cost little more than the second of them.
 double Search::lacking_for_last(const Attempt& now, const std::optional<Try>& next, double rest) const {
   const bool measured = now.whole && now.achieved < now.apart && now.left_steps == 0 && balanced(now);
   if (extended_ || !measured || !next || !next->adaptive() || first_price_ > 0) return 0;
