@@ -6,6 +6,7 @@
 // run. The control by the last error alone learns that a motion quickens from a step that was too long.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -32,14 +33,18 @@ inline constexpr double usual_safety = 0.9;
 // The steps of a run, by islands, each known by its first body.
 class Paces {
  public:
-  explicit Paces(double local_error, double safety = usual_safety) : local_error_(local_error), safety_(safety) {}
+  explicit Paces(double local_error, double safety = usual_safety,
+                 double longest = std::numeric_limits<double>::infinity())
+      : local_error_(local_error), safety_(safety), longest_(longest) {}
   double local_error() const { return local_error_; }
   double safety() const { return safety_; }
+  // [s] No step of the run is longer.
+  double longest() const { return longest_; }
   void note(int body, double time, double length, double best) { of_[body].note(time, length, best); }
   const Pace* find(int body) const;
 
  private:
-  double local_error_, safety_;
+  double local_error_, safety_, longest_;
   std::map<int, Pace> of_;
 };
 

@@ -323,7 +323,8 @@ bool take_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& me
   if (world.settings.local_error > 0) note_ways(world, island, time);
   flow.end_kept = flow.projects_stages = false;
   // A hook after the substep may change the World, so no step may pass the end.
-  const T reach = world.after_substep.empty() ? std::min(furthest_reach * h, way.to_break) : way.left;
+  const T furthest = world.paces ? std::min(furthest_reach * h, T(world.paces->longest())) : furthest_reach * h;
+  const T reach = world.after_substep.empty() ? std::min(furthest, way.to_break) : way.left;
   flow.length = world.settings.local_error > 0 ? take_adaptive_step(world, island, method, time, way.left, reach)
                                                : take_fixed_step(world, island, method, time, way.left, h, reach);
   if (flow.length > T(0)) return true;

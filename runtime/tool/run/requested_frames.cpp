@@ -18,7 +18,7 @@ RequestedFrames<S>::RequestedFrames(const Scene& scene, const Paces* paced_by, c
       slack_(close_time * scene.step),
       adaptive_(scene.settings.local_error > 0),
       takes_parts_(!sweeps(scene.settings.solver) && scene.settings.drift != Drift::baumgarte) {
-  if (paces) paces_.emplace(paces->local_error(), paces->safety());
+  if (paces) paces_.emplace(paces->local_error(), paces->safety(), paces->longest());
 }
 
 template <class S>

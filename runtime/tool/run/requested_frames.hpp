@@ -42,7 +42,7 @@ class RequestedFrames {
   };
   const Scene& scene_;
   const Paces* paced_by_;
-  std::optional<Paces> paces_;  // of part_, for the same safety
+  std::optional<Paces> paces_;  // of part_, for the same lengths
   double slack_;                // [s]: closer times count as equal
   bool adaptive_;               // the method interpolates: a part may go on from the last one
   bool takes_parts_;

@@ -131,7 +131,7 @@ void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse
     fine.unmeasured = apart > far;
   }
   fine.achieved = std::max({std::min(apart, least_sure), apart / gained, refusing_error(yardstick, fine)});
-  const bool known = fine.knob.adaptive() ? fine.knob.parts > coarse.knob.parts ||
+  const bool known = fine.knob.adaptive() ? has_shorter_steps(coarse, fine) ||
                                                 (fine.result.counts.rescued == 0 && !same_steps(coarse, fine))
                                           : !same_parts(coarse, fine);
   // Where a fast oscillation is not resolved, distances fall less than the errors should.
@@ -181,9 +181,13 @@ bool has_long_steps(const Attempt& now, double duration) {
   return now.knob.adaptive() && now.result.counts.longest > long_step * duration;
 }
 
-int shorter_after(const Attempt& now, double duration) {
-  if (now.result.counts.rescued > 0) return shorter_for_rescued;
-  return has_long_steps(now, duration) ? shorter_for_others : 1;
+Shorter shorter_after(const Attempt& now, double duration) {
+  if (now.result.counts.rescued > 0) return {.intervals = shorter_for_rescued};
+  return {.steps = has_long_steps(now, duration) ? shorter_for_others : 1};
+}
+
+bool has_shorter_steps(const Attempt& coarse, const Attempt& fine) {
+  return fine.knob.parts > coarse.knob.parts || fine.knob.least_steps > coarse.knob.least_steps;
 }
 
 std::optional<Try> after_early_end(double aim, double duration, const Attempt& last, const Attempt& now) {

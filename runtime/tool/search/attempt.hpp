@@ -67,10 +67,12 @@ double foreseen_distance(const Yardstick& yardstick, double duration, const Atte
 
 // A step took a large part of the time.
 bool has_long_steps(const Attempt& now, double duration);
-// Of the interval in which the next run may take one step. An implicit method takes over at events without end, and
-// what seems to be a line or a parabola gets steps of any length, whatever the local error: only shorter intervals make
-// these steps shorter.
-int shorter_after(const Attempt& now, double duration);
+// An implicit method takes over at events without end, up to the end of an interval: only shorter ones make these steps
+// shorter. What seems to be a line or a parabola gets steps of any length, whatever the local error: the next run may
+// not take such long ones.
+Shorter shorter_after(const Attempt& now, double duration);
+// The fine run had to take shorter steps, whatever its local error.
+bool has_shorter_steps(const Attempt& coarse, const Attempt& fine);
 // The knob after a run that ended early by its distance from the run before: the next one aims at an error.
 std::optional<Try> after_early_end(double aim, double duration, const Attempt& last, const Attempt& now);
 

@@ -72,13 +72,13 @@ double gain(const Try& coarse, const Try& fine, bool rescued, double noise) {
   return rescued ? std::min(smaller, shorter) : smaller;  // a method that took over may have order 1
 }
 
-std::optional<Try> finer(Try knob, double share, int shorter) {
+std::optional<Try> finer(Try knob, double share, const Shorter& shorter) {
   if (knob.adaptive()) {
-    if (knob.strictest() && shorter == 1) return {};
+    if (knob.strictest() && shorter.none()) return {};
     // The strictest run is compared with one of at least ten times its local error: there the gain is small, but sure.
     const bool last = knob.local_error < 99 * strictest_local_error;
     knob.local_error = std::max((last ? 1 : 10) * strictest_local_error, std::min(share, 0.1) * knob.local_error);
-    knob.parts *= shorter;
+    knob.parts *= shorter.intervals, knob.least_steps *= shorter.steps;
     knob.intervals = intervals_of_own_steps;
     if (knob.parts > most_parts) return {};
     return knob;

@@ -17,6 +17,7 @@ struct Try {
   double local_error = 0;  // 0: fixed steps
   int parts = 1;           // of an interval: its steps; or at their ends, a method that took over has to stop
   int intervals = intervals_of_own_steps;
+  int least_steps = 1;  // of own length, at the ends of intervals or not: none takes a larger share of the run
   int steps() const { return parts * intervals; }
   const IntegratorRow& row() const { return row_of(integrator); }
   bool adaptive() const { return local_error > 0; }
@@ -47,7 +48,12 @@ double sure_gain(const IntegratorRow& row, double gain, double of_energy);
 // The gain that is surely so large.
 double gain_for(const IntegratorRow& row, double sure);
 
-// The next knob, with an error of at most this share and shorter intervals; nothing if it is too fine.
-std::optional<Try> finer(Try knob, double share, int shorter);
+// Factors for the next run.
+struct Shorter {
+  int intervals = 1, steps = 1;
+  bool none() const { return intervals == 1 && steps == 1; }
+};
+// The next knob, with an error of at most this share and shorter intervals or steps; nothing if it is too fine.
+std::optional<Try> finer(Try knob, double share, const Shorter& shorter);
 
 }  // namespace cdot

@@ -107,7 +107,8 @@ class Search {
 Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool judged) {
   Attempt attempt;
   attempt.knob = knob, attempt.dear = dear_;
-  if (knob.adaptive()) attempt.paces = std::make_shared<Paces>(knob.local_error, safety);
+  if (knob.adaptive())
+    attempt.paces = std::make_shared<Paces>(knob.local_error, safety, scene_.duration / knob.least_steps);
   if (last.whole && knob.adaptive()) attempt.paced_by = last.paces;
   Scene solved = solved_by(choice_of(attempt), scene_);
   solved.step = scene_.duration / knob.steps();
@@ -274,8 +275,8 @@ void Search::try_candidate(Integrator integrator, double most, double reach) {
     if (now.whole) {
       yardstick_.see(now.frames);
       if (last.whole) judge(scene_, yardstick_, last, between, now);
-      if (last.whole && adaptive && !now.reached && now.result.counts.rescued == 0 &&
-          now.knob.parts == last.knob.parts && same_steps(last, now))
+      if (last.whole && adaptive && !now.reached && now.result.counts.rescued == 0 && !has_shorter_steps(last, now) &&
+          same_steps(last, now))
         judge_by_another_method(now, most - spent);
       else if (runs_ == 1 && now.result.counts.events == 0 && has_long_steps(now, scene_.duration) &&
                now.price <= even * yardstick_.mechanisms())

@@ -102,6 +102,21 @@ TEST(PacedSteps, AreRejectedLessAtTheSameError) {
   }
 }
 
+// A body without forces could go all the way at once.
+TEST(PacedSteps, HaveABound) {
+  Settings s = settings(Solver::direct, Drift::projection, 0);
+  s.integrator = Integrator::dop853, s.local_error = 1e-6;
+  World<double> world(s);
+  const int body = world.add_body({.mass = 1, .inertia = 1});
+  world.set_velocity(body, {1, 0, 0});
+  Paces paces(1e-6, usual_safety, 0.2);
+  world.data().paces = &paces;
+  for (int k = 0; k < 4; ++k) ASSERT_TRUE(world.step(0.25));
+  EXPECT_LE(world.step_counts().longest, 0.2);
+  EXPECT_EQ(world.step_counts().taken, 5);
+  EXPECT_NEAR(world.pose(body).x, 1, 1e-12);
+}
+
 // Notes alone change no bit, and a paced run has the same bits again.
 TEST(PacedSteps, AreTheSameOnEveryRun) {
   const Taken noted = run(1e-6, usual_safety, nullptr);

@@ -32,5 +32,20 @@ TEST(SearchedAccuracy, FollowsThePaceOfTheRunBefore) {
   }
 }
 
+// The first run passes circles in four steps. Shorter steps follow, not shorter intervals, whose ends each cost as much
+// as a stage.
+TEST(SearchedAccuracy, AsksForShorterStepsWithoutMoreLooks) {
+  const Scene scene = scene_named("gallery/epicycloid");
+  std::string warnings;
+  const RunResult result = simulate(scene, {}, warnings);
+  const Choice& choice = result.choice.value();
+  fmt::print("  {} and {} evaluations, steps of up to {:.3g} s\n", choice.evaluations_before, choice.evaluations,
+             result.counts.longest);
+  EXPECT_TRUE(choice.reached);
+  EXPECT_EQ(choice.step, scene.duration / intervals_of_own_steps);
+  EXPECT_LE(result.counts.longest, scene.duration / 2);
+  EXPECT_LT(choice.evaluations, 180);
+}
+
 }  // namespace
 }  // namespace cdot::test::paced_search_test
