@@ -20,9 +20,13 @@ std::string advised(Integrator integrator) {
 const std::string tension_taken = advised(most_exact([](const IntegratorRow& row) { return row.stiffens; }));
 const std::string turns_kept =
     advised(most_exact([](const IntegratorRow& row) { return row.level == Level::velocity && !row.stiffens; }));
+const std::string in_own_steps = " with local_error = 1e-6";
 const std::string own_steps =
-    advised(most_exact([](const IntegratorRow& row) { return row.level == Level::acceleration; })) +
-    " with local_error = 1e-6";
+    advised(most_exact([](const IntegratorRow& row) { return row.level == Level::acceleration; })) + in_own_steps;
+const std::string own_steps_if_stiff = advised(most_exact([](const IntegratorRow& row) {
+                                         return row.level == Level::acceleration && row.stable_decay == always;
+                                       })) +
+                                       in_own_steps;
 
 std::string listed(const std::vector<int>& joints, const Names& names) {
   constexpr std::size_t most = 6;
@@ -76,7 +80,7 @@ void on_limited_forces(const Diagnosis::Island& island, const Settings& settings
                       fmt::format("the force of an effect with limits is {:.2g} times too stiff for the step: {} "
                                   "swings between the limits",
                                   island.limited, name_of(integrators, settings.integrator)),
-                      "integrator = \"euler\", which is implicit up to the limits, or " + own_steps});
+                      "integrator = \"euler\", which is implicit up to the limits, or " + own_steps_if_stiff});
 }
 
 void on_stiffness(const Diagnosis::Island& island, const Settings& settings, double h, const Names& names,

@@ -21,6 +21,7 @@ struct CollocationWorkspace {
   // Known forces, those of springs and dampers, by row: their accelerations; their own derivatives.
   std::vector<double> by_force, force_by_pose, force_by_velocity;
   std::vector<double> base, base_forces;  // accelerations and forces at the start
+  std::vector<char> base_within;          // of each of these forces: it is not at a limit; empty if none has limits
   std::vector<T> forces, laws;            // forces taken at the stages and those of their laws, [stage][row]
   Lu<double> real;
   Lu<Complex> complex;

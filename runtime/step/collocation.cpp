@@ -35,12 +35,13 @@ size_t numbers_of_bodies(const Flow<S>& flow) {
 }
 
 // Newton's goal in units of the numbers. Rows with events take what it leaves for a way: in a step behind an impact, a
-// body would pass an end that it leaves.
+// body would pass an end that it leaves. A stiff force with limits is within them only in a narrow band of rates.
 template <class S>
 double goal_of(const WorldData<S>& world, const Island<S>& island) {
   using T = typename S::Scalar;
   const double allowed = world.settings.local_error;
   double goal = allowed * std::min(tightest, std::sqrt(allowed));
+  if (!island.flow.collocation.base_within.empty()) return settled<T>;
   if (island.flow.guarded > 0) goal = std::min(goal, double(slight<T>) * std::min(1.0, double(island.size)));
   return std::max(goal, settled<T>);
 }
@@ -279,8 +280,12 @@ void prepare_collocation(Island<S>& island) {
   for (auto* numbers : {&work.increments, &work.changes, &work.slopes}) numbers->assign(stages * n, 0);
   work.error.assign(n, 0);
   size_t rows = 0;
-  each_known_force(island, [&](const Batch<S>&, int, size_t) { ++rows; });
-  work.base.assign(m, 0.0), work.base_forces.assign(rows, 0.0);
+  bool limited = false;
+  each_known_force(island, [&](const Batch<S>& batch, int, size_t) {
+    ++rows;
+    limited |= batch.law->within_limits != nullptr;
+  });
+  work.base.assign(m, 0.0), work.base_forces.assign(rows, 0.0), work.base_within.assign(limited ? rows : 0, 1);
   for (auto* matrix : {&work.by_force, &work.force_by_pose, &work.force_by_velocity}) matrix->assign(m * rows, 0.0);
   work.forces.assign(stages * rows, 0), work.laws.assign(stages * rows, 0);
 }

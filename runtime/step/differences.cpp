@@ -14,6 +14,11 @@
 namespace cdot {
 namespace {
 
+// Of a difference that crosses a limit of a force: further attempts, each second one by a part of the length.
+constexpr int most_moves = 9;
+template <class T>
+constexpr T shorter_move = T(1) / 16;
+
 template <class S>
 typename S::Velocity along(int component, typename S::Scalar by) {
   typename S::Scalar numbers[S::freedom] = {};
@@ -53,6 +58,54 @@ typename S::Scalar length_of_difference(const Island<S>& island, int component, 
   return std::sqrt(std::numeric_limits<T>::epsilon()) * std::max(unit, std::abs(size));
 }
 
+// f(known force, whether it is within its limits) for every one that has some, at the present C and dC/dt.
+template <class S, class F>
+void each_limited_force(WorldData<S>& world, const Island<S>& island, F f) {
+  SpringNumbers<typename S::Scalar> now[most_rows], within[most_rows];
+  size_t row = 0;
+  for (const auto& [batch, begin, end, whole] : island.segments) {
+    if (!batch->law || !batch->law->force) continue;
+    const int rows = batch->ops->rows;
+    if (!batch->law->within_limits) {
+      row += static_cast<size_t>((end - begin) * rows);
+      continue;
+    }
+    batch->ops->effective_mass(*batch, begin, end, world.bodies);
+    batch->ops->velocity(*batch, begin, end, world.bodies.velocity.data(), batch->rate.data());
+    for (int slot = begin; slot < end; ++slot) {
+      batch->law->spring(*batch, slot, now), batch->law->within_limits(*batch, slot, within);
+      for (int r = 0; r < rows; ++r) f(row++, now[r].k == within[r].k && now[r].d == within[r].d);
+    }
+  }
+}
+
+template <class S>
+void note_limits(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
+  auto& within_at_base = island.flow.collocation.base_within;
+  if (within_at_base.empty()) return;
+  evaluate_anew(world, island, time);
+  each_limited_force(world, island, [&](size_t row, bool within) { within_at_base[row] = within; });
+}
+
+// A force at a limit has no slope, so a difference tells none of one that comes to a limit or leaves it. Moves by this
+// length, or if it crosses a limit, the other way; or less far. move(by) moves.
+template <class S, class F>
+typename S::Scalar move_within_limits(WorldData<S>& world, Island<S>& island, typename S::Scalar by,
+                                      typename S::Scalar time, F move) {
+  const auto& within_at_base = island.flow.collocation.base_within;
+  const auto crosses = [&] {
+    bool crossed = false;
+    each_limited_force(world, island, [&](size_t row, bool within) { crossed |= within != bool(within_at_base[row]); });
+    return crossed;
+  };
+  for (int attempt = 0;; ++attempt) {
+    move(by);
+    evaluate_anew(world, island, time);  // restores dC/dt, which gamma replaced
+    if (within_at_base.empty() || attempt == most_moves || !crosses()) return by;
+    by *= attempt % 2 == 0 ? typename S::Scalar(-1) : shorter_move<typename S::Scalar>;
+  }
+}
+
 template <class S>
 void by_velocities(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   using T = typename S::Scalar;
@@ -63,9 +116,9 @@ void by_velocities(WorldData<S>& world, Island<S>& island, typename S::Scalar ti
     T v[S::freedom];
     S::write(at, v);
     for (int c = 0; c < S::freedom; ++c, ++column) {
-      const T by = length_of_difference(island, c, v[c]);
-      world.bodies.velocity[i] = S::sum(at, along<S>(c, 1), by);
-      evaluate_anew(world, island, time);  // restores dC/dt, which gamma replaced; K and its factor stay
+      // K and its factor stay.
+      const T by = move_within_limits(world, island, length_of_difference(island, c, v[c]), time,
+                                      [&](T length) { world.bodies.velocity[i] = S::sum(at, along<S>(c, 1), length); });
       accelerate(world, island, time);
       write_column(world, island, work.by_velocity, work.force_by_velocity, column, double(by));
     }
@@ -83,9 +136,8 @@ void by_poses(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   for (int i : island.bodies) {
     const auto at = world.bodies.pose[i];
     for (int c = 0; c < S::freedom; ++c, ++column) {
-      const T by = length_of_difference(island, c, round_off);
-      world.bodies.pose[i] = S::moved(at, along<S>(c, by));
-      evaluate_anew(world, island, time);
+      move_within_limits(world, island, length_of_difference(island, c, round_off), time,
+                         [&](T length) { world.bodies.pose[i] = S::moved(at, along<S>(c, length)); });
       island.factored = false;
       accelerate(world, island, time);
       T moved[S::freedom];
@@ -146,6 +198,7 @@ void differentiate(WorldData<S>& world, Island<S>& island, typename S::Scalar ti
   each_known_force(island,
                    [&](const Batch<S>& batch, int i, size_t row) { work.base_forces[row] = double(batch.lower[i]); });
   note_turns(world, island);
+  note_limits(world, island, time);
   by_velocities(world, island, time);
   if (!work.base_forces.empty()) by_forces(world, island);
   by_poses(world, island, time);

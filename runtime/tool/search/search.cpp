@@ -151,7 +151,7 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool 
   attempt.price = knob.adaptive() ? price_of_adaptive(result) : price_of_fixed(knob, result, share);
   // A bound that is met within a step leaves that one to another method.
   attempt.left_steps = result.counts.rescued - (attempt.price > options.most_evaluations ? 1 : 0);
-  stiff_price_ = stiff_price(scene_, result.diagnosis);
+  stiff_price_ = stiff_price(scene_, solved.step, result.diagnosis);
   attempt.whole = result.finite && !result.failed_step && !result.stopped && !result.interrupted;
   stopped_ = result.interrupted;
   ++runs_;

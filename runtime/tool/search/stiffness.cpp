@@ -10,15 +10,24 @@ namespace {
 
 constexpr double evaluations_per_step = 12;  // of the highest order
 
+// Of steps that resolve these rates [1/s]: omega of the stiffest oscillation, and that of the fastest decay.
+double price_of_rates(const Scene& scene, double omega, double decay) {
+  const IntegratorRow& row = row_of(Integrator::dop853);
+  return evaluations_per_step * scene.duration * std::max(omega / row.stable_radians, decay / row.stable_decay);
+}
+
+double price_of(const Scene& scene, const Diagnosis::Island& island) {
+  return price_of_rates(scene, std::sqrt(std::max(0.0, island.stiffest.square)), island.fastest_decay.rate);
+}
+
 }  // namespace
 
-double stiff_price(const Scene& scene, const std::vector<WorstOfIsland>& islands) {
-  const IntegratorRow& row = row_of(Integrator::dop853);
+double stiff_price(const Scene& scene, double step, const std::vector<WorstOfIsland>& islands) {
   double price = 0;
-  for (const WorstOfIsland& island : islands) {
-    const double oscillating = std::sqrt(std::max(0.0, island.island.stiffest.square)) / row.stable_radians;
-    const double steps = scene.duration * std::max(oscillating, island.island.fastest_decay.rate / row.stable_decay);
-    price += evaluations_per_step * steps;
+  for (const WorstOfIsland& one : islands) {
+    // h (d + h k) K of a spring is at least (h omega)^2, as of a damper at stable steps.
+    const double within_limits = std::sqrt(one.island.limited) / step;
+    price += std::max(price_of(scene, one.island), price_of_rates(scene, within_limits, 0));
   }
   return price;
 }
@@ -33,7 +42,9 @@ double stiff_price_at_start(const Scene& scene) {
     add_diagnosis(diagnose(world, scene.duration / intervals_of_own_steps), 0, worst);
     return worst;
   };
-  return stiff_price(scene, in_space_of<double>(solved, look));
+  double price = 0;
+  for (const WorstOfIsland& island : in_space_of<double>(solved, look)) price += price_of(scene, island.island);
+  return price;
 }
 
 }  // namespace cdot

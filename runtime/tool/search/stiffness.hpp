@@ -5,7 +5,10 @@
 
 namespace cdot {
 
-double stiff_price(const Scene& scene, const std::vector<WorstOfIsland>& islands);
+// Of a run that was stopped, diagnosed for steps of this length. Forces with limits count as within these: explicit
+// steps throw a stiff one from limit to limit, where it has no slope.
+double stiff_price(const Scene& scene, double step, const std::vector<WorstOfIsland>& islands);
+// At the start, where such a force counts as it is: it may stay at its limit.
 double stiff_price_at_start(const Scene& scene);
 
 }  // namespace cdot

@@ -209,6 +209,50 @@ TEST(Radau, AnArmOfRoundOffIsNone) {
   EXPECT_NEAR(small.data().islands.front().size, 1e-6, 1e-8);
 }
 
+// A drive turns a wheel of 0.5 kg m^2 to 0 by k and d = k 1 s, with 2 N m at most: by a = 4 rad/s^2 from -1 rad, until
+// w = -theta at t_1, where 4 t_1 = 1 - 2 t_1^2. From there on it holds w = -theta, as closely as it is stiff: by k =
+// 1e9 within 2e-9 rad/s, which nothing but short steps finds.
+template <class Wheel>
+void expect_slides(const char* space, Wheel wheel) {
+  const double t_1 = (std::sqrt(24.0) - 4) / 4, theta_1 = 2 * t_1 * t_1 - 1, end = 2;
+  for (const double k : {1e5, 1e7, 1e9})
+    for (const double local_error : {1e-2, 1e-4, 1e-6}) {
+      const auto [angle, counts] = wheel(k, local_error, end);
+      const double off = std::abs(angle - theta_1 * std::exp(t_1 - end));
+      fmt::print("  {}, k = {:.0e}, error {:.0e}: {} steps, {} rejected, off by {:.1e} rad\n", space, k, local_error,
+                 counts.taken, counts.rejected, off);
+      EXPECT_LT(off, 4 / k + local_error / 10) << k;
+      EXPECT_LT(counts.taken, 1000) << k;
+      EXPECT_EQ(counts.rescued, 0) << k;
+    }
+}
+
+TEST(Radau, StiffDrivesSlideBetweenTheirLimits) {
+  const auto values = [](double k) {
+    return std::vector<NamedValue>{{"target", {0}}, {"k", {k}}, {"d", {k}}, {"most", {2}}};
+  };
+  expect_slides("planar", [&](double k, double local_error, double end) {
+    World<double> world(by(Integrator::radau5, local_error));
+    const int rotor = world.add_body({.angle = -1, .mass = 1, .inertia = 0.5});
+    revolute(world, world.ground(), rotor, 0, 0, 0, 0);
+    world.add_joint({"position_drive", {rotor, world.ground()}, values(k), {}});
+    run(world, end, 0.05);
+    return std::pair(world.pose(rotor).angle, world.step_counts());
+  });
+  expect_slides("spatial", [&](double k, double local_error, double end) {
+    SpatialWorld<double> world(by(Integrator::radau5, local_error));
+    SpatialBodyDefinition wheel;
+    wheel.mass = 1, wheel.inertia = {0.3, 0.3, 0.5};
+    const int rotor = world.add_body(wheel);
+    const int hinge = join(world, "hinge", world.ground(), rotor, {{"pa", {0, 0, 0}}, {"fa", {0, 0, 1}}});
+    auto drive = values(k);
+    drive.front().numbers = {1};
+    add_effect(world, hinge, "angle", SpecEffect{"position_drive", drive});
+    run(world, end, 0.05);
+    return std::pair(world.coordinate(hinge, "angle") - 1, world.step_counts());
+  });
+}
+
 // Its matrices are dense: an island that is too large is refused, not waited for.
 TEST(Radau, RefusesLargeIslands) {
   World<double> world(by(Integrator::radau5));

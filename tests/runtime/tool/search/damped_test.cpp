@@ -70,6 +70,28 @@ TEST(DefaultAccuracy, IsReachedCheaplyBehindStrongDampers) {
   }
 }
 
+// A drive of 1e9 N m/rad that gives 20 N m at most: it accelerates a rod of 1/3 kg m^2 by 60 rad/s^2 until w = 10 (0.5
+// - theta), and keeps that from there on. At the start it is at its limit, where it is not stiff. Explicit steps then
+// throw it from limit to limit, where it is not stiff either.
+TEST(DefaultAccuracy, IsReachedByDrivesWithinNarrowLimits) {
+  Scene scene = read_scene((source_dir() / "tests/hard_cases/stiff_servo/planar_drive.toml").string());
+  scene.step = 0;
+  const auto [result, rows] = recorded(scene, 0.01);
+  const Choice& choice = result.choice.value();
+  const double t_1 = (std::sqrt(96.0) - 6) / 60, theta_1 = 30 * t_1 * t_1;
+  double off = 0;
+  for (const Frame& row : rows) {
+    const double slides = 0.5 - (0.5 - theta_1) * std::exp(-10 * (row.time - t_1));
+    off = std::max(off, std::abs(row.bodies[0].angle - (row.time < t_1 ? 30 * row.time * row.time : slides)));
+  }
+  fmt::print("  {}, {} evaluations and {} before, {:.1e} claimed, off by {:.1e} rad\n",
+             name_of(integrators, choice.integrator), choice.evaluations, choice.evaluations_before, choice.achieved,
+             off);
+  EXPECT_TRUE(choice.reached);
+  EXPECT_LE(off, choice.achieved);
+  EXPECT_LE(choice.evaluations + choice.evaluations_before, 60000);
+}
+
 // A motor that holds a light rotor as a damper of 1e4 N m s would. The implicit method takes each of 16 steps in four
 // parts, which are the 64 steps of its next run: two such runs agree to 1e-12 and are off by 4 m.
 TEST(DefaultAccuracy, IsNotJudgedByStepsThatWereTakenInTheSameParts) {
