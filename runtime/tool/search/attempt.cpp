@@ -113,6 +113,11 @@ bool same_parts(const Attempt& a, const Attempt& b) {
   return static_cast<double>(b.result.solves) < std::sqrt(shorter) * static_cast<double>(a.result.solves);
 }
 
+// h (d + h k) K falls at least in proportion to h. Euler's step is implicit up to the limits.
+bool swings(const Try& knob, double limited) {
+  return !knob.adaptive() && knob.integrator != Integrator::euler && limited * intervals_of_own_steps > knob.steps();
+}
+
 bool balanced(const Scene& scene, const Attempt& attempt) {
   return attempt.result.balance.energy.share() <= scene.energy_tolerance;
 }
@@ -140,7 +145,7 @@ void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse
                                  (std::isfinite(coarse.achieved) && converges(coarse, fine) && falls);
   // Two runs may agree by chance on steps that were left to another method: no gain is sure there.
   const bool rescued = fine.result.counts.rescued > 0;
-  const bool agrees = known && seems_to_converge && balanced(scene, fine) &&
+  const bool agrees = known && seems_to_converge && !fine.swings && balanced(scene, fine) &&
                       std::max(fine.achieved, rescued ? apart : 0) <= yardstick.asked();
   // A joint may break by a load that is over before the step ends.
   fine.knows_means = agrees && fine.result.may_break && !fine.knob.adaptive();
@@ -157,7 +162,7 @@ void judge_unlike(const Scene& scene, const Yardstick& yardstick, const Attempt&
   const auto [apart, agree_until] = distance(yardstick, other, now);
   now.achieved = std::max({least_sure, unlike * apart, refusing_error(yardstick, now)});
   now.holds_until = agree_until;
-  now.reached = balanced(scene, now) && now.achieved <= yardstick.asked();
+  now.reached = !now.swings && balanced(scene, now) && now.achieved <= yardstick.asked();
   now.claimed = std::max(now.achieved, unseen_error(yardstick, now));
   if (now.reached) now.holds_until = scene.duration;
 }

@@ -31,6 +31,7 @@ struct Attempt {
   double holds_until = 0;
   bool reached = false;
   bool dear = false;         // explicit steps seemed dear, as where a fast oscillation bounds their length
+  bool swings = false;       // see swings()
   bool knows_means = false;  // it would have reached the accuracy, but equal steps know the mean of a load alone
   // It aimed at the accuracy after a run that ended early, and the run before is too far off to measure it.
   bool unmeasured = false;
@@ -51,6 +52,9 @@ bool same_steps(const Attempt& a, const Attempt& b);
 // The same of equal steps: those that are too long are taken in parts, so they take hardly more solves where they are
 // shorter.
 bool same_parts(const Attempt& a, const Attempt& b);
+// Equal steps for which a force with limits is too stiff throw it from limit to limit. Two such runs may agree on that.
+// `limited`: StiffStart::limited.
+bool swings(const Try& knob, double limited);
 // The energy's error is within the scene's tolerance.
 bool balanced(const Scene& scene, const Attempt& attempt);
 // The distance of a run from a coarser one has fallen well below the one before.

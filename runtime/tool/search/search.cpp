@@ -91,8 +91,8 @@ class Search {
   double unasked_ = infinity;  // for all runs, if nobody asked for the accuracy
   double least_left_;          // for all other candidates, when the first has a price
   Attempt best_;
-  Begun begun_;  // the last candidate
-  double stiff_at_start_ = 0;
+  Begun begun_;                                       // the last candidate
+  double stiff_at_start_ = 0, limited_at_start_ = 0;  // StiffStart
   double first_price_ = 0;  // foreseen, of explicit steps that became dear; while stiff candidates run
   double stiff_price_ = 0;  // the part of it that stiffness explains
   bool may_be_dear_ = true, dear_ = false, stopped_ = false, given_up_ = false;
@@ -106,7 +106,7 @@ class Search {
 // Attempt::foreseen, or fixed steps where they differ.
 Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool judged) {
   Attempt attempt;
-  attempt.knob = knob, attempt.dear = dear_;
+  attempt.knob = knob, attempt.dear = dear_, attempt.swings = swings(knob, limited_at_start_);
   if (knob.adaptive())
     attempt.paces = std::make_shared<Paces>(knob.local_error, safety, scene_.duration / knob.least_steps);
   if (last.whole && knob.adaptive()) attempt.paced_by = last.paces;
@@ -331,7 +331,8 @@ RunResult Search::run() {
   std::ranges::stable_sort(candidates, std::greater<>(), [](const IntegratorRow& row) {
     return std::tuple(row.level == Level::acceleration, row.order, row.stiffens);
   });
-  first_price_ = stiff_at_start_ = stiff_price_at_start(scene_);
+  const StiffStart start = stiffness_at_start(scene_);
+  first_price_ = stiff_at_start_ = start.price, limited_at_start_ = start.limited;
   if (first_price_ > dear * yardstick_.mechanisms()) {
     may_be_dear_ = false, dear_ = true;
     try_stiff(share_of_surely_stiff * first_price_);

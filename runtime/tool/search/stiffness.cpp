@@ -32,7 +32,7 @@ double stiff_price(const Scene& scene, double step, const std::vector<WorstOfIsl
   return price;
 }
 
-double stiff_price_at_start(const Scene& scene) {
+StiffStart stiffness_at_start(const Scene& scene) {
   Scene solved = scene;
   solved.settings.integrator = Integrator::dop853;  // for which springs are forces
   const auto look = [&]<class S>(S) {
@@ -42,9 +42,12 @@ double stiff_price_at_start(const Scene& scene) {
     add_diagnosis(diagnose(world, scene.duration / intervals_of_own_steps), 0, worst);
     return worst;
   };
-  double price = 0;
-  for (const WorstOfIsland& island : in_space_of<double>(solved, look)) price += price_of(scene, island.island);
-  return price;
+  StiffStart start;
+  for (const WorstOfIsland& one : in_space_of<double>(solved, look)) {
+    start.price += price_of(scene, one.island);
+    start.limited = std::max(start.limited, one.island.limited);
+  }
+  return start;
 }
 
 }  // namespace cdot

@@ -9,6 +9,10 @@ namespace cdot {
 // steps throw a stiff one from limit to limit, where it has no slope.
 double stiff_price(const Scene& scene, double step, const std::vector<WorstOfIsland>& islands);
 // At the start, where such a force counts as it is: it may stay at its limit.
-double stiff_price_at_start(const Scene& scene);
+struct StiffStart {
+  double price = 0;
+  double limited = 0;  // the largest Diagnosis::Island::limited, for steps of an interval
+};
+StiffStart stiffness_at_start(const Scene& scene);
 
 }  // namespace cdot

@@ -82,6 +82,26 @@ TEST(Claims, TrustNoLargeGainWhereStabilityBoundsTheSteps) {
   EXPECT_TRUE(judged(0.01, true).reached);
 }
 
+// Equal steps throw a drive that is too stiff for them from limit to limit. Two runs agree on that.
+TEST(Claims, TrustNoEqualStepsThatThrowADriveFromLimitToLimit) {
+  const Scene scene = box(TemporaryFolder(), 1);
+  const auto judged = [&](double limited, bool alike) {
+    Attempt coarse = attempt_of(0, 64, 1), fine = attempt_of(0, 64, 1);
+    for (Attempt* one : {&coarse, &fine}) one->knob.integrator = Integrator::implicit;
+    coarse.apart = 1, fine.knob.parts = 4, fine.result.solves = 100;
+    fine.swings = swings(fine.knob, limited);
+    if (alike) judge(scene, Yardstick(scene), coarse, {}, fine);
+    else judge_unlike(scene, Yardstick(scene), coarse, fine);
+    return fine.reached;
+  };
+  for (const bool alike : {true, false}) {
+    EXPECT_TRUE(judged(3.9, alike)) << alike;  // times too stiff for steps of an interval, which are four times as long
+    EXPECT_FALSE(judged(4.1, alike)) << alike;
+  }
+  EXPECT_FALSE(swings({Integrator::euler, 0, 1}, 1e9));
+  EXPECT_FALSE(swings({Integrator::radau5, 1e-6, 1}, 1e9));
+}
+
 // Local errors of 10 : 1 surely gain 1.8. If the errors fall by no more and have one sign, half of the coarse error is
 // no part of the distance.
 TEST(Claims, CountErrorsOnTheSameSide) {
