@@ -62,9 +62,9 @@ constexpr int furthest_reach = 64;  // of an adaptive step, in units of h
 // `left` saves the interpolation, if it is only a little shorter or longer than `best`.
 template <class T>
 T length_of_step(T best, T left, T reach) {
-  if (!(best > T(0)) || (best > T(0.95) * left && best < T(1.6) * left)) return left;
+  if (!(best > T(0)) || (best > T(0.95) * left && best < T(1.6) * left)) return std::min(left, reach);
   if (reach > left) return std::min(best, reach);
-  return best < left ? left / std::ceil(left / best) : left;  // equal parts leave no sliver
+  return std::min(best < left ? left / std::ceil(left / best) : left, reach);  // equal parts leave no sliver
 }
 
 // True if the projection at the end of the step undid the motion. The step then passed a pose where a joint's direction
