@@ -16,11 +16,13 @@ namespace cdot {
 std::string in_words(const TriedFix& advice) {
   if (advice.tried.empty()) return "Nothing could be tried within the bounds of work";
   if (advice.options.empty()) return fmt::format("Tried in vain: `{}`", fmt::join(advice.tried, "`, `"));
-  return fmt::format("Tried: `{}` keeps energy and momentum to {:.1e}{} at {} times the cost{}", advice.options,
-                     advice.share,
-                     advice.off > 0 ? fmt::format(", and the trajectory to about {:.1e},", advice.off) : std::string(),
-                     advice.cost < 10 ? fmt::format("{:.2g}", advice.cost) : fmt::format("{:.0f}", advice.cost),
-                     advice.until > 0 ? fmt::format(", up to t = {:.6g} s", advice.until) : std::string());
+  std::string text = fmt::format("Tried: `{}` keeps energy and momentum to {:.1e}", advice.options, advice.share);
+  if (advice.off > 0) text += fmt::format(", and the trajectory to about {:.1e},", advice.off);
+  if (advice.cost > 0)
+    text += fmt::format(" at {} times the cost",
+                        advice.cost < 10 ? fmt::format("{:.2g}", advice.cost) : fmt::format("{:.0f}", advice.cost));
+  if (advice.until > 0) text += fmt::format(", up to t = {:.6g} s", advice.until);
+  return text;
 }
 
 namespace {

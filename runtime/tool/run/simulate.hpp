@@ -52,7 +52,7 @@ struct TriedFix {
   std::string options;             // of `cdot-run simulate`; empty: nothing that was tried is a cure
   double share = 0;                // the method's own share of energies and momenta with these options
   double off = 0;                  // the trajectory's estimated error with them, in shares; 0: no estimate
-  double cost = 0;                 // work (search/work.hpp) in units of the run's
+  double cost = 0;                 // work (search/work.hpp) in units of the run's; 0: that took no step
   long long steps = 0;             // and their price in counts: of steps, or of the intervals of those that a method
   long long evaluations = 0;       // chooses, and of accelerations
   double until = 0;                // [s] up to which the trials ran; 0: like the run

@@ -200,7 +200,7 @@ std::optional<TriedFix> find_advice(const Scene& scene, const RunOptions& option
     advice.options = advice.tried.back();
     advice.share = trial.share, advice.off = trial.off;
     advice.steps = trial.steps, advice.evaluations = trial.evaluations;
-    advice.cost = trial.work / (share * own_work);
+    if (own_work > 0) advice.cost = trial.work / (share * own_work);
     break;
   }
   return advice;

@@ -281,6 +281,17 @@ TEST(Balance, MomentaOfFreeBodiesAreWatched) {
   EXPECT_GT(double(held.summary["balance"]["angular_momentum"]["scale"]), 3);
 }
 
+// A run that fails in its first step has done no work, so no trial has a price in units of it.
+TEST(Balance, AdviceForARunWithoutAStepHasNoPrice) {
+  const std::string file = (source_dir() / "tests/torture/found/told/rod_on_a_light_body.toml").string();
+  const Ran broken = simulated(file, "");
+  EXPECT_EQ(broken.summary["steps"], 0);
+  EXPECT_EQ(broken.summary["advice"]["cost"], 0) << broken.summary["advice"];
+  const std::string failure = broken.summary["failure"];
+  EXPECT_NE(failure.find("keeps energy and momentum to"), std::string::npos) << failure;
+  EXPECT_EQ(failure.find("the cost"), std::string::npos) << failure;
+}
+
 // Painlevé's rod meets a rough line at 1e-8 of its speed: there it jams, or leaves the line untouched. The advice is to
 // take steps whose errors are smaller than that.
 constexpr const char* doubtful_rod = R"(
