@@ -44,12 +44,12 @@ std::string text_of(const std::string& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// The scene without the block that begins with these words, as a file of its own.
-std::string without_block(const std::string& scene, const std::string& block) {
+// The scene without its text from these words up to `end`, as a file of its own.
+std::string without(const std::string& scene, const std::string& words, const std::string& end = "[[") {
   std::string text = text_of(scene);
-  const std::size_t begin = text.find(block);
+  const std::size_t begin = text.find(words);
   EXPECT_NE(begin, std::string::npos);
-  text.erase(begin, text.find("[[", begin + 2) - begin);
+  text.erase(begin, text.find(end, begin + words.size()) - begin);
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / fmt::format("cdot_bill_{}.toml", getpid());
   std::ofstream(file) << text;
@@ -59,7 +59,7 @@ std::string without_block(const std::string& scene, const std::string& block) {
 // Stones without joints take the same way through the code at every state, so all numbers are exact.
 TEST(Bill, AnEffectNotCalledForCostsNoInstructionAndNoByte) {
   const std::string scene = "tests/derive/compile/scenes/thrown.toml";
-  const std::string copy = without_block(scene, "[[joint]]\nname   = \"air\"");
+  const std::string copy = without(scene, "[[joint]]\nname   = \"air\"");
   for (const std::string method : {"euler", "rattle", "rk4"}) {
     const cdot::ShellResult with = cdot::compile("--bill " + scene + " --integrator " + method);
     const cdot::ShellResult never = cdot::compile("--bill " + copy + " --integrator " + method);
@@ -75,6 +75,31 @@ TEST(Bill, AnEffectNotCalledForCostsNoInstructionAndNoByte) {
     EXPECT_EQ(never.text.find("air"), std::string::npos);
   }
   std::filesystem::remove(copy);
+}
+
+// Operations and bytes alone: the rest of the scene costs as if the part had never been there.
+void saves_what_the_rest_lacks(const std::string& scene, const std::string& copy, const std::string& part) {
+  const auto bill = [](const std::string& of) {
+    const cdot::ShellResult result = cdot::compile("--bill " + of + " --integrator rattle", "CXX=no_compiler");
+    EXPECT_EQ(result.status, 0) << result.text;
+    return result.text;
+  };
+  const std::string with = bill(scene);
+  const Line whole = line_of(with, "whole step"), saved = line_of(with, part);
+  const Line rest = line_of(bill(copy), "whole step");
+  for (const std::size_t k : {2, 3}) EXPECT_EQ(whole[k] - saved[k], rest[k]) << "column " << k;
+  std::filesystem::remove(copy);
+}
+
+TEST(Bill, OfDampingIsThatOfTheWayAndOfTheTurn) {
+  const std::string scene = "tests/derive/compile/scenes/pushed.toml";
+  saves_what_the_rest_lacks(scene, without(scene, "linear_damping  = 0.4", "\n[["), "damping of brick");
+}
+
+// A rope that breaks keeps its bond where a joint before it goes.
+TEST(Bill, OfAJointThatBreaksLeavesARopeItsBond) {
+  const std::string scene = "tests/derive/compile/bonds/bonds.toml";
+  saves_what_the_rest_lacks(scene, without(scene, "[[joint]]\nname     = \"root\""), "joint root (revolute)");
 }
 
 TEST(Bill, BytesOfStateAreThoseOfTheStruct) {

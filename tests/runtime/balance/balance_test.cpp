@@ -264,6 +264,36 @@ TEST(Balance, ASpringByFrequencyPutsInWhatItsStiffnessChanges) {
   }
 }
 
+// Two rods hang from the world; a spring is at their elbow, joint 1. Returns its number.
+int hang_rods(World<double>& world, const Softness& softness) {
+  const int upper = world.add_body(rod(0, 0, 0)), lower = world.add_body(rod(1, 0, 0));
+  revolute(world, world.ground(), upper, 0, 0, -0.5, 0);
+  revolute(world, upper, lower, 0.5, 0, -0.5, 0);
+  return add_spring(world, 1, "angle", {.softness = softness});
+}
+
+// What its stiffness changes is booked from when it gets its frequency on, and after a joint has come back.
+TEST(Balance, ASpringByFrequencyMayComeWhileItRuns) {
+  const Softness by_stiffness{.by_frequency = false, .stiffness = 20}, by_frequency{.frequency = 1};
+  for (const Integrator integrator : {Integrator::rattle, Integrator::rk4, Integrator::dop853}) {
+    SCOPED_TRACE(name_of(integrators, integrator));
+    World<double> changed(Method{integrator, Solver::direct}.settings(-9.81));
+    const int spring = hang_rods(changed, by_stiffness);
+    run(changed, 0.1, 1e-3);
+    set_spring(changed, 1, spring, {.softness = by_frequency});
+    EXPECT_LT(watch(changed, 2, 1e-3).energy.share(), 1e-3);
+
+    World<double> restored(Method{integrator, Solver::direct}.settings(-9.81));
+    hang_rods(restored, by_frequency);
+    run(restored, 0.1, 1e-3);
+    const Snapshot whole = restored.snapshot();
+    restored.remove_joint(0);
+    run(restored, 0.1, 1e-3);
+    restored.restore(whole);
+    EXPECT_LT(watch(restored, 2, 1e-3).energy.share(), 1e-3);
+  }
+}
+
 // A body on a soft joint by frequency, with time in units of `second`.
 BalanceWatch on_a_soft_joint(const std::string& joint, std::vector<NamedValue> parameters, double second) {
   Settings s;
