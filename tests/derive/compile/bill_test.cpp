@@ -96,10 +96,11 @@ TEST(Bill, OfDampingIsThatOfTheWayAndOfTheTurn) {
   saves_what_the_rest_lacks(scene, without(scene, "linear_damping  = 0.4", "\n[["), "damping of brick");
 }
 
-// A rope that breaks keeps its bond where a joint before it goes.
-TEST(Bill, OfAJointThatBreaksLeavesARopeItsBond) {
+// A rope that breaks keeps its bond where a joint that breaks, or another effect with ends, goes before it.
+TEST(Bill, OfWhatGoesLeavesARopeItsBond) {
   const std::string scene = "tests/derive/compile/bonds/bonds.toml";
   saves_what_the_rest_lacks(scene, without(scene, "[[joint]]\nname     = \"root\""), "joint root (revolute)");
+  saves_what_the_rest_lacks(scene, without(scene, "angle.limit", "angle.spring"), "effect hinge.angle.limit");
 }
 
 TEST(Bill, BytesOfStateAreThoseOfTheStruct) {

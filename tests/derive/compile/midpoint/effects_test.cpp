@@ -4,6 +4,7 @@
 #include "coin_implicit.hpp"
 #include "effects_implicit.hpp"
 #include "geared_implicit.hpp"
+#include "pushed_implicit.hpp"
 #include "rolling_implicit.hpp"
 #include "tailgate_implicit.hpp"
 #include "tests/derive/compile/beside_world.hpp"
@@ -25,6 +26,7 @@ TEST(CompiledMidpoint, MovesWithEffectsAsTheWorld) {
   };
   runs(effects_implicit<double>(), scenes + "effects.toml");
   runs(thrown_implicit<double>(), scenes + "thrown.toml");
+  runs(pushed_implicit<double>(), scenes + "pushed.toml");
   runs(torsion_implicit<double>(), scenes + "torsion.toml");
   runs(geared_implicit<double>(), scenes + "geared.toml");
   runs(tumbling_implicit<double>(), scenes + "tumbling.toml");
