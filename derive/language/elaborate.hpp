@@ -71,6 +71,7 @@ class Elaborator {
   bool resolve_body(Source& source, const DeclaredAst& d, Parameter& p);
   bool resolve_unit(Source& source, const DeclaredAst& d, const Value& given, Parameter& p);
   bool resolve_range(Source& source, const DeclaredAst& d, Parameter& p);
+  bool default_in_range(Source& source, const DeclaredAst& d, const Value& given, const Parameter& p);
   std::optional<double> bound(Source& source, const Ast& ast, const DeclaredAst& d, const Parameter& p);
   Value default_value(Source& source, const DeclaredAst& d);
   bool default_fits(Source& source, const DeclaredAst& d, Value& given);

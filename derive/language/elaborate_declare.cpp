@@ -1,6 +1,8 @@
 // Parameters and lets: their values and defaults; a name may be declared once.
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <fmt/format.h>
 
 #include "derive/expression/functions.hpp"
 #include "derive/expression/symbols.hpp"
@@ -43,8 +45,8 @@ void Elaborator::declare(Source& source, const DeclaredAst& d) {
   p.where = in_spec(source, d.name.where);
   const bool placed = !d.broken && resolve_body(source, d, p);
   Value given = default_value(source, d);
-  const bool good =
-      placed && default_fits(source, d, given) && resolve_unit(source, d, given, p) && resolve_range(source, d, p);
+  const bool good = placed && default_fits(source, d, given) && resolve_unit(source, d, given, p) &&
+                    resolve_range(source, d, p) && default_in_range(source, d, given, p);
   if (const auto known = names_.find(full); good && source.include && known != names_.end()) {
     const auto before = std::find_if(joint_.parameters.begin(), joint_.parameters.end(),
                                      [&](const Parameter& q) { return q.name == full; });
@@ -188,6 +190,17 @@ bool Elaborator::resolve_range(Source& source, const DeclaredAst& d, Parameter& 
   p.range = source.file->text.substr(static_cast<std::size_t>(d.range->where.begin),
                                      static_cast<std::size_t>(d.range->where.end - d.range->where.begin));
   return true;
+}
+
+// A default that is computed from the pose is checked by each scene.
+bool Elaborator::default_in_range(Source& source, const DeclaredAst& d, const Value& given, const Parameter& p) {
+  const std::optional<double> value = d.value && d.range && given.e ? constant_value(given.e) : std::nullopt;
+  if (!value || std::isinf(*value) || (*value > p.above && *value < p.below) || (p.from && *value == p.above))
+    return true;
+  source.diagnostics.error(d.value->where,
+                           fmt::format("the default of {} is {:g}, outside of its range", quote(d.name.text), *value),
+                           "another default, or a wider range", {d.range->where});
+  return false;
 }
 
 // One bound of a range, a constant in the unit of the parameter; empty if that is reported as an error.

@@ -223,7 +223,9 @@ std::optional<Value> Evaluator::unit_of_call(const Operator& o, const std::vecto
     return hand_;
   };
   if (o.unit.needs == UnitNeed::angle &&
-      !need({Unit{}, Unit{.rad = 1}}, "an angle", "divide by a quantity of that unit, such as a wavelength"))
+      !need({Unit{}, Unit{.rad = 1}}, "an angle",
+            a[0].unit == Unit{.s = 1} ? "multiply by a rate, as in 2 [rad/s] * time"
+                                      : "divide by a quantity of that unit, such as a wavelength"))
     return {};
   if (o.unit.needs == UnitNeed::number &&
       !need({Unit{}, Unit{.rad = 1}}, "a pure number", "divide by a quantity of that unit"))

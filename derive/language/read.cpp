@@ -1,6 +1,9 @@
 #include "derive/language/read.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fmt/format.h>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -8,6 +11,7 @@
 
 #include "derive/language/elaborate.hpp"
 #include "derive/syntax/parser.hpp"
+#include "runtime/text/files.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -35,20 +39,21 @@ std::shared_ptr<const SourceFile> load_source(const std::filesystem::path& path)
   if (path == standard_input)
     return std::make_shared<const SourceFile>("<stdin>", std::string(std::istreambuf_iterator<char>(std::cin), {}));
   std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path)) throw std::runtime_error(path.string() + ": the file cannot be read");
+  if (std::error_code none; std::filesystem::is_directory(path, none))
+    throw std::runtime_error(path.string() + ": this is a folder, not a spec");
+  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
   std::string text{std::istreambuf_iterator<char>(in), {}};
   return std::make_shared<const SourceFile>(path.string(), std::move(text));
 }
 
 bool is_spec(const std::filesystem::path& file) {
-  return (file.extension() == ".joint" || file.extension() == ".effect") && !std::filesystem::is_directory(file);
+  return file.extension() == ".joint" || file.extension() == ".effect";
 }
 
 Library load_library(const std::filesystem::path& folder) {
   Library library;
-  for (const auto& file : std::filesystem::directory_iterator(folder.empty() ? "." : folder))
-    if (file.path().extension() == ".joint" && is_spec(file.path()))
-      library.emplace(file.path().stem().string(), load_source(file.path()));
+  for (const std::filesystem::path& spec : text::files_in(folder.empty() ? "." : folder, {".joint"}))
+    library.emplace(spec.stem().string(), load_source(spec));
   return library;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "runtime/command_line/installation.hpp"
+#include "runtime/text/files.hpp"
 
 namespace cdot::derive {
 
@@ -24,11 +25,9 @@ std::vector<fs::path> SpecsFolder::all() const {
   std::vector<fs::path> specs;
   bool found = false;
   for (const char* space : {"coordinate", "planar", "spatial"}) {
-    std::error_code failure;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / space, failure)) {
-      if (is_spec(entry.path())) specs.push_back(entry.path());
-    }
-    found = found || !failure;
+    std::error_code none;
+    for (fs::path& spec : text::files_in(folder_ / space, {".joint", ".effect"})) specs.push_back(std::move(spec));
+    found = found || fs::is_directory(folder_ / space, none);
   }
   if (!found) {
     throw NoSuchSpec(
@@ -40,7 +39,8 @@ std::vector<fs::path> SpecsFolder::all() const {
 }
 
 fs::path SpecsFolder::find(const std::string& spec) const {
-  if (spec == standard_input || fs::exists(spec)) return spec;
+  std::error_code none;
+  if (spec == standard_input || fs::exists(fs::symlink_status(spec, none))) return spec;
   std::vector<std::string> names;
   fs::path on_coordinates;
   for (const fs::path& known : all()) {
@@ -52,6 +52,11 @@ fs::path SpecsFolder::find(const std::string& spec) const {
     names.push_back(name);
   }
   if (!on_coordinates.empty()) return on_coordinates;
+  for (const char* ending : {".joint", ".effect"}) {
+    if (spec.ends_with(ending)) throw NoSuchSpec(fmt::format("no such file: {}", spec));
+    if (fs::exists(spec + ending))
+      throw NoSuchSpec(fmt::format("no spec is called `{0}`; did you mean `{0}{1}`?", spec, ending));
+  }
   if (spec.find('/') != std::string::npos) throw NoSuchSpec(fmt::format("no such file: {}", spec));
   const std::string near = nearest(spec, names);
   throw NoSuchSpec(fmt::format("no spec `{}`: neither that file nor {} exists{}", spec,

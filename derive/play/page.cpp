@@ -1,11 +1,11 @@
 #include "derive/play/page.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <vector>
 
+#include "derive/language/read.hpp"
 #include "derive/play/assets.hpp"
 #include "derive/play/first_sight.hpp"
 #include "derive/play/trial.hpp"
@@ -17,21 +17,11 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-std::vector<fs::path> files_in(const fs::path& folder, std::initializer_list<const char*> endings) {
-  std::vector<fs::path> files;
-  std::error_code none;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, none))
-    if (std::find(endings.begin(), endings.end(), entry.path().extension()) != endings.end())
-      files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 // By the paths that the engine reads them under.
 json all_specs(const fs::path& specs) {
   json files = json::object();
   for (const char* space : {"planar", "spatial", "coordinate"})
-    for (const fs::path& file : files_in(specs / space, {".joint", ".effect", ".hand"}))
+    for (const fs::path& file : text::files_in(specs / space, {".joint", ".effect", ".hand"}))
       files[fmt::format("specs/{}/{}", space, file.filename().string())] = read_file(file.string());
   if (files.empty())
     throw std::runtime_error(
@@ -47,16 +37,14 @@ std::string value_of(const char* key, const std::string& scene) {
   return std::regex_search(scene, found, assignment) ? found[2].str() : "";
 }
 
-bool is_spec(const fs::path& file) { return file.extension() == ".joint" || file.extension() == ".effect"; }
-
 // A scene, or a first one for a spec, with the specs beside it that it names.
 json example(const fs::path& file) {
-  const std::string scene = is_spec(file) ? trial_scene(file.string()) : read_file(file.string());
+  const std::string scene = derive::is_spec(file) ? trial_scene(file.string()) : read_file(file.string());
   const std::string title = value_of("title", scene);
   const char* const space = value_of("dimension", scene).starts_with('3') ? "spatial" : "planar";
   json specs = json::object();
-  for (const fs::path& spec :
-       files_in(file.parent_path().empty() ? "." : file.parent_path(), {".joint", ".effect", ".hand"}))
+  const fs::path folder = file.parent_path().empty() ? "." : file.parent_path();
+  for (const fs::path& spec : text::files_in(folder, {".joint", ".effect", ".hand"}))
     if (scene.find(spec.stem().string()) != scene.npos)
       specs[fmt::format("specs/{}/{}", space, spec.filename().string())] = read_file(spec.string());
   return {{"title", title.empty() ? file.stem().string() : title}, {"scene", scene}, {"specs", specs}};
@@ -85,9 +73,10 @@ fs::path first_file(const std::string& start, const fs::path& specs) {
 json gallery(const std::string& start, const fs::path& specs) {
   const fs::path first = first_file(start, specs);
   json all = json::array({example(first)});
-  for (const fs::path& spec : files_in(specs / "scenes" / "new", {".joint", ".effect"})) all.push_back(blank(spec));
+  for (const fs::path& spec : text::files_in(specs / "scenes" / "new", {".joint", ".effect"}))
+    all.push_back(blank(spec));
   for (const char* folder : {"scenes/gallery", "scenes", "scenes/spatial"})
-    for (const fs::path& scene : files_in(specs / folder, {".toml"}))
+    for (const fs::path& scene : text::files_in(specs / folder, {".toml"}))
       if (fs::file_size(scene) < longest_scene && !fs::equivalent(scene, first)) all.push_back(example(scene));
   return all;
 }

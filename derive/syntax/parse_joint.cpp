@@ -67,12 +67,27 @@ class JointParser {
   }
 
   // ( joint | effect ) NAME ( planar | spatial ), or effect NAME ( coordinate | joint )
+  // A name with - in it, which no name has, is read as one with _.
+  Word name_in_header(const std::string& kind) {
+    Word name = p_.name("the name of the " + kind);
+    const std::string first = name.text;
+    while (p_.at_symbol("-") && p_.at_name(1)) {
+      p_.take();
+      const Token part = p_.take();
+      name.text += "_" + std::string(part.text);
+      name.where.end = part.where.end;
+    }
+    if (name.text != first)
+      diagnostics_.error(name.where, "a name has letters, digits and _, but no `-`", "call it " + name.text);
+    return name;
+  }
+
   void header() {
     const Token word = p_.take();
     const std::string kind(word.text);
     if (!joint_.name.text.empty())
       p_.fail(word.where, "the file has a second header; a file contains one " + kind, "", {joint_.name.where});
-    const Word name = p_.name("the name of the " + kind);
+    const Word name = name_in_header(kind);
     if (joint_.name.text.empty()) joint_.name = name, joint_.effect = kind == "effect";
     if (p_.failed()) return;
     const bool of_joint = kind == "effect" && (p_.at_word("coordinate") || p_.at_word("joint"));

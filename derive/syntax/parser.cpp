@@ -222,6 +222,7 @@ Ast Parser::nothing_here() {
     fail(t.where, "square brackets stand behind a number, for its unit, as in 2 [m]", "use round brackets to group");
   else if (at_symbol("+")) fail(t.where, "a leading + is not allowed", "remove it");
   else if (at_symbol("-")) fail(t.where, "two signs stand in a row", "put the negative part into round brackets");
+  else if (at_symbol("*") && peek(-1).text == "*") fail(t.where, "`**` is no operator", "a power is written u^2");
   else if (at_symbol("/") && at_symbol("/", 1)) fail(t.where, "`//` starts no comment", "a comment starts with #");
   else fail(t.where, "a number, a name or a bracket is missing: " + found());
   return {};

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <unistd.h>
@@ -71,6 +72,12 @@ void write_file(const std::string& path, std::string_view text) {
 }
 
 std::FILE* summary_beside(std::initializer_list<std::string_view> outputs) {
+  std::set<fs::path> files;
+  for (const std::string_view output : outputs)
+    if (const std::string file = output == standard_output ? "" : replaceable(std::string(output));
+        !file.empty() && !files.insert(fs::weakly_canonical(file)).second)
+      throw std::runtime_error(
+          fmt::format("{}: two outputs cannot share one file. Likely fix: another name for one of them", output));
   const auto taken = std::count(outputs.begin(), outputs.end(), standard_output);
   if (taken > 1)
     throw std::runtime_error(
@@ -84,6 +91,16 @@ std::string read_file(const std::string& path) {
   text << file.rdbuf();
   if (!file) throw std::runtime_error(path + ": cannot be read");
   return text.str();
+}
+
+std::vector<fs::path> files_in(const fs::path& folder, std::initializer_list<std::string_view> endings) {
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, none))
+    if (std::ranges::find(endings, entry.path().extension().string()) != endings.end() && entry.is_regular_file(none))
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 }  // namespace cdot::text

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdio>
+#include <filesystem>
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace cdot::text {
 
@@ -28,8 +30,12 @@ class OutputFile {
 
 void write_file(const std::string& path, std::string_view text);
 // Where the summary goes: to standard output, unless one of the outputs takes that. Throws std::runtime_error if two of
-// them do.
+// them do, or name one file.
 std::FILE* summary_beside(std::initializer_list<std::string_view> outputs);
 std::string read_file(const std::string& path);
+// The files of a folder with these endings, sorted; none if it cannot be read. A link that leads nowhere, as the lock
+// that an editor writes beside a file, is none of them.
+std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder,
+                                            std::initializer_list<std::string_view> endings);
 
 }  // namespace cdot::text

@@ -9,6 +9,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "derive/language/specs_folder.hpp"
 #include "derive/play/page.hpp"
 #include "derive/play/server/native_engine.hpp"
 #include "derive/play/server/serve.hpp"
@@ -87,16 +88,28 @@ int serve_page(const Options& options, const std::string& start) {
   return 0;
 }
 
+// A scene, else a spec, by path or name.
+std::string file_of_start(const Options& options) {
+  if (options.start.empty()) return "";
+  try {
+    return file_of_scene(options.start);
+  } catch (const SceneError& no_scene) {
+    try {
+      return derive::SpecsFolder(options.specs).find(options.start).string();
+    } catch (const derive::NoSuchSpec& no_spec) {
+      throw SceneError(fmt::format("{}{}: error: {}\n", no_scene.what(), options.start, no_spec.what()), 1);
+    }
+  }
+}
+
 int run(const Options& options) {
-  const std::string start = options.start.empty() ? "" : file_of_scene(options.start);
+  const std::string start = file_of_start(options);
   return options.output.empty() ? serve_page(options, start) : write_page(options, start);
 }
 
 void add_options(Line& line, Options& options) {
-  line.add(
-      "SCENE|SPEC", &options.start,
-      "To begin with: a scene, by its file or its name in specs/scenes; or a .joint or .effect file, in a first scene "
-      "for it");
+  line.add("SCENE|SPEC", &options.start,
+           "To begin with: a scene, or a joint or effect in a first scene for it; each by its file or its name");
   line.add("-o,--output", &options.output, "Write the page instead of serving it: one file that needs no server")
       .shown_as("FILE");
   line.add("--port", &options.port, "Where the page is served on 127.0.0.1; if it is taken, or 0, any that is free")

@@ -189,3 +189,29 @@ TEST_F(Derive, WithoutASpecsFolderNothingIsDerived) {
   EXPECT_NE(derived.text.find("no folder specs: run from the folder that holds it"), std::string::npos) << derived.text;
   EXPECT_FALSE(fs::exists(place_ / "generated"));
 }
+
+// An editor's lock is a link to no file, and a link may lead to itself.
+TEST_F(Derive, LinksThatLeadNowhereAreNoSpecs) {
+  fs::create_symlink("me@machine.123", place_ / "specs/planar/.#line.joint");
+  fs::create_symlink("loop.joint", place_ / "specs/planar/loop.joint");
+  const ShellResult beside = cdot("check specs/planar/line.joint");
+  EXPECT_EQ(beside.status, 0) << beside.text;
+  EXPECT_EQ(cdot("derive").status, 0);
+  const ShellResult itself = cdot("check specs/planar/loop.joint");
+  EXPECT_EQ(itself.status, 2);
+  EXPECT_NE(itself.text.find("loop.joint: cannot be read: Too many levels of symbolic links"), std::string::npos)
+      << itself.text;
+}
+
+TEST_F(Derive, SaysWhatANameThatIsNoSpecMeans) {
+  write("own.joint", pin);
+  write("folder.joint/notes", "");
+  for (const auto& [name, words] : {std::pair("own", "no spec is called `own`; did you mean `own.joint`?"),
+                                    std::pair("nothing.joint", "no such file: nothing.joint"),
+                                    std::pair("folder.joint", "folder.joint: this is a folder, not a spec"),
+                                    std::pair("lnie", "did you mean `line`?")}) {
+    const ShellResult said = cdot(std::string("check ") + name);
+    EXPECT_EQ(said.status, 2) << name;
+    EXPECT_NE(said.text.find(words), std::string::npos) << said.text;
+  }
+}

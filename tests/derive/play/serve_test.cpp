@@ -54,4 +54,25 @@ TEST(Serve, ThePageIsForThisMachineAlone) {
   fs::remove_all(folder);
 }
 
+// -o writes a page from any engine.
+TEST(Serve, ItBeginsWithASceneOrASpecByName) {
+  const fs::path folder = fs::temp_directory_path() / fmt::format("cdot_begin_{}", getpid());
+  fs::create_directories(folder / "engine");
+  std::ofstream(folder / "engine/engine.js") << "";
+  std::ofstream(folder / "engine/engine.wasm") << "x";
+  const auto play = [&](const char* start) {
+    return std::system(fmt::format("cd {} && {} play {} -o page --engine engine --specs {}/specs > said 2> errors",
+                                   folder.string(), CDOT_PLAY, start, CDOT_SOURCE_DIR)
+                           .c_str());
+  };
+  for (const char* start : {"four_bar", "strandbeest", "line", "spatial/hinge", "spring"})
+    EXPECT_EQ(WEXITSTATUS(play(start)), 0) << start;
+  EXPECT_EQ(WEXITSTATUS(play("lnie")), 2);
+  std::ifstream errors(folder / "errors");
+  const std::string said(std::istreambuf_iterator<char>(errors), {});
+  for (const char* words : {"lnie: error: there is no such scene", "did you mean `line`?"})
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  fs::remove_all(folder);
+}
+
 }  // namespace
