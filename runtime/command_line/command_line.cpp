@@ -3,19 +3,31 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <limits>
 #include <utility>
 
 #include "runtime/command_line/completion.hpp"
+#include "runtime/text/number.hpp"
 #include "runtime/text/spelling.hpp"
 
 namespace cdot::command_line {
 namespace {
+
+// CLI11 says no more than that it cannot convert.
+const CLI::Validator whole_number(
+    [](const std::string& text) {
+      int number = 0;
+      const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
+      const bool whole = failure == std::errc{} && end == text.data() + text.size();
+      return whole ? "" : fmt::format("`{}` is not a whole number up to {}", text, std::numeric_limits<int>::max());
+    },
+    "");
 
 // Adds an option, by the type of its target.
 struct Add {
@@ -25,21 +37,29 @@ struct Add {
   CLI::Option* operator()(bool* to) const { return app.add_flag(names, *to, help); }
   template <class T>
   CLI::Option* operator()(T* to) const {
-    return app.add_option(names, *to, help);
+    return of_kind<T>(app.add_option(names, *to, help));
   }
   template <class T>
   CLI::Option* operator()(const std::function<void(T)>& take) const {
-    return app.add_option_function<std::remove_cvref_t<T>>(names, take, help);
+    return of_kind<T>(app.add_option_function<std::remove_cvref_t<T>>(names, take, help));
+  }
+
+ private:
+  template <class T>
+  static CLI::Option* of_kind(CLI::Option* option) {
+    return std::is_same_v<T, int> ? option->check(whole_number) : option;
   }
 };
 
-// CLI11's own ranges accept nan, and print the largest double in full.
+// CLI11's own ranges accept nan, and print the largest double in full. Replaces a fraction, 1/60, by its value.
 CLI::Validator finite_number(const std::string& kind, const char* words, bool (*in_range)(double)) {
-  const auto problem = [=](const std::string& text) {
-    char* end = nullptr;
-    const double number = std::strtod(text.c_str(), &end);
-    const bool whole = !text.empty() && *end == '\0';
-    return whole && std::isfinite(number) && in_range(number) ? "" : fmt::format("`{}` is not {}", text, words);
+  const auto problem = [=](std::string& text) {
+    std::string_view rest = text;
+    const std::optional<double> number = text::take_number(rest);
+    if (!number || !rest.empty() || !std::isfinite(*number) || !in_range(*number))
+      return fmt::format("`{}` is not {}", text, words);
+    if (text.find('/') != text.npos) text = fmt::format("{}", *number);
+    return std::string();
   };
   return {problem, kind};
 }
@@ -48,10 +68,10 @@ CLI::Validator finite_number(const std::string& kind, const char* words, bool (*
 
 Option& Option::required() { return option_->required(), *this; }
 Option& Option::positive() {
-  return option_->check(finite_number("POSITIVE", "a positive number", [](double x) { return x > 0; })), *this;
+  return option_->transform(finite_number("POSITIVE", "a positive number", [](double x) { return x > 0; })), *this;
 }
 Option& Option::not_negative() {
-  return option_->check(finite_number("NONNEGATIVE", "a number from 0 on", [](double x) { return x >= 0; })), *this;
+  return option_->transform(finite_number("NONNEGATIVE", "a number from 0 on", [](double x) { return x >= 0; })), *this;
 }
 Option& Option::one_of(const std::vector<std::string>& texts) { return option_->check(CLI::IsMember(texts)), *this; }
 Option& Option::separated_by_commas() { return option_->delimiter(','), *this; }

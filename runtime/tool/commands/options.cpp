@@ -93,7 +93,11 @@ Scene scene_of(const SceneOptions& options) {
   if (options.methods.empty()) return with_integrator(std::move(scene));
   // A method replaces an accuracy.
   scene.accuracy = 0;
+  const double written = scene.step;
   for (const auto& change : options.methods) change(scene);
+  if (scene.step != written && scene.step > scene.duration)
+    throw Error(fmt::format("--step {}: the run ends at {} s. Likely fix: a step of at most {} s", scene.step,
+                            scene.duration, scene.duration));
   scene.step_by_options = scene.step == 0;
   if (scene.step_by_options) scene.step = usual_step(scene.duration, scene.settings.local_error > 0);
   settle_drift(scene);

@@ -2,6 +2,7 @@
 #include "runtime/tool/run/frame.hpp"
 
 #include <cmath>
+#include <fmt/format.h>
 
 namespace cdot {
 namespace {
@@ -142,6 +143,11 @@ Frame between(const Frame& before, const Frame& after, double time) {
 }
 
 std::vector<double> every(double dt, double until) {
+  constexpr double most = 1e8;  // each takes 8 to 24 bytes
+  if (until / dt > most)
+    throw Error(
+        fmt::format("{:.3g} times {} s apart up to {} s are more than {:g}. Likely fix: {:.2g} s, or an earlier end",
+                    until / dt, dt, until, most, until / most));
   std::vector<double> times;
   const auto last = static_cast<long long>(std::floor(until / dt * (1 + 1e-12)));
   for (long long k = 0; k <= last; ++k) times.push_back(static_cast<double>(k) * dt);

@@ -53,7 +53,7 @@ void read_sensors(const Scene& scene, BasicWorld<S>& world, const Frame& start, 
 // of fourth order in the step.
 Frame between(const Frame& before, const Frame& after, double time);
 
-// 0, dt, 2 dt, … up to `until`.
+// 0, dt, 2 dt, … up to `until`. Throws Error for more than 1e8 of them.
 std::vector<double> every(double dt, double until);
 // `count` multiples of until / count, from number `first` on.
 std::vector<double> equal_times(double until, int count, int first = 1);

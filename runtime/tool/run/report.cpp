@@ -109,8 +109,12 @@ std::string failure(const Scene& scene, const RunResult& result) {
 
 namespace {
 
-std::string own_steps_text(const StepCounts& counts) {
-  if (counts.taken == 0) return "  own steps       none: no body can move\n";
+std::string own_steps_text(const RunResult& result) {
+  const StepCounts& counts = result.counts;
+  if (counts.taken == 0)
+    return fmt::format("  own steps       none: {}\n", result.failed_step   ? "the first one failed"
+                                                       : counts.rescued > 0 ? "an implicit method took them all"
+                                                                            : "no body can move");
   std::string text =
       fmt::format("  own steps       {}, from {:.3g} s to {:.3g} s", counts.taken, counts.shortest, counts.longest);
   if (counts.rejected > 0) text += fmt::format(", {} rejected", counts.rejected);
@@ -172,7 +176,7 @@ std::string summary_text(const Scene& asked, const RunResult& result) {
     text += fmt::format("  integrator      {}: {}\n", name_of(integrators, scene.settings.integrator),
                         scene.why_integrator);
   if (scene.single) text += "  precision       float\n";
-  if (own_steps) text += own_steps_text(result.counts);
+  if (own_steps) text += own_steps_text(result);
   if (result.counts.rescued > 0)
     text += fmt::format("  implicit rescue {}, for endless events or a useless error estimate\n",
                         rescue_text(scene, result));

@@ -241,7 +241,7 @@ void find_inertia(Entry& body, Reading& to) {
   } else if (to.body.shape.kind != Shape::none) {
     const double planar = uniform_moment(to.body.shape, numbers.mass);
     to.inertia = to.in_space() ? uniform_inertia(to.body.shape, numbers.mass) : Inertia{planar, planar, planar};
-  } else if (!numbers.fixed_rotation) {
+  } else if (!numbers.fixed_rotation && !body.has("shape")) {  // a shape without a kind has a mistake of its own
     body.error(body.header(), body.what() + " has no `inertia`",
                fmt::format("inertia = {}, a shape to work it out from, or fixed_rotation = true",
                            to.in_space() ? "[Ixx, Iyy, Izz]" : "…"));

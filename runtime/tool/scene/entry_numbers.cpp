@@ -1,33 +1,18 @@
 // The numbers of a TOML table: fractions, degrees, ranges, shifts of copies, and what may stand in their place.
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <numbers>
 
+#include "runtime/text/number.hpp"
 #include "runtime/tool/scene/entry.hpp"
 
 namespace cdot {
 namespace {
 
-// Takes the number off the start of a text.
-std::optional<double> take_number(std::string_view& text) {
-  double value = 0;
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{}) return {};
-  text.remove_prefix(static_cast<std::size_t>(rest - text.data()));
-  return value;
-}
-
 // "1/60", and "30 deg" in radians; nothing if the text is neither.
 std::optional<double> number_in_text(std::string_view text, bool angle) {
-  std::optional<double> value = take_number(text);
-  if (value && text.starts_with("/")) {
-    text.remove_prefix(1);
-    const std::optional<double> divisor = take_number(text);
-    if (!divisor) return {};
-    *value /= *divisor;
-  }
+  const std::optional<double> value = text::take_number(text);
   if (value && angle && text == " deg") return *value * std::numbers::pi / 180;
   return text.empty() ? value : std::nullopt;
 }

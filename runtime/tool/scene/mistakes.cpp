@@ -155,6 +155,7 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> kno
   if (known.empty()) return {};
   std::vector<std::string> names(known.begin(), known.end());
   std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
   return fmt::format("known are: {}", fmt::join(names, ", "));
 }
 

@@ -194,8 +194,9 @@ namespace fs = std::filesystem;
 // Folders of scenes that go by their names, the scenes' own first.
 std::vector<fs::path> scene_folders() {
   const fs::path scenes = fs::path("specs") / "scenes", installed = command_line::installed(scenes);
-  std::vector<fs::path> folders = {scenes, scenes / "spatial"};
-  if (!installed.empty()) folders.insert(folders.end(), {installed, installed / "spatial"});
+  std::vector<fs::path> folders;
+  for (const fs::path& of : {scenes, installed})
+    if (!of.empty()) folders.insert(folders.end(), {of, of / "spatial", of / "gallery"});
   return folders;
 }
 
@@ -225,6 +226,7 @@ std::string file_of_scene(const std::string& scene) {
 Scene read_scene(const std::string& scene) {
   if (scene == "-") return read_scene(content_of(std::cin, "<stdin>"), "<stdin>");
   const std::string path = file_of_scene(scene);
+  if (fs::is_directory(path)) throw SceneError(fmt::format("{}: error: this is a folder, not a scene\n", path), 1);
   std::ifstream file(path, std::ios::binary);
   return read_scene(content_of(file, path), path);
 }
