@@ -275,6 +275,8 @@ void keep_start(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
 template <class S>
 void go_back(WorldData<S>& world, Island<S>& island) {
   set_numbers(world, island, island.flow.start.data());
+  // Sweeps start from the last forces: they take many to forget those of a step that was far too long.
+  if (!island.solver->exact) fill_lambda(island, typename S::Scalar(0));
   island.residual = island.flow.start_residual;
   island.left = island.flow.start_left;
   restore_turns(island);
