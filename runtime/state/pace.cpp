@@ -28,6 +28,13 @@ double Pace::at(double middle) const {
   return last->best + (next->best - last->best) * (middle - last->time) / (next->time - last->time);
 }
 
+double Paces::allowed(double time) const {
+  double allowed = local_error_;
+  for (const Looser& looser : looser_)
+    if (looser.from <= time) allowed = looser.local_error;
+  return allowed;
+}
+
 const Pace* Paces::find(int body) const {
   const auto found = of_.find(body);
   return found == of_.end() ? nullptr : &found->second;

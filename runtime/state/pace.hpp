@@ -37,6 +37,10 @@ class Paces {
                  double longest = std::numeric_limits<double>::infinity())
       : local_error_(local_error), safety_(safety), longest_(longest) {}
   double local_error() const { return local_error_; }
+  // Steps from `time` on may have this local error.
+  void loosen(double time, double local_error) { looser_.push_back({time, local_error}); }
+  // The local error of steps from `time` on.
+  double allowed(double time) const;
   double safety() const { return safety_; }
   // [s] No step of the run is longer.
   double longest() const { return longest_; }
@@ -45,6 +49,10 @@ class Paces {
 
  private:
   double local_error_, safety_, longest_;
+  struct Looser {
+    double from, local_error;
+  };
+  std::vector<Looser> looser_;  // in the order of time
   std::map<int, Pace> of_;
 };
 

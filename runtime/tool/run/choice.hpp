@@ -10,7 +10,7 @@ namespace cdot {
 
 struct Choice {
   Integrator integrator = Settings{}.integrator;
-  double local_error = 0;  // 0: fixed steps
+  double local_error = 0;  // the largest of the run; 0: fixed steps
   double step = 0;         // [s] as Scene::step
   double asked = 0;        // of the size of each mechanism and of 1 rad; or [m] and [rad]
   bool of_size = true;     // the first of these

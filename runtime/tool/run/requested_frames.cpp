@@ -15,6 +15,8 @@ template <class S>
 RequestedFrames<S>::RequestedFrames(const Scene& scene, const Paces* paced_by, const Paces* paces)
     : scene_(scene),
       paced_by_(paced_by),
+      noted_(paces),
+      allowed_(scene.settings.local_error),
       slack_(close_time * scene.step),
       adaptive_(scene.settings.local_error > 0),
       takes_parts_(!sweeps(scene.settings.solver) && scene.settings.drift != Drift::baumgarte) {
@@ -32,6 +34,7 @@ void RequestedFrames<S>::request(const std::vector<double>& times, Take take) {
 template <class S>
 void RequestedFrames<S>::before_step(const BasicWorld<S>& run, const Frame& at, double end) {
   last_.reset();
+  if (noted_) allowed_ = noted_->allowed(at.time);
   const bool lies_inside =
       next_ < requests_.size() && requests_[next_].time > at.time + slack_ && requests_[next_].time < end - slack_;
   if (takes_parts_ && lies_inside) run.snapshot_into(start_);
@@ -61,6 +64,7 @@ Frame RequestedFrames<S>::part_of_step(const Frame& before, const Frame& after, 
     part_ = build_world_in<S>(scene_);
     part_->data().paced_by = paced_by_, part_->data().paces = paces_ ? &*paces_ : nullptr;
   }
+  part_->data().settings.local_error = allowed_;
   const bool goes_on = adaptive_ && last_;
   const Frame& start = goes_on ? *last_ : before;
   if (!goes_on) part_->restore(start_);

@@ -22,7 +22,7 @@ template <class S>
 class RequestedFrames {
  public:
   using Take = std::function<void(const Frame&)>;
-  // The run's steps follow those of an earlier one and are noted, if these are not null.
+  // The run's steps follow those of an earlier one and are noted, if these are not null: `paces` outlive this.
   RequestedFrames(const Scene& scene, const Paces* paced_by, const Paces* paces);
 
   // `take` receives the frames at these ascending times.
@@ -41,8 +41,9 @@ class RequestedFrames {
     std::size_t take;
   };
   const Scene& scene_;
-  const Paces* paced_by_;
+  const Paces *paced_by_, *noted_;
   std::optional<Paces> paces_;  // of part_, for the same lengths
+  double allowed_;              // local error of the present step
   double slack_;                // [s]: closer times count as equal
   bool adaptive_;               // the method interpolates: a part may go on from the last one
   bool takes_parts_;

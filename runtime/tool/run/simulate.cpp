@@ -129,6 +129,16 @@ BasicWorld<S> world_of_run(const Scene& scene, const RunOptions& options, std::s
   return world;
 }
 
+// The local error of the steps from `time` on; their lengths follow it.
+template <class S>
+void allow(WorldData<S>& data, const Paces* paces, double time) {
+  const double before = data.settings.local_error, now = paces ? paces->allowed(time) : before;
+  if (now == before) return;
+  const double longer = std::pow(now / before, 1.0 / row_of(data.settings.integrator).order);
+  for (Island<S>& island : data.islands) island.flow.next_step *= typename S::Scalar(longer);
+  data.settings.local_error = now;
+}
+
 template <class S>
 void look(const Scene& scene, BasicWorld<S>& world, RunResult& result) {
   add_diagnosis(diagnose(world, scene.step / scene.settings.substeps), world.time(), result.diagnosis);
@@ -143,6 +153,9 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   world.data().paced_by = options.paced_by, world.data().paces = options.paces;
   const Steps steps(scene, options);
   result.start = steps.time(0);
+  // A state of that time has the lengths of the local error before.
+  if (options.paces)
+    world.data().settings.local_error = options.paces->allowed(result.start - same_time * scene.duration);
   RequestedFrames<S> requested(scene, options.paced_by, options.paces);
   if (options.row) requested.request(from_time(options.row_times, result.start, scene.step), options.row);
   requested.request(from_time(options.film_times, result.start, scene.step),
@@ -191,6 +204,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     if (k == steps.count() || result.stopped || Interrupt::asked()) break;
     requested.before_step(world, after, steps.time(k + 1));
     if (options.estimates_error) error.before_step(world, k + 1, steps.length(k + 1));
+    allow(data, options.paces, after.time);
     const double start = cpu_now();
     const StepResult step = world.step(steps.length(k + 1));
     result.cpu += cpu_now() - start;

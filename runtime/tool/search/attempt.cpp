@@ -39,6 +39,11 @@ constexpr double share_of_events = 1e-9;
 // of time with which it grew over the second half up to then. The run that comes next expects a little more.
 constexpr double tells = 0.25, most_growth = 2, further_growth = 0.5;
 
+// A run that agrees well with the one before goes on with a larger local error: at most the accuracy, and this share of
+// the local error before. What is foreseen then counts so many times, and grows at least with the energy's error of the
+// run before, and is to be within this share of the accuracy. Smaller changes are not worth while.
+constexpr double loosest_share = 0.01, times_foreseen = 4, aim_if_looser = 0.5, least_looser = 1.2;
+
 // --- The next run.
 constexpr int shorter_for_rescued = 4, shorter_for_others = 2;
 constexpr double long_step = 0.4;  // of the duration
@@ -91,16 +96,46 @@ Distance distance(const Yardstick& yardstick, const Attempt& coarse, const Attem
   return distance;
 }
 
-double sure_gain(const Yardstick& yardstick, const Attempt& coarse, const Attempt& fine, double apart) {
+namespace {
+
+// sure_gain() of a fine run by this knob whose error of the energy is so many times smaller than the coarse one's.
+double sure_gain_of(const Yardstick& yardstick, const Attempt& coarse, const Attempt& fine, const Try& knob,
+                    double of_energy, double apart) {
   if (fine.knob.adaptive() && apart > far) return 1;
   const bool rescued = coarse.result.counts.rescued > 0 || fine.result.counts.rescued > 0;
   const bool events = coarse.result.counts.events > 0 || fine.result.counts.events > 0;
   const double noise = yardstick.of_largest(events ? share_of_events : strictest_local_error);
   const bool tells_of_energy = coarse.energy_share >= witness * apart;
-  const double of_energy = tells_of_energy ? coarse.energy_share / std::max(round_off, fine.energy_share) : 1;
-  const double sure = sure_gain(fine.knob.row(), gain(coarse.knob, fine.knob, rescued, noise), of_energy);
+  const double sure = sure_gain(knob.row(), gain(coarse.knob, knob, rescued, noise), tells_of_energy ? of_energy : 1);
   const bool unresolved = fine.knob.adaptive() && fine.dear && apart > far_if_dear;
   return unresolved ? std::min(sure, gain_if_dear) : sure;
+}
+
+// Two runs up to an end of the coarse run's intervals.
+struct Course {
+  std::size_t ends = 0;  // 0: the fine run is between two of them
+  double share = 0;      // of the time
+  double now = 0;        // the distance
+  double growth = 0;     // its power of time
+  // With this power, within bounds.
+  double at_end(double power, double further) const {
+    return now / std::pow(share, std::clamp(power, 1.0, most_growth) + further);
+  }
+};
+
+Course course_of(const Yardstick& yardstick, double duration, const Attempt& coarse, const Attempt& fine) {
+  const std::size_t stride = stride_of(coarse, fine), ends = (fine.frames.size() - 1) / stride;
+  if (ends * stride != fine.frames.size() - 1) return {};
+  const double now = distance(yardstick, coarse, fine, ends).largest;
+  const double growth = std::log2(now / distance(yardstick, coarse, fine, ends / 2).largest);
+  return {ends, fine.frames.back().time / duration, now, growth};
+}
+
+}  // namespace
+
+double sure_gain(const Yardstick& yardstick, const Attempt& coarse, const Attempt& fine, double apart) {
+  const double of_energy = coarse.energy_share / std::max(round_off, fine.energy_share);
+  return sure_gain_of(yardstick, coarse, fine, fine.knob, of_energy, apart);
 }
 
 bool same_steps(const Attempt& a, const Attempt& b) {
@@ -172,14 +207,35 @@ bool differ(const Yardstick& yardstick, const Attempt& other, const Attempt& now
 }
 
 double foreseen_distance(const Yardstick& yardstick, double duration, const Attempt& coarse, const Attempt& fine) {
-  const std::size_t stride = stride_of(coarse, fine), ends = (fine.frames.size() - 1) / stride;
-  const double share = fine.frames.back().time / duration;
-  if (share < tells || ends * stride != fine.frames.size() - 1) return 0;
-  const double now = distance(yardstick, coarse, fine, ends).largest;
-  const double growth = std::log2(now / distance(yardstick, coarse, fine, ends / 2).largest);
-  const auto at_end = [&](double power) { return now / std::pow(share, std::clamp(power, 1.0, most_growth)); };
-  const double foreseen = at_end(growth), allowed = yardstick.asked() * sure_gain(yardstick, coarse, fine, foreseen);
-  return foreseen > allowed ? at_end(growth + further_growth) : 0;
+  const Course course = course_of(yardstick, duration, coarse, fine);
+  if (course.ends == 0 || course.share < tells) return 0;
+  const double foreseen = course.at_end(course.growth, 0);
+  const double allowed = yardstick.asked() * sure_gain(yardstick, coarse, fine, foreseen);
+  return foreseen > allowed ? course.at_end(course.growth + further_growth, 0) : 0;
+}
+
+double looser_error(const Yardstick& yardstick, double duration, const Attempt& coarse, const Attempt& fine) {
+  const double now = fine.knob.local_error;
+  const Course course = course_of(yardstick, duration, coarse, fine);
+  if (course.ends == 0 || coarse.result.counts.events > 0) return now;
+  const double shared = std::max(round_off, coarse.energy_shares[course.ends]);
+  const double foreseen =
+      times_foreseen * std::max(1.0, coarse.energy_share / shared) * course.at_end(course.growth, further_growth);
+  Try looser = fine.knob;
+  for (looser.local_error = std::min(yardstick.asked(), loosest_share * coarse.knob.local_error);
+       looser.local_error > least_looser * now; looser.local_error /= least_looser) {
+    const double of_energy = shared / std::max(round_off, fine.energy_share) * now / looser.local_error;
+    const double gain = sure_gain_of(yardstick, coarse, fine, looser, of_energy, foreseen);
+    if (foreseen <= aim_if_looser * yardstick.asked() * gain) return looser.local_error;
+  }
+  return now;
+}
+
+void loosen(const Yardstick& yardstick, double duration, const Attempt& coarse, Attempt& fine) {
+  const double local_error = looser_error(yardstick, duration, coarse, fine);
+  if (local_error <= fine.knob.local_error) return;
+  fine.knob.local_error = local_error;
+  fine.paces->loosen(fine.frames.back().time, local_error);
 }
 
 bool has_long_steps(const Attempt& now, double duration) {

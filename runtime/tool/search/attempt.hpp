@@ -21,6 +21,7 @@ struct Attempt {
   std::shared_ptr<Paces> paces;           // of its steps
   std::shared_ptr<const Paces> paced_by;  // of the run that it follows; empty: of none
   double energy_share = 0;                // the largest error of the energy so far, see EnergyWatch
+  std::vector<double> energy_shares;      // up to each of `frames`
   double price = 0;
   long long left_steps = 0;                                   // to another method, within its bounds
   bool full = false;                                          // it has the outputs asked for
@@ -68,6 +69,11 @@ void judge_unlike(const Scene& scene, const Yardstick& yardstick, const Attempt&
 bool differ(const Yardstick& yardstick, const Attempt& other, const Attempt& now);
 // The distance at the end, foreseen from that up to now, if it shows that the two runs will not agree; else 0.
 double foreseen_distance(const Yardstick& yardstick, double duration, const Attempt& coarse, const Attempt& fine);
+// The local error that the rest of the fine run may have, if the two runs agree so well that its distance from the
+// truth will be surely within the accuracy all the same; else that of its knob.
+double looser_error(const Yardstick& yardstick, double duration, const Attempt& coarse, const Attempt& fine);
+// The rest of the fine run gets that.
+void loosen(const Yardstick& yardstick, double duration, const Attempt& coarse, Attempt& fine);
 
 // A step took a large part of the time.
 bool has_long_steps(const Attempt& now, double duration);

@@ -12,6 +12,8 @@ inline constexpr double most_first_runs = 50;
 // If nobody asked for the accuracy, they take less: so much work, some seconds, or if it is more, so many times that
 // price. After two that did not end, or left steps to another method, few of the next ones get any further.
 inline constexpr double unasked_work = 7e7, unasked_work_of_others = 5e6, most_unasked_runs = 4;
+// Refinements in a row by fixed steps that do not converge, or runs that do not end.
+inline constexpr int most_idle = 3;
 // A run that promises to be the last goes beyond the budget if it should cost at most `dearest_last` times the one
 // before, as one of order 8 by a thousandth of the local error. That price is known to about the margin.
 inline constexpr double dearest_last = 2.4, margin_of_last = 1.25;

@@ -27,8 +27,6 @@ constexpr double aim = 0.5;  // share of the accuracy that a further run aims at
 // twice as large (knobs.cpp), and fewer steps are rejected.
 constexpr double safety = 0.8;
 
-constexpr int most_idle = 3;  // refinements in a row by fixed steps that do not converge, or runs that do not end
-
 class Search {
  public:
   Search(const Scene& scene, const RunOptions& options, std::string& warnings)
@@ -129,11 +127,13 @@ Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool 
     if (std::abs(frame.time - static_cast<double>(attempt.frames.size()) * interval) < 1e-6 * interval)
       attempt.frames.push_back(frame);
     attempt.energy_share = so_far.balance.energy.share();
+    attempt.energy_shares.resize(attempt.frames.size(), attempt.energy_share);
     if (!knob.adaptive()) {
       attempt.price = price_of_fixed(knob, so_far);
       return attempt.price <= most && !(judged && differ(yardstick_, last, attempt));
     }
     if (judged && (attempt.foreseen = foreseen_distance(yardstick_, solved.duration, last, attempt)) > 0) return false;
+    if (judged) loosen(yardstick_, solved.duration, last, attempt);
     attempt.price = price_of_adaptive(so_far);
     const bool is_stiff = first_price_ > 0, rescued = so_far.counts.rescued > 0;
     if (is_stiff && rescued && attempt.price > unless_asked(work_if_rescued)) return false;
@@ -286,7 +286,7 @@ void Search::try_candidate(Integrator integrator, double most, double reach) {
     keep(Attempt(now));
     if (now.result.stopped && last.whole) break;  // it may go on from the last one
     const bool goes_on = share && in_reach(now, std::max(most, reach) - spent);
-    knob = goes_on ? finer(*knob, *share, shorter_after(now, scene_.duration)) : std::nullopt;
+    knob = goes_on ? finer(now.knob, *share, shorter_after(now, scene_.duration)) : std::nullopt;
     const double lacks = lacking_for_last(now, knob, std::min(left_, most - spent));
     extended_ |= lacks > 0, left_ += lacks, most += lacks;
     last = std::move(now), between = {};
