@@ -44,6 +44,12 @@ constexpr double tells = 0.25, most_growth = 2, further_growth = 0.5;
 // run before, and is to be within this share of the accuracy. Smaller changes are not worth while.
 constexpr double loosest_share = 0.01, times_foreseen = 4, aim_if_looser = 0.5, least_looser = 1.2;
 
+// Round-off of all steps spoils a run as much as this share of its start does, as seen of mechanisms whose starts are
+// symmetric.
+constexpr double round_off_of_steps = 2e-15;
+
+constexpr double stays = 1e-6;  // within this of its place, in the units of the yardstick
+
 // --- The next run.
 constexpr int shorter_for_rescued = 4, shorter_for_others = 2;
 constexpr double long_step = 0.4;  // of the duration
@@ -200,6 +206,26 @@ void judge_unlike(const Scene& scene, const Yardstick& yardstick, const Attempt&
   now.reached = !now.swings && balanced(scene, now) && now.achieved <= yardstick.asked();
   now.claimed = std::max(now.achieved, unseen_error(yardstick, now));
   if (now.reached) now.holds_until = scene.duration;
+}
+
+bool lingers(const Yardstick& yardstick, const Attempt& attempt) {
+  for (std::size_t k = 0; 4 * k <= attempt.frames.size(); ++k)
+    if (yardstick.apart(attempt.frames[0], attempt.frames[k]) > stays) return false;
+  return true;
+}
+
+double error_by_round_off(const Yardstick& yardstick, const Attempt& run, const Attempt& disturbed, std::size_t ends) {
+  return round_off_of_steps / disturbance * distance(yardstick, run, disturbed, ends).largest;
+}
+
+void limit_by_round_off(const Yardstick& yardstick, const Attempt& disturbed, Attempt& now) {
+  const double error = error_by_round_off(yardstick, now, disturbed);
+  now.achieved = std::max(now.achieved, error), now.claimed = std::max(now.claimed, error);
+  if (error <= yardstick.asked()) return;
+  now.reached = false;
+  std::size_t k = 0;
+  while (k + 1 < now.frames.size() && error_by_round_off(yardstick, now, disturbed, k + 1) <= yardstick.asked()) ++k;
+  now.holds_until = std::min(now.holds_until, now.frames[k].time);
 }
 
 bool differ(const Yardstick& yardstick, const Attempt& other, const Attempt& now) {

@@ -36,7 +36,8 @@ struct Attempt {
   bool knows_means = false;  // it would have reached the accuracy, but equal steps know the mean of a load alone
   // It aimed at the accuracy after a run that ended early, and the run before is too far off to measure it.
   bool unmeasured = false;
-  double foreseen = 0;  // distance from the run before at the end, if it made the run end early
+  bool disturbed = false;  // its masses: it only measures the next ones
+  double foreseen = 0;     // distance from the run before at the end, if it made the run end early
 };
 
 struct Distance {
@@ -65,6 +66,15 @@ bool converges(const Attempt& coarse, const Attempt& fine);
 void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse, const Attempt& between,
            Attempt& fine);
 void judge_unlike(const Scene& scene, const Yardstick& yardstick, const Attempt& other, Attempt& now);
+// For a quarter of the run bodies stay where they start, as near an unstable equilibrium: then all runs fall alike, by
+// the round-off of the start.
+bool lingers(const Yardstick& yardstick, const Attempt& attempt);
+// What round-off makes of a run up to so many ends of its intervals, by another one from a start that is disturbed by
+// `disturbance`. limit_by_round_off() lets the accuracy and the claim of `now` know it.
+inline constexpr double disturbance = 1e-13;
+double error_by_round_off(const Yardstick& yardstick, const Attempt& run, const Attempt& disturbed,
+                          std::size_t ends = std::numeric_limits<std::size_t>::max());
+void limit_by_round_off(const Yardstick& yardstick, const Attempt& disturbed, Attempt& now);
 // So far apart already that judge_unlike() will not find the accuracy reached.
 bool differ(const Yardstick& yardstick, const Attempt& other, const Attempt& now);
 // The distance at the end, foreseen from that up to now, if it shows that the two runs will not agree; else 0.

@@ -1,175 +1,23 @@
-// Candidates from the table of integrators, each refined until two of its runs agree.
+#include "runtime/tool/search/search.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <tuple>
 #include <utility>
 
 #include <cdot/methods.hpp>
 
-#include "runtime/tool/search/attempt.hpp"
-#include "runtime/tool/search/bounds.hpp"
-#include "runtime/tool/search/knobs.hpp"
-#include "runtime/tool/search/simulate.hpp"
 #include "runtime/tool/search/stiffness.hpp"
-#include "runtime/tool/search/work.hpp"
 
 namespace cdot {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 constexpr double aim = 0.5;  // share of the accuracy that a further run aims at
-// Of Paces. Steps that are shorter than the usual 0.9 err by (0.9 / 0.8)^8 = 2.6 times less, so local errors may be
-// twice as large (knobs.cpp), and fewer steps are rejected.
-constexpr double safety = 0.8;
 
-class Search {
- public:
-  Search(const Scene& scene, const RunOptions& options, std::string& warnings)
-      : scene_(scene), options_(options), warnings_(warnings), yardstick_(scene), all_(evaluations_of_all(scene)) {
-    const double steps = scene.duration / default_step * all_;
-    least_left_ = most_millisecond_runs * price_of_step(row_of(Integrator::euler)) * steps;
-    left_ = options.search_work / work_of_evaluation(scene);
-    least_left_ = std::min(left_, least_left_);
-  }
-
-  RunResult run();
-
- private:
-  std::optional<double> next_share(const Attempt& last, const Attempt& now, int& idle);
-  void try_candidate(Integrator integrator, double most, double reach = 0);
-  void try_stiff(double most);
-  bool explicit_steps_are_too_dear(double most) const {
-    return yardstick_.of_size() && first_price_ > std::min(left_, most);
-  }
-  void try_even_steps(const Attempt& even);
-  Attempt attempt(const Try& knob, double most, const Attempt& last, bool judged);
-  void judge_by_another_method(Attempt& now, double most);
-  void keep(Attempt&& attempt);
-  void bound_budget(const Attempt& now);
-  bool balanced(const Attempt& attempt) const { return cdot::balanced(scene_, attempt); }
-  bool out_of_budget() const { return left_ <= 0; }
-  // RunOptions::most_evaluations are those of all runs.
-  double left_for_all() const { return options_.most_evaluations - price_; }
-  bool done() const { return stopped_ || given_up_ || best_.reached || out_of_budget(); }
-  bool in_reach(const Attempt& now, double most) const;
-  double price_after(const Attempt& last, const Try& knob) const;
-  double lacking_for_last(const Attempt& now, const std::optional<Try>& next, double rest) const;
-  // Of this share of the steps.
-  double price_of_fixed(const Try& knob, const RunResult& so_far, double share = 1) const {
-    return std::max(share * price_of(knob), static_cast<double>(so_far.solves));
-  }
-  static double price_of_adaptive(const RunResult& so_far) {
-    return static_cast<double>(so_far.counts.evaluations + so_far.solves);
-  }
-  double price_of(const Try& knob) const { return price_of_step(knob.row()) * knob.steps() * all_; }
-  Choice choice_of(const Attempt& attempt) const;
-
-  // So much work, in evaluations, if nobody asked for the accuracy; else without a bound.
-  double unless_asked(double work) const { return yardstick_.of_size() ? work / work_of_evaluation(scene_) : infinity; }
-
-  // A candidate that may go on with a larger budget.
-  struct Begun {
-    Attempt last;
-    std::optional<Try> next;
-    int idle = 0;
-    bool promises(double duration, double most) const;
-  };
-
-  const Scene& scene_;
-  const RunOptions& options_;
-  std::string& warnings_;
-  Yardstick yardstick_;
-  double all_;                 // evaluations_of_all()
-  double left_;                // of the budget
-  double unasked_ = infinity;  // for all runs, if nobody asked for the accuracy
-  double least_left_;          // for all other candidates, when the first has a price
-  Attempt best_;
-  Begun begun_;                                       // the last candidate
-  double stiff_at_start_ = 0, limited_at_start_ = 0;  // StiffStart
-  double first_price_ = 0;  // foreseen, of explicit steps that became dear; while stiff candidates run
-  double stiff_price_ = 0;  // the part of it that stiffness explains
-  bool may_be_dear_ = true, dear_ = false, stopped_ = false, given_up_ = false;
-  bool extended_ = false;         // the budget, once
-  bool sensitive_ = false;        // refined in vain: the motion itself forbids more
-  int runs_ = 0, of_others_ = 0;  // of these, some did not end or left steps to another method
-  double price_ = 0, cpu_ = 0;    // of all runs
-};
-
-// Follows the pace of the `last` run. If it is judged by that run, it ends early where the two will not agree: by
-// Attempt::foreseen, or fixed steps where they differ.
-Attempt Search::attempt(const Try& knob, double most, const Attempt& last, bool judged) {
-  Attempt attempt;
-  attempt.knob = knob, attempt.dear = dear_, attempt.swings = swings(knob, limited_at_start_);
-  if (knob.adaptive())
-    attempt.paces = std::make_shared<Paces>(knob.local_error, safety, scene_.duration / knob.least_steps);
-  if (last.whole && knob.adaptive()) attempt.paced_by = last.paces;
-  Scene solved = solved_by(choice_of(attempt), scene_);
-  solved.step = scene_.duration / knob.steps();
-  attempt.full = runs_ > 0 && knob.intervals == intervals_of_own_steps;
-  RunOptions options;
-  if (attempt.full) {
-    options = options_;
-    options.from = {};
-    if (options_.row) options.row = [&](const Frame& frame) { attempt.rows.push_back(frame); };
-  }
-  if (may_be_dear_) options.diagnose_times = {2 * solved.duration};  // only if the run is stopped
-  options.paced_by = attempt.paced_by.get(), options.paces = attempt.paces.get();
-  options.progress = options_.progress, options.estimates_error = false;
-  options.doing = name_of(knob) + ": ";
-  options.most_evaluations = std::min(left_for_all(), knob.adaptive() ? most : infinity);
-  const double interval = solved.duration / knob.intervals;
-  options.look = [&](const Frame& frame, const RunResult& so_far) {
-    if (std::abs(frame.time - static_cast<double>(attempt.frames.size()) * interval) < 1e-6 * interval)
-      attempt.frames.push_back(frame);
-    attempt.energy_share = so_far.balance.energy.share();
-    attempt.energy_shares.resize(attempt.frames.size(), attempt.energy_share);
-    if (!knob.adaptive()) {
-      attempt.price = price_of_fixed(knob, so_far);
-      return attempt.price <= most && !(judged && differ(yardstick_, last, attempt));
-    }
-    if (judged && (attempt.foreseen = foreseen_distance(yardstick_, solved.duration, last, attempt)) > 0) return false;
-    if (judged) loosen(yardstick_, solved.duration, last, attempt);
-    attempt.price = price_of_adaptive(so_far);
-    const bool is_stiff = first_price_ > 0, rescued = so_far.counts.rescued > 0;
-    if (is_stiff && rescued && attempt.price > unless_asked(work_if_rescued)) return false;
-    const double foreseen = frame.time > 0 ? attempt.price * solved.duration / frame.time : 0;
-    const double mechanisms = yardstick_.mechanisms();
-    if (!may_be_dear_ || attempt.price < suspicious * mechanisms || foreseen < dear * mechanisms)
-      return attempt.price <= most;
-    first_price_ = foreseen, dear_ = true;
-    return false;
-  };
-  std::string ignored;
-  attempt.result = run_once(solved, options, runs_ == 0 ? warnings_ : ignored);
-  const RunResult& result = attempt.result;
-  const double share = static_cast<double>(result.steps) / knob.steps();
-  attempt.price = knob.adaptive() ? price_of_adaptive(result) : price_of_fixed(knob, result, share);
-  // A bound that is met within a step leaves that one to another method.
-  attempt.left_steps = result.counts.rescued - (attempt.price > options.most_evaluations ? 1 : 0);
-  stiff_price_ = stiff_price(scene_, solved.step, result.diagnosis);
-  attempt.whole = result.finite && !result.failed_step && !result.stopped && !result.interrupted;
-  stopped_ = result.interrupted;
-  ++runs_;
-  may_be_dear_ = false;
-  price_ += attempt.price, left_ -= attempt.price, cpu_ += result.cpu;
-  given_up_ = left_for_all() < 0;
-  return attempt;
-}
-
-// Steps that end where numbers in time have kinks may be the same at every local error. Two runs by them agree,
-// whatever their error; one of another order does not.
-void Search::judge_by_another_method(Attempt& now, double most) {
-  Try other = now.knob;
-  other.integrator = now.knob.integrator == Integrator::dop853 ? Integrator::rk4 : Integrator::dop853;
-  const Attempt check = attempt(other, most, {}, false);
-  if (!check.whole || check.result.counts.rescued > 0) return;
-  judge_unlike(scene_, yardstick_, check, now);
-}
+}  // namespace
 
 // The better of two: a run that reached the accuracy, then one that holds it longer, then any that has ended.
 void Search::keep(Attempt&& attempt) {
@@ -250,12 +98,12 @@ void Search::try_candidate(Integrator integrator, double most, double reach) {
   const bool adaptive = row_of(integrator).level == Level::acceleration;
   std::optional<Try> knob =
       first_try(integrator, yardstick_.asked(), !adaptive || stiff_at_start_ <= suspicious * yardstick_.mechanisms());
-  Attempt last, between;  // the second has ended early
+  Attempt first, last, between;  // the last of these has ended early
   double spent = 0;
   int idle = 0;
   bool may_end_early = adaptive;
   if (begun_.last.whole && begun_.last.knob.integrator == integrator)
-    knob = begun_.next, last = std::move(begun_.last), idle = begun_.idle;
+    knob = begun_.next, first = std::move(begun_.first), last = std::move(begun_.last), idle = begun_.idle;
   while (knob && !done() && !sensitive_) {
     if (!knob->adaptive() && spent + price_after(last, *knob) > most) break;
     given_up_ = !knob->adaptive() && price_of(*knob) > left_for_all();
@@ -282,6 +130,7 @@ void Search::try_candidate(Integrator integrator, double most, double reach) {
                now.price <= even * yardstick_.mechanisms())
         try_even_steps(now);
     }
+    if (now.reached && adaptive && (!last.disturbed || lingers(yardstick_, first))) judge_round_off(first, now);
     const std::optional<double> share = next_share(last, now, idle);
     keep(Attempt(now));
     if (now.result.stopped && last.whole) break;  // it may go on from the last one
@@ -289,9 +138,10 @@ void Search::try_candidate(Integrator integrator, double most, double reach) {
     knob = goes_on ? finer(now.knob, *share, shorter_after(now, scene_.duration)) : std::nullopt;
     const double lacks = lacking_for_last(now, knob, std::min(left_, most - spent));
     extended_ |= lacks > 0, left_ += lacks, most += lacks;
+    if (now.disturbed) first = now;
     last = std::move(now), between = {};
   }
-  begun_ = {std::move(last), knob, idle};
+  begun_ = {std::move(first), std::move(last), knob, idle};
 }
 
 // After a run that ended well, or that would have ended for this price.
@@ -350,6 +200,8 @@ RunResult Search::run() {
       if (!done()) try_candidate(row.integrator, left_);
     }
   }
+  // Where no runs agree to the end, some agree longest by chance.
+  if (!done() && best_.holds_until > 0) limit_by_round_off(best_);
   RunResult result = std::move(best_.result);
   const Choice choice = choice_of(best_);
   if (!best_.full || !options_.from.empty()) {
@@ -388,8 +240,6 @@ Choice Search::choice_of(const Attempt& attempt) const {
   choice.cpu_before = cpu_ - attempt.result.cpu;
   return choice;
 }
-
-}  // namespace
 
 RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings) {
   if (!chooses_method(scene)) return run_once(scene, options, warnings);

@@ -9,7 +9,8 @@ namespace cdot::test::measured_search_test {
 namespace {
 
 // The second run ends early, and the third is aimed at the accuracy. The first one is more than a radian off and cannot
-// tell whether it got there: a fourth run that is a little finer does, for less than a half more.
+// tell whether it got there: a fourth run that is a little finer does, for less than a half more. Then the first one
+// runs again, disturbed.
 TEST(SearchedAccuracy, MeasuresAnAimedRunByOneALittleFiner) {
   const Scene scene = scene_named("spatial/torque_free_body");
   std::string warnings;
@@ -26,7 +27,7 @@ TEST(SearchedAccuracy, MeasuresAnAimedRunByOneALittleFiner) {
   for (std::size_t k = 0; k < rows.size(); ++k) off = std::max(off, Yardstick(scene).apart(rows[k], truth[k]));
   fmt::print("  {} and {} evaluations, {:.1e} off, {:.1e} claimed\n", choice.evaluations_before, choice.evaluations,
              off, choice.achieved);
-  EXPECT_EQ(choice.runs_before, 3);
+  EXPECT_EQ(choice.runs_before, 4);
   EXPECT_TRUE(choice.reached);
   EXPECT_LT(off, choice.achieved);
   EXPECT_LT(choice.evaluations, 1.15 * static_cast<double>(choice.evaluations_before));
