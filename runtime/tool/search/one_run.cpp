@@ -83,6 +83,7 @@ void Search::finish(Attempt& attempt, const Scene& solved, RunOptions options, d
     if (std::abs(frame.time - static_cast<double>(attempt.frames.size()) * interval) < 1e-6 * interval)
       attempt.frames.push_back(frame);
     attempt.energy_share = so_far.balance.energy.share();
+    attempt.result.counts = so_far.counts;
     attempt.energy_shares.resize(attempt.frames.size(), attempt.energy_share);
     if (!knob.adaptive()) {
       attempt.price = price_of_fixed(knob, so_far);
