@@ -275,12 +275,17 @@ void keep_start(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
 template <class S>
 void go_back(WorldData<S>& world, Island<S>& island) {
   set_numbers(world, island, island.flow.start.data());
-  // Sweeps start from the last forces: they take many to forget those of a step that was far too long.
-  if (!island.solver->exact) fill_lambda(island, typename S::Scalar(0));
   island.residual = island.flow.start_residual;
   island.left = island.flow.start_left;
   restore_turns(island);
   halt_immovable_bodies(world, island);
+}
+
+template <class S>
+void reject_step(WorldData<S>& world, Island<S>& island) {
+  ++world.counts->rejected;
+  go_back(world, island);
+  if (!island.solver->exact || !island.loads.empty()) fill_lambda(island, typename S::Scalar(0));
 }
 
 #define CDOT_INSTANTIATE(S)                                                                               \
@@ -293,6 +298,7 @@ void go_back(WorldData<S>& world, Island<S>& island) {
   template void prepare_runge_kutta(Island<S>&, const RungeKuttaOf<S>&);                                  \
   template void keep_start(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, bool);           \
   template void go_back(WorldData<S>&, Island<S>&);                                                       \
+  template void reject_step(WorldData<S>&, Island<S>&);                                                   \
   template bool take_stages(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);     \
   template void project_end(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                \
   template double error_of_step(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar, double);             \

@@ -24,6 +24,10 @@ void keep_start(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
                 bool goes_on);
 template <class S>
 void go_back(WorldData<S>& world, Island<S>& island);
+// Goes back from a step whose error is too large. Sweeps, and loads of friction, start from the last forces: those of a
+// step that was far too long would mislead them.
+template <class S>
+void reject_step(WorldData<S>& world, Island<S>& island);
 
 // Numbers of one body in the arrays of a Flow.
 template <class S>

@@ -124,8 +124,7 @@ typename S::Scalar take_fixed_step(WorldData<S>& world, Island<S>& island, const
       continue;
     }
     if (error <= 1) return h;
-    ++world.counts->rejected;
-    go_back(world, island);
+    reject_step(world, island);
     if (h >= T(2 * smallest_part) * whole) h /= 2;
     else if (share == careful) share = absurd;
     else return T(0);
@@ -215,10 +214,9 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
       return h;
     }
     if (paced) flow.next_step = std::min<T>(flow.next_step, T(paced->next(double(time), best)));
-    ++world.counts->rejected;
+    reject_step(world, island);
     astray = std::isinf(error) ? astray + 1 : 0;
     h = length_of_step<T>(flow.next_step, left, reach);
-    go_back(world, island);
   }
   flow.next_step = proposed;
   return T(0);
