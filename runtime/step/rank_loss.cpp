@@ -27,6 +27,7 @@ constexpr int most_passings = 16;  // in one step, of several loops
 constexpr double shortest = 0.5, longest_share = 1.3;
 constexpr int lengths_tried = 52;
 constexpr double least_share = 0.2;  // of a length, for the next attempt
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Where a row passes a loss of rank: `at` in units of the step, `slope` of the distance per step.
 struct Passing {
@@ -57,7 +58,7 @@ Passing passing_of(const RungeKutta<Real>& method, const std::vector<double>& di
 // it to the next, whose length is taken as 1: otherwise ever shorter steps would approach the passing.
 template <class Real>
 double distance_of(const RungeKutta<Real>& method, const Passing* begin, const Passing* end, double share) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = infinity;
   for (const Passing* one = begin; one != end; ++one)
     for (int j = 1; j < method.stages; ++j) {
       const double c = double(method.c[j]), after = one->at - share;
@@ -97,7 +98,7 @@ double way_of_row(WorldData<S>& world, Island<S>& island, int row) {
 // it.
 template <class S>
 double now_over(const Island<S>& island, int row, double least, double diagonal) {
-  if (island.system.dependent(row)) return std::numeric_limits<double>::infinity();
+  if (island.system.dependent(row)) return infinity;
   return std::sqrt(double(island.system.pivot(row)) / diagonal / std::max(least, 1e-300));
 }
 
@@ -112,9 +113,11 @@ template <class S>
 Distances distances_of(Island<S>& island, int row, int stages) {
   const int rows = island.system.rows();
   const auto at = [&](const std::vector<double>& of, int stage) { return of[static_cast<size_t>(stage * rows + row)]; };
-  const double largest = double(island.flow.largest_diagonals[static_cast<size_t>(row)]);
-  double smallest = largest;
-  for (int j = 1; j < stages; ++j) smallest = std::min(smallest, at(island.flow.diagonals, j));
+  double largest = double(island.flow.largest_diagonals[static_cast<size_t>(row)]), smallest = infinity;
+  for (int j = 1; j < stages; ++j) {
+    const double diagonal = at(island.flow.diagonals, j);
+    largest = std::max(largest, diagonal), smallest = std::min(smallest, diagonal);
+  }
   const bool vanishes = smallest < vanishing * vanishing * largest;
   Distances all{island.flow.of_row};
   all.diagonal = vanishes ? largest : double(island.system.diagonal(row));
@@ -194,10 +197,17 @@ void note_pivots(Island<S>& island, int stage) {
   for (int r = 0; r < rows; ++r) {
     const bool counts = !system.fixed[r] && !system.broken[r];
     to[r] = !counts ? 1.0 : system.dependent(r) ? 0.0 : double(system.pivot(r) / system.diagonal(r));
-    auto& largest = island.flow.largest_diagonals[static_cast<size_t>(r)];
-    if (counts) largest = std::max(largest, typename S::Scalar(system.diagonal(r)));
-    diagonal[r] = double(counts ? system.diagonal(r) : largest);
+    diagonal[r] = double(counts ? system.diagonal(r) : island.flow.largest_diagonals[static_cast<size_t>(r)]);
   }
+}
+
+template <class S>
+void keep_largest_diagonals(Island<S>& island) {
+  if (!island.solver->exact) return;
+  auto& largest = island.flow.largest_diagonals;
+  const size_t rows = largest.size();
+  for (size_t k = rows; k < island.flow.diagonals.size(); ++k)
+    largest[k % rows] = std::max(largest[k % rows], typename S::Scalar(island.flow.diagonals[k]));
 }
 
 template <class S>
@@ -245,6 +255,7 @@ CDOT_FOR_EACH_NUMBER(CDOT_INSTANTIATE)
 #define CDOT_INSTANTIATE(S)                                            \
   template void prepare_rank_loss(Island<S>&, const RungeKuttaOf<S>&); \
   template void note_pivots(Island<S>&, int);                          \
+  template void keep_largest_diagonals(Island<S>&);                    \
   template bool tries_with_care(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar&, double&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -20,6 +20,9 @@ void prepare_rank_loss(Island<S>& island, const RungeKuttaOf<S>& method);
 // Notes the pivots of K after the accelerations of a stage.
 template <class S>
 void note_pivots(Island<S>& island, int stage);
+// Of the step that was just taken. Stages of one that is rejected may be anywhere, and their rows of any size.
+template <class S>
+void keep_largest_diagonals(Island<S>& island);
 
 // True if the attempt at a step of h came near a loss of rank of K: goes back for one with projected stages, of a
 // length h that leads them away from it; 0 if the method cannot pass there. `noise`: magnified round-off that the

@@ -352,6 +352,7 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
       continue;
     }
     flow.longest = std::max<T>(flow.longest, flow.length);
+    keep_largest_diagonals(island);
     flow.slivers = flow.length < T(sliver) * flow.longest ? flow.slivers + 1 : 0;
     if (passed_event(flow)) {
       flow.length = go_to_event(world, island, method, time, flow.length);

@@ -4,7 +4,7 @@
 #include <cdot/methods.hpp>
 
 #include "tests/runtime/mechanisms.hpp"
-#include "tests/runtime/support.hpp"
+#include "tests/runtime/spatial_support.hpp"
 
 namespace cdot::test {
 namespace {
@@ -46,6 +46,36 @@ void leave_no_forces(Solver solver, double mu) {
 // The forces of a step that was far too long are no start for what searches those of the next one.
 TEST(RejectedSteps, LeaveSweepsNoForces) { leave_no_forces(Solver::iterative, 0); }
 TEST(RejectedSteps, LeaveFrictionNoLoads) { leave_no_forces(Solver::direct, 0.1); }
+
+// The same crank in space, where 3 of 20 rows are redundant.
+void add_flat_slider_crank(SpatialWorld<double>& world, double w) {
+  const auto bar = [&](double begin, double end, double spin, double inertia) {
+    SpatialBodyDefinition d{.x = (begin + end) / 2, .vz = 0.153 * w / 2, .wy = -spin, .mass = 0.038};
+    d.inertia = {inertia / 10, inertia, inertia, 0, 0, 0};
+    return world.add_body(d);
+  };
+  const int crank = bar(0, 0.153, w, 7.4e-5), rod = bar(0.153, 0.459, -w / 2, 5.9e-4);
+  SpatialBodyDefinition d{.x = 0.459, .mass = 0.076};
+  d.inertia = {2.7e-7, 2.7e-6, 2.7e-6, 0, 0, 0};
+  const int slider = world.add_body(d);
+  const std::vector<double> axis = {0, -1, 0};
+  join(world, "revolute", world.ground(), crank, {{"pa", {0, 0, 0}}, {"fa", axis}});
+  join(world, "revolute", crank, rod, {{"pa", {0.0765, 0, 0}}, {"fa", axis}});
+  join(world, "revolute", rod, slider, {{"pa", {0.153, 0, 0}}, {"fa", axis}});
+  join(world, "prismatic", slider, world.ground(), {{"pa", {0, 0, 0}}, {"fa", {1, 0, 0}}});
+}
+
+// Rows of joints that are torn apart are of any size. Beside it, those of the right poses would seem to vanish.
+TEST(RejectedSteps, LeaveRowsTheirSize) {
+  for (const double step : {0.2, 0.1, 0.01}) {
+    Settings s = settings(Solver::direct, Drift::projection, 0);
+    s.integrator = Integrator::dop853, s.local_error = 3e-4, s.gravity_z = -9.81;
+    SpatialWorld<double> world(s);
+    add_flat_slider_crank(world, 150);
+    for (int k = 0; k < std::lround(0.2 / step); ++k) ASSERT_TRUE(world.step(step));
+    EXPECT_LT(std::abs(world.balance().method()), 0.01) << step;
+  }
+}
 
 }  // namespace
 }  // namespace cdot::test
