@@ -53,6 +53,7 @@ constexpr double stays = 1e-6;  // within this of its place, in the units of the
 // --- The next run.
 constexpr int shorter_for_rescued = 4, shorter_for_others = 2;
 constexpr double long_step = 0.4;  // of the duration
+constexpr double unresolved = 1;   // [rad] of an oscillation in a step
 // After a run that ends early, since its distance from the run before will be too large, the next one aims at a local
 // error that is smaller by this factor at least, and by that of a second run at most. Where that is not enough, the run
 // before measures nothing: the next one is a plain refinement.
@@ -159,6 +160,14 @@ bool swings(const Try& knob, double limited) {
   return !knob.adaptive() && knob.integrator != Integrator::euler && limited * intervals_of_own_steps > knob.steps();
 }
 
+void see_damped(const StiffStart& start, double step, Attempt& attempt) {
+  if (attempt.knob.adaptive() || start.omega * step <= unresolved) return;
+  double lost = std::abs(attempt.result.balance.energy.amount);
+  for (const WorkOfSource& source : attempt.result.work)  // steps that are too long for a spring damp it, too
+    if (source.name == "spring") lost += std::abs(source.work);
+  attempt.damped = std::sqrt(lost / start.energy);
+}
+
 bool balanced(const Scene& scene, const Attempt& attempt) {
   return attempt.result.balance.energy.share() <= scene.energy_tolerance;
 }
@@ -184,6 +193,7 @@ void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse
   const bool falls = coarse.apart >= gained * apart;
   const bool seems_to_converge = fine.knob.adaptive() || fine.achieved < surely * yardstick.asked() ||
                                  (std::isfinite(coarse.achieved) && converges(coarse, fine) && falls);
+  fine.achieved = std::max(fine.achieved, fine.damped);
   // Two runs may agree by chance on steps that were left to another method: no gain is sure there.
   const bool rescued = fine.result.counts.rescued > 0;
   const bool agrees = known && seems_to_converge && !fine.swings && balanced(scene, fine) &&
@@ -201,7 +211,7 @@ void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse
 
 void judge_unlike(const Scene& scene, const Yardstick& yardstick, const Attempt& other, Attempt& now) {
   const auto [apart, agree_until] = distance(yardstick, other, now);
-  now.achieved = std::max({least_sure, unlike * apart, refusing_error(yardstick, now)});
+  now.achieved = std::max({least_sure, unlike * apart, refusing_error(yardstick, now), now.damped});
   now.holds_until = agree_until;
   now.reached = !now.swings && balanced(scene, now) && now.achieved <= yardstick.asked();
   now.claimed = std::max(now.achieved, unseen_error(yardstick, now));

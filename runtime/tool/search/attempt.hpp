@@ -9,6 +9,7 @@
 
 #include "runtime/tool/run/simulate.hpp"
 #include "runtime/tool/search/knobs.hpp"
+#include "runtime/tool/search/stiffness.hpp"
 #include "runtime/tool/search/yardstick.hpp"
 
 namespace cdot {
@@ -33,6 +34,7 @@ struct Attempt {
   bool reached = false;
   bool dear = false;         // explicit steps seemed dear, as where a fast oscillation bounds their length
   bool swings = false;       // see swings()
+  double damped = 0;         // see see_damped()
   bool knows_means = false;  // it would have reached the accuracy, but equal steps know the mean of a load alone
   // It aimed at the accuracy after a run that ended early, and the run before is too far off to measure it.
   bool unmeasured = false;
@@ -57,6 +59,9 @@ bool same_parts(const Attempt& a, const Attempt& b);
 // Equal steps for which a force with limits is too stiff throw it from limit to limit. Two such runs may agree on that.
 // `limited`: StiffStart::limited.
 bool swings(const Try& knob, double limited);
+// Equal steps damp an oscillation that they do not resolve, and two such runs agree on its mean. Its amplitude at most,
+// from the energy that was lost.
+void see_damped(const StiffStart& start, double step, Attempt& attempt);
 // The energy's error is within the scene's tolerance.
 bool balanced(const Scene& scene, const Attempt& attempt);
 // The distance of a run from a coarser one has fallen well below the one before.

@@ -25,7 +25,7 @@ constexpr double margin_of_repeated = 1.2;  // of its price, which is nearly tha
 
 Attempt Search::begun(const Try& knob) const {
   Attempt attempt;
-  attempt.knob = knob, attempt.dear = dear_, attempt.swings = swings(knob, limited_at_start_);
+  attempt.knob = knob, attempt.dear = dear_, attempt.swings = swings(knob, start_.limited);
   if (knob.adaptive())
     attempt.paces = std::make_shared<Paces>(knob.local_error, safety, scene_.duration / knob.least_steps);
   return attempt;
@@ -108,6 +108,7 @@ void Search::finish(Attempt& attempt, const Scene& solved, RunOptions options, d
   attempt.price = knob.adaptive() ? price_of_adaptive(result) : price_of_fixed(knob, result, share);
   // A bound that is met within a step leaves that one to another method.
   attempt.left_steps = result.counts.rescued - (attempt.price > options.most_evaluations ? 1 : 0);
+  see_damped(start_, solved.step, attempt);
   stiff_price_ = stiff_price(scene_, solved.step, result.diagnosis);
   attempt.whole = result.finite && !result.failed_step && !result.stopped && !result.interrupted;
   stopped_ = result.interrupted;

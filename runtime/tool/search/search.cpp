@@ -61,7 +61,7 @@ bool Search::in_reach(const Attempt& now, double most) const {
 // first run located an event: they pass it between their ends, where two runs are not compared. If they agree with a
 // first run of another method, they are delivered.
 void Search::try_even_steps(const Attempt& even) {
-  const bool is_slow = stiff_at_start_ <= slow * yardstick_.mechanisms();
+  const bool is_slow = start_.price <= slow * yardstick_.mechanisms();
   Attempt now = attempt({is_slow ? Integrator::rattle : Integrator::implicit}, infinity, even, true);
   if (now.whole && now.result.counts.rescued == 0) judge_unlike(scene_, yardstick_, even, now);
   keep(std::move(now));
@@ -97,7 +97,7 @@ double Search::lacking_for_last(const Attempt& now, const std::optional<Try>& ne
 void Search::try_candidate(Integrator integrator, double most, double reach) {
   const bool adaptive = row_of(integrator).level == Level::acceleration;
   std::optional<Try> knob =
-      first_try(integrator, yardstick_.asked(), !adaptive || stiff_at_start_ <= suspicious * yardstick_.mechanisms());
+      first_try(integrator, yardstick_.asked(), !adaptive || start_.price <= suspicious * yardstick_.mechanisms());
   Attempt first, last, between;  // the last of these has ended early
   double spent = 0;
   int idle = 0;
@@ -181,8 +181,8 @@ RunResult Search::run() {
   std::ranges::stable_sort(candidates, std::greater<>(), [](const IntegratorRow& row) {
     return std::tuple(row.level == Level::acceleration, row.order, row.stiffens);
   });
-  const StiffStart start = stiffness_at_start(scene_);
-  first_price_ = stiff_at_start_ = start.price, limited_at_start_ = start.limited;
+  start_ = stiffness_at_start(scene_, yardstick_);
+  first_price_ = start_.price;
   if (first_price_ > dear * yardstick_.mechanisms()) {
     may_be_dear_ = false, dear_ = true;
     try_stiff(share_of_surely_stiff * first_price_);

@@ -85,8 +85,8 @@ class Search {
   double unasked_ = infinity;  // for all runs, if nobody asked for the accuracy
   double least_left_;          // for all other candidates, when the first has a price
   Attempt best_;
-  Begun begun_;                                       // the last candidate
-  double stiff_at_start_ = 0, limited_at_start_ = 0;  // StiffStart
+  Begun begun_;  // the last candidate
+  StiffStart start_;
   double first_price_ = 0;  // foreseen, of explicit steps that became dear; while stiff candidates run
   double stiff_price_ = 0;  // the part of it that stiffness explains
   bool may_be_dear_ = true, dear_ = false, stopped_ = false, given_up_ = false;

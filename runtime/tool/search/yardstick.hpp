@@ -1,6 +1,7 @@
 // The error of a trajectory in the units of the accuracy that was asked for.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "runtime/tool/run/frame.hpp"
@@ -15,6 +16,7 @@ class Yardstick {
   double asked() const { return asked_; }
   bool of_size() const { return of_size_; }
   int mechanisms() const { return mechanisms_; }
+  double size(std::size_t body) const { return size_[body]; }  // of its mechanism; 0: not known yet
   // This share of the size of the largest mechanism, or of a radian if that is more.
   double of_largest(double share) const { return share * largest_; }
 
