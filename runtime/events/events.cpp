@@ -109,7 +109,8 @@ typename S::Scalar margin_within(const Batch<S>& batch, int i, const Guard<typen
   const T force = batch.lambda[i];
   if (batch.law->cone_rows > 0) return infinite<T>;
   switch (batch.mode[i]) {
-    case Mode::off: return guard.gap() / resolution.C;
+    case Mode::off:  // ends that have met since: there was no way between them
+      return (guard.bilateral() ? -std::abs(guard.off_by) : guard.gap()) / resolution.C;
     case Mode::held:
       return std::min(force - guard.lower, guard.upper - force) / (resolution.force + slight<T> * std::abs(force));
     case Mode::pushed:

@@ -24,6 +24,13 @@ Profile rise(double b, double w) {
   });
 }
 
+// a + b cos(w t)
+Profile cosine(double a, double b, double w) {
+  return Profile::function([=](double t) -> ProfileValue {
+    return {a + b * std::cos(w * t), -b * w * std::sin(w * t), -b * w * w * std::cos(w * t)};
+  });
+}
+
 // A World in the plane or in space, and one body along x.
 template <class S>
 struct Track {
@@ -177,6 +184,18 @@ TEST(MovingEnds, EndsThatCrossMoveAsTheLowerOne) {
   for (const IntegratorRow& row : integrator_rows) {
     expect_held_at_lower_end<Planar<double>>(row.integrator);
     expect_held_at_lower_end<Spatial<double>>(row.integrator);
+  }
+}
+
+// A falling block passes an end before the ends cross, both within a step whose error is none.
+TEST(MovingEnds, EndsThatCrossWithinAStepAreMet) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::dop853, Integrator::radau5}) {
+    Track<Planar<double>> track(integrator, 4, 0, 9.81);
+    const int rail = track.rail();
+    add_effect(track.world, rail, "slide",
+               SpecEffect{"limit", {in_time("lower", {cosine(0, -0.2, 4)}), in_time("upper", {cosine(0.1, 0.2, 4)})}});
+    track.run(0.6, 0.6);
+    EXPECT_NEAR(track.world.coordinate(rail, "slide"), -0.2 * std::cos(2.4), 1e-6) << name_of(integrators, integrator);
   }
 }
 
