@@ -162,9 +162,8 @@ bool swings(const Try& knob, double limited) {
 
 void see_damped(const StiffStart& start, double step, Attempt& attempt) {
   if (attempt.knob.adaptive() || start.omega * step <= unresolved) return;
-  double lost = std::abs(attempt.result.balance.energy.amount);
-  for (const WorkOfSource& source : attempt.result.work)  // steps that are too long for a spring damp it, too
-    if (source.name == "spring") lost += std::abs(source.work);
+  // Steps that are too long for a spring damp it, and that counts as its work.
+  const double lost = std::abs(attempt.result.balance.energy.amount) + attempt.result.balance.last.taken;
   attempt.damped = std::sqrt(lost / start.energy);
 }
 
