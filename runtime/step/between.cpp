@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include <cdot/spaces.hpp>
 
@@ -71,7 +73,12 @@ void interpolate(Flow<S>& flow, const RungeKuttaOf<S>& method) {
 
 // In these units an event was just passed.
 constexpr double just_passed = -3;
+constexpr double aim = 0.5 * (passed + just_passed);
 constexpr int most_searches = 60;  // for one event
+// A step of h misses its event by d. Along the rates of its end it gets there but for (d / h)^2 of the change of these
+// rates; this share of the local error at most.
+constexpr double share_of_move = 0.01;
+constexpr int most_corrections = 8;
 
 template <class T>
 double furthest(const StateArray<T>& chosen, const StateArray<T>& now) {
@@ -80,11 +87,27 @@ double furthest(const StateArray<T>& chosen, const StateArray<T>& now) {
   return worst;
 }
 
+template <class S>
+bool lies_at_event(const Flow<S>& flow) {
+  const double margin = furthest(flow.margins_chosen, flow.margins);
+  return margin < passed && margin >= just_passed;
+}
+
+// furthest() of the rows that have passed at Flow::high, before their events as well.
+template <class S>
+double nearest(const Flow<S>& flow) {
+  double least = std::numeric_limits<double>::infinity();
+  for (size_t k = 0; k < flow.high.size(); ++k) {
+    const double base = std::min(double(flow.margins_chosen[k]), 0.0);
+    if (double(flow.high[k]) - base < passed) least = std::min(least, double(flow.margins[k]) - base);
+  }
+  return least;
+}
+
 // The point between `low` and `high`, from 0 to 1, at which the first row has just passed its event, by linear
 // interpolation.
 template <class S>
 double first_event(const Flow<S>& flow) {
-  const double aim = 0.5 * (passed + just_passed);
   double first = 1;
   for (size_t k = 0; k < flow.high.size(); ++k) {
     const double base = std::min(double(flow.margins_chosen[k]), 0.0) + aim;
@@ -105,6 +128,95 @@ bool go_to(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
   return found;
 }
 
+// Where an event was found.
+template <class T>
+struct Sight {
+  T at;          // [s] from the start of the step; 0: nowhere
+  double slope;  // of nearest() over the last two looks [1/s]
+};
+
+// Looks for the first event within a step of h, of which Flow::low and Flow::margins have the margins at the ends.
+// go(at) finds the margins at a time after its start, or returns false.
+template <class S, class F>
+Sight<typename S::Scalar> search_event(Flow<S>& flow, typename S::Scalar h, F go) {
+  using T = typename S::Scalar;
+  flow.high.assign(flow.margins.begin(), flow.margins.end());
+  T low = 0, high = h, last = h;
+  double margin = nearest(flow), slope = 0;
+  for (int search = 0; search < most_searches; ++search) {
+    // Every third round bisects, in case linear interpolation stalls.
+    const double share = search % 3 == 2 ? 0.5 : std::clamp(first_event(flow), 0.001, 0.999);
+    const T at = low + T(share) * (high - low);
+    if (!(at > low && at < high)) break;
+    if (!go(at)) return {T(0), 0};
+    const double before = std::exchange(margin, nearest(flow));
+    slope = (margin - before) / double(at - std::exchange(last, at));
+    if (lies_at_event(flow)) return {at, slope};
+    const bool is_past = passed_event(flow);
+    (is_past ? high : low) = at;
+    (is_past ? flow.high : flow.low).assign(flow.margins.begin(), flow.margins.end());
+  }
+  return {go(high) ? high : T(0), slope};
+}
+
+// Moves the end of a step along its rates, for a time so short that they hardly change.
+template <class S>
+void move_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar end,
+              typename S::Scalar further) {
+  Flow<S>& flow = island.flow;
+  const auto* rate = flow.rates.data() + static_cast<size_t>(method.stages) * flow.now.size();
+  read_numbers(world, island, flow.now.data());
+  for (size_t k = 0; k < flow.now.size(); ++k) flow.now[k] += further * rate[k];
+  set_numbers(world, island, flow.now.data());
+  project_end(world, island, method, end + further);
+}
+
+// A step to the event that looks at the interpolant find, each for one evaluation where a step costs many. Gaps there
+// are open by more than events resolve, so the step misses the event by a little and is moved. 0 if that fails.
+template <class S>
+typename S::Scalar go_to_sighted_event(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
+                                       typename S::Scalar time, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  Flow<S>& flow = island.flow;
+  const Sight<T> sight = search_event(flow, h, [&](T at) {
+    look_between(world, island, method, time + h, h - at);
+    evaluate_anew(world, island, time + at);
+    island.factored = false;
+    note_rates(world, island);
+    accelerate(world, island, time + at);
+    measure_margins(world, island, time + at);
+    return true;
+  });
+  flow.end_kept = false;  // the step ends at the event
+  const T slight = T(std::sqrt(share_of_move * world.settings.local_error)) * h;
+  T at = sight.at, moved = 0;
+  double slope = sight.slope;
+  if (!go_to(world, island, method, time, at)) return T(0);
+  for (int correction = 0; correction < most_corrections; ++correction) {
+    const double margin = nearest(flow);
+    if (lies_at_event(flow)) return at;
+    const T further = T((aim - margin) / slope);
+    if (!(slope < 0) || !(at + further > T(0) && at + further < h)) break;
+    if (std::abs(moved += further) <= slight) move_end(world, island, method, time + at, further);
+    else if (!go_to(world, island, method, time, at + further)) return T(0);
+    else moved = T(0);
+    slope = (nearest(flow) - margin) / double(further);
+    at += further;
+  }
+  return T(0);
+}
+
+// The margins at the ends of a step, for a search.
+template <class S>
+bool go_to_ends(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+                typename S::Scalar h) {
+  go_back(world, island);
+  project(world, island, time, true);
+  measure_margins(world, island, time);
+  island.flow.low.assign(island.flow.margins.begin(), island.flow.margins.end());
+  return go_to(world, island, method, time, h);
+}
+
 }  // namespace
 
 template <class S>
@@ -116,26 +228,12 @@ template <class S>
 typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                typename S::Scalar time, typename S::Scalar h) {
   using T = typename S::Scalar;
-  Flow<S>& flow = island.flow;
-  flow.high.assign(flow.margins.begin(), flow.margins.end());
-  T low = 0, high = h;
-  for (int search = 0; search < most_searches; ++search) {
-    // Every third round bisects, in case linear interpolation stalls.
-    const double share = search % 3 == 2 ? 0.5 : std::clamp(first_event(flow), 0.001, 0.999);
-    const T at = low + T(share) * (high - low);
-    if (!(at > low && at < high)) break;
-    if (!go_to(world, island, method, time, at)) return T(0);
-    const double margin = furthest(flow.margins_chosen, flow.margins);
-    if (margin < passed) {
-      high = at;
-      flow.high.assign(flow.margins.begin(), flow.margins.end());
-      if (margin >= just_passed) return at;
-    } else {
-      low = at;
-      flow.low.assign(flow.margins.begin(), flow.margins.end());
-    }
+  if (world.settings.local_error > 0) {
+    const T at = go_to_sighted_event(world, island, method, time, h);
+    if (at > T(0)) return at;
+    if (!go_to_ends(world, island, method, time, h)) return T(0);
   }
-  return go_to(world, island, method, time, high) ? high : T(0);
+  return search_event(island.flow, h, [&](T at) { return go_to(world, island, method, time, at); }).at;
 }
 
 template <class S>
