@@ -74,7 +74,7 @@ struct Equations {
   std::vector<std::size_t> first_rows;   // by joint; the last one is the number of all rows
   Program guard;                         // by Runge-Kutta methods (methods/modes.hpp): q, v, time -> B
   Program carry;                         // q, time, J, lambda, force -> load: the forces with which bounds grow
-  Program resolve;                       // q, v, time, a, force, h -> of_value, of_rate, of_force: resolutions
+  Program resolve;                       // q, v, time, a, force, h -> of_value, of_rate, of_force, of_hop
 };
 // Of steps.
 std::vector<const Program*> programs_of_equations(const Equations& equations);

@@ -353,7 +353,7 @@ class HeaderWriter {
         "Their resolutions, in units of the relative one",
         "resolve(" + at + ", " + moving +
             ", const Velocity (&a)[bodies], const T (&force)[bounded], const T& h, T (&of_value)[bounded], T "
-            "(&of_rate)[bounded], T (&of_force)[bounded])",
+            "(&of_rate)[bounded], T (&of_force)[bounded], T (&of_hop)[bounded])",
         equations_.resolve);
     if (has().loads) write_carry(at);
     text_ += modes_of(has(), equations_.waits, equations_.cones, equations_.late, mechanism_.tolerance);

@@ -23,7 +23,7 @@ std::set<std::string> taken_names() {
       "smallest is_rate "
       "settle part_and_settle Guards Modes modes guard resolve force slight smaller gap stride replace furthest "
       "first_event go_to_event choose_modes decide stop_what_hits find_margins raise_resolutions hold_passed_ends "
-      "has_one_end is_equation is_endless of_value of_rate of_force latch events Events distances after until "
+      "has_one_end is_equation is_endless of_value of_rate of_force of_hop latch events Events distances after until "
       "go rescue improve stiffen weigh_effects farthest moved_energy hardly_moves drag "
       "advance pass tension stiffened inverse_of positive_part effect_rows Inertia W power before middle mean "
       "mean_of find_mean_spins missed side given end guess load from bonds Bonds snap strain struck Search RootSearch "

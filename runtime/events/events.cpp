@@ -58,7 +58,8 @@ bool offer_bounds(WorldData<S>& world, Island<S>& island) {
         if (batch.law->cone_rows > 0) return;
         const T missing = guard.rate - (batch.rate[i] + batch.bias[i]);
         const bool struck = batch.mode[i] == Mode::held;
-        const bool slow = std::abs(missing) <= T(4) * resolution.rate || struck;
+        const bool hops = guard.one_sided() && missing * missing <= resolution.hop;
+        const bool slow = std::abs(missing) <= T(4) * resolution.rate || hops || struck;
         batch.mode[i] = Mode::held;
         batch.lower[i] = guard.lower;
         batch.upper[i] = guard.upper;

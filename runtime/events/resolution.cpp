@@ -51,7 +51,7 @@ void find_resolution(WorldData<S>& world, const Island<S>& island, Batch<S>& bat
       K[most_rows * most_rows];
   batch.ops->dense(batch, slot, all, J, weighted, K, rows);
   for (int r = 0; r < rows; ++r) {
-    T c = 0, rate = 0, acceleration = 0, inverse_mass = 0;
+    T c = 0, rate = 0, acceleration = 0, along = 0, inverse_mass = 0;
     for (int k = 0; k < bodies; ++k) {
       const int body = batch.body[slot * bodies + k];
       if (all.immovable(body)) continue;
@@ -59,9 +59,10 @@ void find_resolution(WorldData<S>& world, const Island<S>& island, Batch<S>& bat
       c = std::max(c, slopes_of<S>(J + r * width + S::freedom * k).motion(T(island.size)));
       S::write(all.velocity[body], v), S::write(all.velocity_rate[body], dv);
       for (int i = 0; i < S::freedom; ++i) {
-        const T j = T(std::abs(J[r * width + S::freedom * k + i]));
+        const T slope = T(J[r * width + S::freedom * k + i]), j = std::abs(slope);
         if (i < S::lengths) linear = std::max(linear, std::abs(dv[i]));
         rate += j * std::abs(v[i]);
+        along += slope * dv[i];
         acceleration += j * (i < S::lengths ? std::abs(dv[i]) : std::max(std::abs(dv[i]), linear / island.size));
       }
       inverse_mass += all.inverse_mass[body].m;
@@ -69,10 +70,12 @@ void find_resolution(WorldData<S>& world, const Island<S>& island, Batch<S>& bat
     const T k = K[r * rows + r] > 0 ? T(K[r * rows + r]) : inverse_mass;  // no motion: bodies that never turn
     if (!(c > T(0))) c = change_far_away(world, island, batch, slot, r);
     if (!(c > T(0))) c = island.size;
-    acceleration = std::max(acceleration, k * std::abs(batch.lambda[slot * rows + r]));
+    const T by_force = k * std::abs(batch.lambda[slot * rows + r]);
+    acceleration = std::max(acceleration, by_force);
     rate = std::max({rate, std::sqrt(acceleration * c), std::numeric_limits<T>::epsilon() / slight<T> * c / h});
     resolution[r].C = slight<T> * c;
     resolution[r].rate = std::max(resolution[r].rate, slight<T> * rate);
+    resolution[r].hop = std::max(resolution[r].hop, T(6) * slight<T> * c * std::max(std::abs(along), by_force));
     resolution[r].force = std::max(resolution[r].force, slight<T> * (acceleration + rate * rate / c) / k);
   }
 }

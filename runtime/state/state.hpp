@@ -16,10 +16,11 @@ struct JointState {
   StateArray<double> parameters;
 };
 
-// Resolution of a guarded row: smaller differences of C [m, rad], its rate and its force count as 0.
+// Resolution of a guarded row: smaller differences of C [m, rad], its rate and its force count as 0. `hop`: one that
+// leaves its end at a rate of a smaller square, while something presses it back, returns before its way counts.
 template <class T>
 struct Resolution {
-  T C, rate, force;
+  T C, rate, force, hop;
 };
 
 // State of the Runge-Kutta methods. Poses and velocities are numbers by body, [S::pose_numbers + S::freedom].

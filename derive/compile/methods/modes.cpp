@@ -64,12 +64,13 @@ constexpr const char* kinds_of_rows = R"(
 constexpr const char* resolutions = R"(
   // Raises the resolutions of the rows to those at these accelerations, for steps of about h.
   static void raise_resolutions(State& s, const Velocity (&a)[bodies], const T& h) {
-    T of_value[bounded], of_rate[bounded], of_force[bounded];
-    resolve($ss.q, s.time, s.v, a, s.modes.force, h, of_value, of_rate, of_force);
+    T of_value[bounded], of_rate[bounded], of_force[bounded], of_hop[bounded];
+    resolve($ss.q, s.time, s.v, a, s.modes.force, h, of_value, of_rate, of_force, of_hop);
     for (int i = 0; i < bounded; ++i) {
       s.modes.of_value[i] = T(slight) * of_value[i];
       s.modes.of_rate[i] = larger(s.modes.of_rate[i], T(slight) * of_rate[i]);
       s.modes.of_force[i] = larger(s.modes.of_force[i], T(slight) * of_force[i]);
+      s.modes.of_hop[i] = larger(s.modes.of_hop[i], T(slight) * of_hop[i]);
     }
   }
 )";
@@ -84,7 +85,8 @@ constexpr const char* decides = R"(
     T hold[bounded], force[bounded];
     for (int i = 0; i < bounded; ++i) {{
       const Mask both = is_equation(G, i), one = has_one_end(G, i);
-      const Mask slow = stopped[i] || magnitude(G.missing[i]) <= T(4) * s.modes.of_rate[i];
+      const Mask hops = one && G.missing[i] * G.missing[i] <= s.modes.of_hop[i];
+      const Mask slow = stopped[i] || hops || magnitude(G.missing[i]) <= T(4) * s.modes.of_rate[i];
       const Mask off = one && !(slow && gap(G, i) <= s.modes.of_value[i]), slips = !both && !one && !slow;
       const Mask up = slips && G.missing[i] > T(0), down = slips && !up;
       B.low[i] = select(off, T(0), select(up, G.high[i], G.low[i]));
@@ -151,6 +153,7 @@ constexpr const char* chooses = R"(
   static {4} {2}(State& s, const T& h) {{
 {1}    for (T& of_row : s.modes.of_rate) of_row = T(0);
     for (T& of_row : s.modes.of_force) of_row = T(0);
+    for (T& of_row : s.modes.of_hop) of_row = T(0);
     Velocity a[bodies];
     fall($ss.q, s.time, s.v, a);
     raise_resolutions(s, a, h);
@@ -193,10 +196,12 @@ constexpr const char* chooses_again = R"(
 )";
 
 constexpr const char* types =
-    R"(  // Of rows with bounds: forces; resolutions, below which a value, a rate or a force counts as 0; how far each row is
-  // from its next event in these units, when its mode was chosen and now.
+    R"(  // Of rows with bounds: forces; resolutions, below which a value, a rate or a force counts as 0, and squared rates
+  // below which a row hops off its end and is back at once; how far each row is from its next event in these units,
+  // when its mode was chosen and now.
   struct Modes {{
-    T force[bounded], of_value[bounded], of_rate[bounded], of_force[bounded], chosen[watched], margin[watched];
+    T force[bounded], of_value[bounded], of_rate[bounded], of_force[bounded], of_hop[bounded], chosen[watched],
+        margin[watched];
     T known;  // 1 where the modes are those of the next step
 {0}  }};
   // Of such rows: the distance from their end, what their rates miss, and the bounds of their forces.

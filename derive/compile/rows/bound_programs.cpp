@@ -80,6 +80,7 @@ Program resolve_of(const RowBlocks& blocks, Constants& constants) {
     algebra.output(element("of_value", b), resolution.value);
     algebra.output(element("of_rate", b), resolution.rate);
     algebra.output(element("of_force", b), resolution.force);
+    algebra.output(element("of_hop", b), resolution.hop);
   }
   return algebra.finish();
 }

@@ -190,7 +190,9 @@ BoundWriter::Guard BoundWriter::guard_while_it_acts() const {
 //   value  c, the largest change of C by a displacement of the mechanism's size or a rotation of 1 rad
 //   rate   the largest of the sum of all |J v|, sqrt(c dJv/dt), and epsilon c / (slight h)
 //   force  (dJv/dt + rate^2 / c) / K
+//   hop    6 c a, the square of a rate
 // dJv/dt: the larger of the sum of all |J dv/dt|, angular accelerations being at least linear / size, and K |force|.
+// a: the larger of |J dv/dt| and K |force|.
 BoundWriter::Resolution BoundWriter::resolution() const {
   const auto inverse = [&](int x) { return algebra_.function(Fn::inverse, {x}); };
   const Sizes sizes = sizes_of_terms();
@@ -198,20 +200,22 @@ BoundWriter::Resolution BoundWriter::resolution() const {
   const int K_own = blocks_.call(algebra_, block_, "effective_mass", in_).at(derive::triangle_element("K", 0, 0));
   const int K = algebra_.function(Fn::select, {K_own, K_own, algebra_.sum(sizes.masses)});
   const int force = algebra_.function(Fn::abs, {algebra_.input(element("force", number_))});
-  const int acceleration = law_.most(algebra_.sum(sizes.accelerations), algebra_.times(K, force));
+  const int by_force = algebra_.times(K, force), acceleration = law_.most(algebra_.sum(sizes.accelerations), by_force);
+  const int along = law_.most(algebra_.function(Fn::abs, {algebra_.sum(sizes.along)}), by_force);
   const int least =
       algebra_.product({algebra_.input("T(epsilon / slight)"), c, inverse(algebra_.input("h"))}, {1, 1, 1});
   const int by_way = algebra_.function(Fn::sqrt, {algebra_.times(acceleration, c)});
   const int rate = law_.most(law_.most(algebra_.sum(sizes.rates), by_way), least);
   const int way = algebra_.product({rate, inverse(c)}, {2, 1});
-  return {c, rate, algebra_.times(algebra_.sum({{acceleration, way}, {1, 1}}), inverse(K))};
+  return {c, rate, algebra_.times(algebra_.sum({{acceleration, way}, {1, 1}}), inverse(K)),
+          algebra_.product({algebra_.value(6), c, along}, {1, 1, 1})};
 }
 
 BoundWriter::Sizes BoundWriter::sizes_of_terms() const {
   const Mechanism& all = blocks_.mechanism();
   const Values J = blocks_.call(algebra_, block_, "dense", in_);
   const int size = algebra_.value(effect_.size), zero = algebra_.value(0);
-  Sizes sizes{zero, {}, {}, {}};
+  Sizes sizes{zero, {}, {}, {}, {}};
   for (std::size_t k = 0; k < block_.bodies->size(); ++k) {
     const int index = (*block_.bodies)[k];
     const Body& body = all.bodies[static_cast<std::size_t>(index)];
@@ -219,16 +223,17 @@ BoundWriter::Sizes BoundWriter::sizes_of_terms() const {
     sizes.masses.add(1, algebra_.value(body.inv_m));
     int linear = zero;
     for (std::size_t i = 0; i < all.columns(); ++i) {
-      const auto speed = [&](const char* array) {
-        return algebra_.function(
-            Fn::abs, {algebra_.input(fmt::format("{}[{}].{}", array, blocks_.body_name(index), all.column(i)))});
+      const auto component = [&](const char* array) {
+        return algebra_.input(fmt::format("{}[{}].{}", array, blocks_.body_name(index), all.column(i)));
       };
+      const auto size_of = [&](int number) { return algebra_.function(Fn::abs, {number}); };
       const bool straight = i < all.linear();
-      const int j = algebra_.function(Fn::abs, {J.at(element(element("D", 0), all.columns() * k + i))}),
-                dv = speed("a");
+      const int slope = J.at(element(element("D", 0), all.columns() * k + i)), j = size_of(slope),
+                dv = size_of(component("a"));
       if (straight) linear = law_.most(linear, dv);
       sizes.value = law_.most(sizes.value, straight ? algebra_.times(j, size) : j);
-      sizes.rates.add(1, algebra_.times(j, speed("v")));
+      sizes.rates.add(1, algebra_.times(j, size_of(component("v"))));
+      sizes.along.add(1, algebra_.times(slope, component("a")));
       const int per_size = algebra_.times(linear, algebra_.value(1 / effect_.size));
       sizes.accelerations.add(1, algebra_.times(j, straight ? dv : law_.most(dv, per_size)));
     }

@@ -43,7 +43,7 @@ class BoundWriter {
   Kick while_it_is_met() const;
   // Resolutions below which its value, its rate and its force count as 0, in units of the relative one.
   struct Resolution {
-    int value, rate, force;
+    int value, rate, force, hop;
   };
   Resolution resolution() const;
   // True if its ends are one.
@@ -67,7 +67,7 @@ class BoundWriter {
   // The largest change of C by the mechanism's size and 1 rad; the terms |J v|, |J dv/dt| and 1/m.
   struct Sizes {
     int value;
-    Summands rates, accelerations, masses;
+    Summands rates, accelerations, along, masses;
   };
   Sizes sizes_of_terms() const;
   End nearest_while_it_acts() const;
@@ -115,8 +115,8 @@ Program distances_of(const RowBlocks& blocks, Constants& constants);
 // q, v, time -> B: of each row its distance from the end that it serves, what its rate misses of the prescribed one,
 // and the bounds of its force.
 Program guard_of(const RowBlocks& blocks, Constants& constants);
-// q, v, time, a, force, h -> of_value, of_rate, of_force: resolutions of C, its rate and the force of each row, in
-// units of the relative one.
+// q, v, time, a, force, h -> of_value, of_rate, of_force, of_hop: resolutions of C, its rate and the force of each row,
+// and of the square of a rate with which it hops off its end, in units of the relative one.
 Program resolve_of(const RowBlocks& blocks, Constants& constants);
 // q, time, J, lambda, force -> load: the force with which the bounds of each row grow.
 Program carry_of(const RowBlocks& blocks, const JointRows& joints, Constants& constants);

@@ -57,6 +57,9 @@ std::string lack(const Choice& choice) {
     return fmt::format("{} is not assured: equal steps know the mean of a load alone, and joints may break by more{}",
                        asked, rest);
   if (choice.achieved <= choice.asked) return fmt::format("{} is not assured{}", asked, rest);
+  if (choice.of_events > choice.asked)
+    return fmt::format("{} is finer than events are located: their errors alone may add up to {:.1e}{}", asked,
+                       choice.of_events, rest);
   return fmt::format("{} holds up to t = {:.6g} s; later on two runs differ by up to {:.1e}{}", asked,
                      choice.holds_until, choice.achieved, rest);
 }

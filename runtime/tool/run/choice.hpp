@@ -20,6 +20,7 @@ struct Choice {
   double achieved = 0;
   bool reached = false;
   double holds_until = 0;            // [s]: the last time up to which the run has the accuracy
+  double of_events = 0;              // error of the places of its events alone, as large as if all had the same sign
   long long rescued = 0;             // steps, whose error nobody knows
   double first_rescue = 0;           // [s]
   long long evaluations = 0;         // of accelerations, in the run; for fixed steps their equivalent

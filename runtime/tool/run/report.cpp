@@ -43,6 +43,7 @@ constexpr double shown_end = 1e-6;
 
 std::string fix_of_accuracy(const Choice& choice) {
   if (choice.rescued > 0) return "Likely fix: a method and a step of your own";
+  if (choice.of_events > choice.asked) return fmt::format("Likely fix: --accuracy {:.1g}", 2 * choice.of_events);
   if (!(choice.holds_until > 0)) return "Likely fix: a larger error";
   return fmt::format("Likely fix: --until {:.6g}", choice.holds_until);
 }

@@ -63,22 +63,27 @@ std::size_t stride_of(const Attempt& coarse, const Attempt& fine) {
   return static_cast<std::size_t>(fine.knob.intervals / coarse.knob.intervals);
 }
 
+// The error of places of events, as large as if all had the same sign.
+double error_of_events(const Yardstick& yardstick, const Attempt& attempt) {
+  return yardstick.of_largest(share_of_events) * static_cast<double>(attempt.result.counts.events);
+}
+
 // The error that a run may have where the comparison does not show it, up to the accuracy asked for: between its times;
 // by events, of which hundreds in a row may agree in two runs by chance; and by velocities, if the loose run happens to
 // be as good as the fine one. Equal steps are compared where they end: a damped motion may be over before.
 double unseen_error(const Yardstick& yardstick, const Attempt& attempt) {
   if (!attempt.knob.adaptive()) return yardstick.asked();
-  const double of_events = yardstick.of_largest(share_of_events) * static_cast<double>(attempt.result.counts.events);
   double pace = 0;
   for (const Frame& frame : attempt.frames) pace = std::max(pace, yardstick.allowed_pace(frame));
   const double lasts = attempt.frames.empty() ? 0 : attempt.frames.back().time - attempt.frames.front().time;
-  const double error = std::max(local_errors * (attempt.knob.local_error + of_events),
+  const double error = std::max(local_errors * (attempt.knob.local_error + error_of_events(yardstick, attempt)),
                                 velocity_errors * attempt.knob.local_error * pace * lasts);
   return std::min(error, yardstick.asked());
 }
 // The share of it that may refuse a run.
 double refusing_error(const Yardstick& yardstick, const Attempt& attempt) {
-  return std::min(local_errors * attempt.knob.local_error, unseen * yardstick.asked());
+  return std::max(std::min(local_errors * attempt.knob.local_error, unseen * yardstick.asked()),
+                  error_of_events(yardstick, attempt));
 }
 
 // The gain by steps: that of a run between the two up to where it ended early, as it is measured by its distance `left`
@@ -184,6 +189,7 @@ void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse
     fine.holds_until = std::max(fine.holds_until, agrees_until);
     fine.unmeasured = apart > far;
   }
+  fine.of_events = error_of_events(yardstick, fine);
   fine.achieved = std::max({std::min(apart, least_sure), apart / gained, refusing_error(yardstick, fine)});
   const bool known = fine.knob.adaptive() ? has_shorter_steps(coarse, fine) ||
                                                 (fine.result.counts.rescued == 0 && !same_steps(coarse, fine))

@@ -30,7 +30,7 @@ struct Attempt {
   double apart = std::numeric_limits<double>::infinity();     // distance from a coarser run
   double achieved = std::numeric_limits<double>::infinity();  // as that distance makes sure
   double claimed = std::numeric_limits<double>::infinity();   // Choice::achieved
-  double holds_until = 0;
+  double holds_until = 0, of_events = 0;                      // as in Choice
   bool reached = false;
   bool dear = false;         // explicit steps seemed dear, as where a fast oscillation bounds their length
   bool swings = false;       // see swings()

@@ -229,6 +229,7 @@ Choice Search::choice_of(const Attempt& attempt) const {
   choice.achieved = attempt.claimed;
   choice.reached = attempt.reached;
   choice.holds_until = attempt.holds_until;
+  choice.of_events = attempt.of_events;
   choice.rescued = attempt.result.counts.rescued;
   choice.first_rescue = attempt.result.first_rescue;
   choice.knows_means = attempt.knows_means;

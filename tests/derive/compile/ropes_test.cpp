@@ -35,9 +35,9 @@ TEST(CompiledRopes, LanesAreAsAlone) {
   cdot::lanes_are_as_alone<planar_ropes_rattle>();
 }
 
-// Until they chatter: there the World finishes a step by another method.
+// Impacts that quicken until both ropes are taut are over at 0.24 s, at 1.1 s and later.
 TEST(CompiledRopes, MoveByRk4AsTheWorld) {
-  cdot::runs_as_the_world<planar_ropes_rk4<double>>(planar, Integrator::rk4, 1e-10, 0.24);
+  cdot::runs_as_the_world<planar_ropes_rk4<double>>(planar, Integrator::rk4, 1e-9, 3);
 }
 
 }  // namespace

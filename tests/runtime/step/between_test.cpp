@@ -57,5 +57,37 @@ TEST(EventsBetween, CostLessThanAStepAtEachLook) {
   }
 }
 
+// A box on two ropes, each taut in turns. The times between impacts shrink to a tenth with each two of them, so that
+// all are over at a time, from which on both ropes are taut. Closing one rope's gap, as small as events resolve, must
+// not let the other one hop for ever.
+TEST(EventsBetween, OfEndsThatAreMetInTurnsEnd) {
+  for (const Method& method :
+       {Method{"dop853", Integrator::dop853, 12, 1e-4, 0}, Method{"dop853", Integrator::dop853, 12, 1e-10, 0},
+        Method{"radau5", Integrator::radau5, 0, 1e-6, 0}, Method{"rk4", Integrator::rk4, 4, 0, 0}}) {
+    Settings s = settings(Solver::direct, Drift::projection, -9.81);
+    s.integrator = method.integrator, s.local_error = method.local_error;
+    World<double> world(s);
+    const int box = world.add_body({.y = -2.25, .mass = 1, .inertia = 1.25 / 12});
+    world.set_velocity(box, {3, 0, 2});
+    for (const double side : {-1.0, 1.0})
+      world.add_joint(
+          {"max_distance", {world.ground(), box}, {{"pa", {side, 0}}, {"pb", {0.5 * side, 0.25}}, {"l", {2.2}}}, {}});
+    for (int k = 0; k < 25; ++k) ASSERT_TRUE(world.step(0.01));
+    const long long events = world.step_counts().events;
+    fmt::print("  {} {:.0e}: {} events, {} steps left to another method\n", method.name, method.local_error, events,
+               world.step_counts().rescued);
+    EXPECT_EQ(world.step_counts().rescued, 0);
+    EXPECT_GE(events, 6);
+    EXPECT_LE(events, 20);
+    for (int k = 0; k < 2; ++k) {
+      ASSERT_TRUE(world.step(0.01));
+      const auto q = world.pose(box);
+      for (const double side : {-1.0, 1.0})
+        EXPECT_NEAR(std::hypot(q.x + q.c * 0.5 * side - q.s * 0.25 - side, q.y + q.s * 0.5 * side + q.c * 0.25), 2.2,
+                    1e-8);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace cdot::test::between_test

@@ -10,13 +10,13 @@ namespace cdot::test::budgets_test {
 namespace {
 
 // A plate that hangs from the world, with fingers of two links below. They rattle between their limits, and the damper
-// of the first one decays at 1e5 1/s.
-Scene rattling_fingers(int fingers, const char* method) {
+// of the first one decays at 1e5 1/s. With a motor that shakes the plate they go on for ever.
+Scene rattling_fingers(int fingers, const char* method, const char* motor = "") {
   std::string text = fmt::format(
       "duration = 1\n{}\n"
       "[[body]]\nname = \"plate\"\nmass = 10\ninertia = 1\nposition = [0.5, -0.2]\n"
-      "[[joint]]\ntype = \"revolute\"\nbodies = [\"world\", \"plate\"]\nat = [0, 0]\n",
-      method);
+      "[[joint]]\ntype = \"revolute\"\nbodies = [\"world\", \"plate\"]\nat = [0, 0]\n{}\n",
+      method, motor);
   const auto add = [&](const std::string& above, const std::string& link, double mass, double x, double y, double half,
                        double damping) {
     text += fmt::format(
@@ -37,7 +37,7 @@ Scene rattling_fingers(int fingers, const char* method) {
 // Each impact costs collocation two evaluations for each component of velocity. It ends after a little work, and fixed
 // steps go on; explicit ones, which the damper makes as dear, are not tried. All of these took 1e6 evaluations.
 TEST(Budgets, OfCollocationEndWhereImpactsMakeItDear) {
-  const Scene scene = rattling_fingers(12, "");
+  const Scene scene = rattling_fingers(12, "", "angle.motor = { speed = \"20 [rad/s] * sin(time / 0.001 [s])\" }");
   std::string warnings;
   const RunResult result = simulate(scene, {}, warnings);
   const Choice& choice = result.choice.value();

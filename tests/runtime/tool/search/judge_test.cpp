@@ -64,6 +64,42 @@ TEST(Claims, CountTheErrorsOfFastBodies) {
   EXPECT_GT(fine.claimed, 1e-6);
 }
 
+// Two runs may agree by chance on steps that were left to another method, whatever their local errors are: the whole
+// distance must be within what is asked for, and the last two distances tell about the error.
+TEST(Claims, TrustNoChanceOnStepsLeftToAnotherMethod) {
+  const Scene scene = box(TemporaryFolder(), 1);
+  const auto judged = [&](double before, double distance, long long rescued) {
+    Attempt coarse = attempt_of(2e-2, 64, 1), fine = attempt_of(2e-7, 64, 1);
+    fine.knob.parts = 4, coarse.apart = before, coarse.result.counts.rescued = fine.result.counts.rescued = rescued;
+    for (std::size_t k = 0; k < coarse.frames.size(); ++k)
+      fine.frames[k].bodies[0].x = 0, coarse.frames[k].bodies[0].x = distance * coarse.frames[k].time;
+    judge(scene, Yardstick(scene), coarse, {}, fine);
+    return fine;
+  };
+  EXPECT_TRUE(judged(1, 5e-3, 0).reached);
+  EXPECT_FALSE(judged(1, 5e-3, 1).reached);
+  EXPECT_TRUE(judged(1e-5, 9e-5, 1).reached);
+  EXPECT_NEAR(judged(1e-5, 9e-5, 1).claimed, 9e-5, 1e-6);
+  EXPECT_NEAR(judged(9e-5, 1e-6, 1).claimed, 9e-5, 1e-6);
+}
+
+// Each event is located to 1e-9 of the body's size, whatever the local error is: two runs that agree better on a thousand
+// of them may both be wrong.
+TEST(Claims, AreNoFinerThanTheEventsAre) {
+  const Scene scene = box(TemporaryFolder(), 1);
+  const auto judged = [&](long long events) {
+    Attempt coarse = attempt_of(2e-9, 64, 1), fine = attempt_of(2e-12, 64, 1);
+    coarse.result.counts.events = fine.result.counts.events = events;
+    for (std::size_t k = 0; k < coarse.frames.size(); ++k)
+      fine.frames[k].bodies[0].x = 0, coarse.frames[k].bodies[0].x = 1e-9 * coarse.frames[k].time;
+    judge(scene, Yardstick(scene), coarse, {}, fine);
+    return fine;
+  };
+  EXPECT_TRUE(judged(70000).reached);
+  EXPECT_FALSE(judged(71000).reached);
+  EXPECT_NEAR(judged(71000).achieved, 71000e-9 * std::sqrt(2.0), 1e-12);
+}
+
 // A loose run that does not resolve a fast oscillation is 0.05 rad off, of 1e-4 asked for, as far as it gets. Where
 // stability bounds the steps that may be so, whatever the energy says; else it is a distance like any other.
 TEST(Claims, TrustNoLargeGainWhereStabilityBoundsTheSteps) {
