@@ -2,8 +2,6 @@
 // h.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 
@@ -358,7 +356,7 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
     flow.slivers = flow.length < T(sliver) * flow.longest ? flow.slivers + 1 : 0;
     if (passed_event(flow)) {
       flow.length = go_to_event(world, island, method, time, flow.length);
-      ++world.counts->events; if (getenv("TR")) { fprintf(stderr, "ev t %.10f len %.3g", double(time)+double(flow.length), double(flow.length)); for (const Segment<S>& g : island.segments) for (int i = g.begin*g.batch->ops->rows; i < g.end*g.batch->ops->rows; ++i) if (g.batch->law) fprintf(stderr, " [m%d C %.3g rate %.3g lam %.3g]", int(g.batch->mode[i]), double(g.batch->C[i]), double(g.batch->rate[i]), double(g.batch->lambda[i])); fprintf(stderr, "\n"); }
+      ++world.counts->events;
       events = flow.length > T(0) ? events + 1 : most_now + 1;
       flow.known = false;
     }

@@ -83,8 +83,8 @@ TEST(Claims, TrustNoChanceOnStepsLeftToAnotherMethod) {
   EXPECT_NEAR(judged(9e-5, 1e-6, 1).claimed, 9e-5, 1e-6);
 }
 
-// Each event is located to 1e-9 of the body's size, whatever the local error is: two runs that agree better on a thousand
-// of them may both be wrong.
+// Each event is located to 1e-9 of the body's size, whatever the local error is: two runs that agree better on a
+// thousand of them may both be wrong.
 TEST(Claims, AreNoFinerThanTheEventsAre) {
   const Scene scene = box(TemporaryFolder(), 1);
   const auto judged = [&](long long events) {
