@@ -60,9 +60,13 @@ struct Dampers {
   T start, end;
 };
 template <class T>
+T calming(const SpringNumbers<T>& spring, T K, T h) {
+  return std::max(T(0), h * h * spring.k - inverse(K));
+}
+template <class T>
 Dampers<T> dampers(const SpringNumbers<T>& spring, T K, T h, bool calm) {
-  const T mass = inverse(K), start = std::min(T(0.5) * h * spring.d, mass);
-  return {start, h * spring.d - start + (calm ? std::max(T(0), h * h * spring.k - mass) : T(0))};
+  const T start = std::min(T(0.5) * h * spring.d, inverse(K));
+  return {start, h * spring.d - start + (calm ? calming(spring, K, h) : T(0))};
 }
 
 // The rows of an effect at its rates r = J v + dC/dt of Batch::rate. K must be present.
@@ -127,6 +131,10 @@ void bound_dampers(Batch<S>& batch, int begin, int end, typename S::Scalar h, bo
 // Restores dC/dt in the bias of effects.
 template <class S>
 void forget_dampers(WorldData<S>& world, const Island<S>& island);
+// Calls f while Batch::lambda lacks what calms springs, but for the share of their energy that their dampers take in h,
+// 1 - exp(-h d K): the method loses the rest.
+template <class S, class F>
+void without_calming(WorldData<S>& world, const Island<S>& island, typename S::Scalar h, F f);
 
 // The end of a step of h for the rows of an effect, were they alone: rates p = r + K t R(p), by Newton's method with
 // the diagonal of K and of the slopes. t is the rest of h that the start left, end the impulse per rate.
@@ -220,7 +228,7 @@ struct EffectAtEnd {
     for (int c = 0; c < rows; ++c) {
       const SpringNumbers<T>& bound = at.bound[c];
       R[c] = at.R[c], d[c] = bound.d, t[c] = h - at.time_at_start(c, own(c), h);
-      end[c] = t[c] * d[c] + (calm ? std::max(T(0), h * h * bound.k - inverse(own(c))) : T(0));
+      end[c] = t[c] * d[c] + (calm ? calming(bound, own(c), h) : T(0));
       g[c] = p[c] - r[c];
     }
     for (int c = 0; c < rows; ++c)
@@ -263,6 +271,26 @@ void bound_dampers(Batch<S>& batch, int begin, int end, typename S::Scalar h, bo
     batch.lower[i] = pulls_only(batch, i) ? -pulled(batch, i) : -std::numeric_limits<T>::infinity();
     batch.upper[i] = std::numeric_limits<T>::infinity();
   });
+}
+
+template <class S, class F>
+void without_calming(WorldData<S>& world, const Island<S>& island, typename S::Scalar h, F f) {
+  using T = typename S::Scalar;
+  for (const auto& [segment, begin, end, whole] : island.segments) {
+    Batch<S>& batch = *segment;
+    if (!batch.law || !batch.law->spring) continue;
+    batch.ops->velocity(batch, begin, end, world.bodies.velocity.data(), batch.rate.data());
+    each_spring(batch, begin, end, [&](int i, const SpringNumbers<T>& spring, T K) {
+      const T whole_impulse = batch.error[i] = batch.lambda[i];
+      const T lost = calming(spring, K, h) * std::exp(-h * spring.d * K);
+      const T left = whole_impulse + lost * (batch.rate[i] + batch.bias[i]);
+      batch.lambda[i] = std::clamp(left, std::min(whole_impulse, T(0)), std::max(whole_impulse, T(0)));
+    });
+  }
+  f();
+  for (const auto& [segment, begin, end, whole] : island.segments)
+    if (Batch<S>& batch = *segment; batch.law && batch.law->spring)
+      each_row(batch, begin, end, [&](int i) { batch.lambda[i] = batch.error[i]; });
 }
 
 }  // namespace cdot

@@ -287,7 +287,7 @@ bool take_part(WorldData<S>& world, Island<S>& island, typename S::Scalar h, boo
   const WorkAtEnd joints = solve_end_of_part(world, island, h);
   forget_dampers(world, island);
   if (!last && joints.taken > slight_work<T> * energy && !hardly_moves(world, island, h)) return give_up();
-  book_kick(world, island, Impulses::end, h);
+  without_calming(world, island, h, [&] { book_kick(world, island, Impulses::end, h); });
   give_back(world, island, given + joints.given_back);
   island.evaluated = true;
   return true;

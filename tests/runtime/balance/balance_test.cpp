@@ -53,6 +53,34 @@ TEST(Balance, ADampedSpringTakesWhatTheOscillatorLoses) {
   }
 }
 
+// A body of 1 kg hits a spring, whose oscillation is too fast for a step of h, which ends it. Without a damper the
+// method has lost that energy. A damper of c would take the share 1 - exp(-h c / m) of it in that time; the rule of the
+// step lets it take up to twice as much.
+TEST(Balance, ASpringTakesNoMoreThanItsDamperDoes) {
+  const double k = 1e6, h = 1.0 / 60, energy = 0.5;
+  for (const double c : {0.0, 0.6, 12.0, 60.0, 1e4})
+    for (const bool on_coordinate : {false, true}) {
+      World<double> world({.integrator = Integrator::implicit});
+      const int body = world.add_body({.x = 3, .mass = 1, .inertia = 1});
+      const int slide =
+          world.add_joint({"prismatic", {world.ground(), body}, {{"pa", {0, 0}}, {"pb", {-3, 0}}, {"t", {0, 1}}}, {}});
+      if (on_coordinate) {
+        add_spring(world, slide, "slide",
+                   {.softness = {.by_frequency = false, .stiffness = k, .damping = c}, .rest = {}});
+      } else {
+        world.add_spring({.body_a = world.ground(), .body_b = body, .stiffness = k, .rest_length = 3, .damping = c});
+      }
+      world.set_velocity(body, {1, 0, 0});
+      const BalanceWatch seen = watch(world, 1, h);
+      const double decays = energy * (1 - std::exp(-h * c));
+      fmt::print("  {:5.0f} N s/m: {:.4f} J taken, {:.4f} J by the decay, {:.4f} J left\n", c, seen.last.taken, decays,
+                 world.energy());
+      EXPECT_LT(world.energy(), 1e-6);
+      EXPECT_LE(seen.last.taken, 2 * decays + 1e-9);
+      EXPECT_GE(seen.last.taken, 0.5 * decays - 1e-9);
+    }
+}
+
 // v' = -d v - g: v = (v0 + g / d) exp(-d t) - g / d.
 TEST(Balance, DragTakesWhatAFallLoses) {
   const double d = 0.7, g = 9.81, duration = 1;

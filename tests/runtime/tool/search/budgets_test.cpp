@@ -68,6 +68,24 @@ TEST(Budgets, GrowForARunThatPromisesToBeTheLast) {
   EXPECT_FALSE(with_budget(0.4 * before).reached);  // two runs were not measured
 }
 
+// No joint is to blame where a run is too long for the search.
+TEST(Budgets, OfLongRunsAreTold) {
+  const Scene scene = read_scene(
+      "duration = 1000\n[[body]]\nname = \"bob\"\nmass = 1\ninertia = 1\nposition = [1, 0]\n"
+      "[[joint]]\nname = \"rod\"\ntype = \"distance\"\nbodies = [\"world\", \"bob\"]\npa = [0, 0]\npb = [0, 0]\nl = "
+      "1\n",
+      "long.toml");
+  std::string warnings;
+  RunOptions options;
+  options.search_work = 4e4;
+  const RunResult result = simulate(scene, options, warnings);
+  EXPECT_TRUE(result.choice.value().ended_by_budget);
+  const std::string text = failure(scene, result);
+  EXPECT_NE(text.find("ended at its budget"), std::string::npos) << text;
+  EXPECT_NE(text.find("--until"), std::string::npos) << text;
+  EXPECT_EQ(text.find("joints that can follow"), std::string::npos) << text;
+}
+
 // Where rows press on each other, a step by fixed steps takes many factorisations. These count as evaluations do.
 TEST(Budgets, CountTheSolvesOfFixedSteps) {
   const Scene scene = rattling_fingers(3, "integrator = \"implicit\"\nstep = 0.01");
