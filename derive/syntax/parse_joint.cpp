@@ -66,7 +66,6 @@ class JointParser {
     row();
   }
 
-  // ( joint | effect ) NAME ( planar | spatial ), or effect NAME ( coordinate | joint )
   // A name with - in it, which no name has, is read as one with _.
   Word name_in_header(const std::string& kind) {
     Word name = p_.name("the name of the " + kind);
@@ -82,6 +81,7 @@ class JointParser {
     return name;
   }
 
+  // ( joint | effect ) NAME ( planar | spatial ), or effect NAME ( coordinate | joint )
   void header() {
     const Token word = p_.take();
     const std::string kind(word.text);

@@ -50,7 +50,8 @@ Resolution<typename S::Scalar> resolution_of(const Island<S>& island, std::span<
   Resolution<T> largest{};
   for (const LoadedRow<S>& row : cone) {
     const Resolution<T>& one = island.flow.resolution[place_among_guarded(island, row)];
-    largest = {std::max(largest.C, one.C), std::max(largest.rate, one.rate), std::max(largest.force, one.force), T(0)};
+    largest = {std::max(largest.C, one.C), std::max(largest.rate, one.rate), std::max(largest.force, one.force),
+               std::max(largest.hop, one.hop)};
   }
   return largest;
 }

@@ -21,12 +21,6 @@ namespace {
 
 const char* unit_of(const Choice& choice) { return choice.of_size ? "of its size and of 1 rad" : "m, rad"; }
 
-std::string budget_text(const Choice& choice) {
-  return choice.ended_by_budget
-             ? fmt::format("; the search ended at its budget, after {:.3g} s of CPU time", choice.cpu_before)
-             : std::string();
-}
-
 std::string steps_text(const Choice& choice) {
   return choice.local_error > 0 ? fmt::format("local error {:.1e}", choice.local_error)
                                 : fmt::format("steps of {:.6g} s", choice.step);
@@ -70,6 +64,11 @@ bool fails(const Choice& choice) {
 
 }  // namespace
 
+std::string budget_text(const Choice& choice) {
+  return choice.ended_by_budget
+             ? fmt::format("; the search ended at its budget, after {:.3g} s of CPU time", choice.cpu_before)
+             : std::string();
+}
 std::string accuracy_failure(const Choice& choice) { return fails(choice) ? lack(choice) : std::string(); }
 std::string accuracy_warning(const Choice& choice) { return fails(choice) ? std::string() : lack(choice); }
 

@@ -38,6 +38,8 @@ Scene solved_by(const Choice& choice, Scene scene);
 // Lines of a summary. Without the CPU time they are the same in every run.
 std::string choice_text(const Choice& choice, bool with_cpu = true);
 text::Json choice_json(const Choice& choice);
+// "; the search ended at its budget, ..." if it did, in vain.
+std::string budget_text(const Choice& choice);
 // Why the run failed or only warns, if the accuracy is not reached; empty if it does neither. A default accuracy that
 // holds for a part of the run warns, one that was asked for fails. Without a fix.
 std::string accuracy_failure(const Choice& choice);

@@ -53,11 +53,7 @@ std::string fix_of(const RunResult& result, const std::string& usual) {
   if (result.advice) return in_words(*result.advice);
   if (!result.choice) return "Likely fix: " + usual;
   if (result.choice->rescued == 0 && result.choice->holds_until > 0) return fix_of_accuracy(*result.choice);
-  if (result.choice->ended_by_budget)
-    return fmt::format(
-        "The search for a method ended at its budget, after {:.3g} s of CPU time. Likely fix: an earlier "
-        "end (--until)",
-        result.choice->cpu_before);
+  if (result.choice->ended_by_budget) return "Likely fix: an earlier end (--until)" + budget_text(*result.choice);
   return "Likely fix: an earlier end (--until), or joints that can follow: `cdot-run diagnose` names those that "
          "contradict each other";
 }

@@ -74,7 +74,7 @@ void judge_unlike(const Scene& scene, const Yardstick& yardstick, const Attempt&
 // For a quarter of the run bodies stay where they start, as near an unstable equilibrium: then all runs fall alike, by
 // the round-off of the start.
 bool lingers(const Yardstick& yardstick, const Attempt& attempt);
-// What round-off makes of a run up to so many ends of its intervals, by another one from a start that is disturbed by
+// The error by round-off of a run up to so many ends of its intervals, by another one from a start that is disturbed by
 // `disturbance`. limit_by_round_off() lets the accuracy and the claim of `now` know it.
 inline constexpr double disturbance = 1e-13;
 double error_by_round_off(const Yardstick& yardstick, const Attempt& run, const Attempt& disturbed,
