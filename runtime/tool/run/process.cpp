@@ -1,5 +1,6 @@
 #include "runtime/tool/run/process.hpp"
 
+#include <atomic>
 #include <csignal>
 #include <ctime>
 #include <fmt/format.h>
@@ -8,11 +9,18 @@
 namespace cdot {
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
-// The second one ends the program.
+constexpr long long apart = 300'000'000;                     // [ns]
+std::atomic<long long> interrupted_at = 0;                   // [ns]; 0: not
+static_assert(std::atomic<long long>::is_always_lock_free);  // a signal may find it half written otherwise
+
+// A second one ends the program, unless it belongs to the first: `timeout -s INT` signals its child, and at once all of
+// the child's group.
 void interrupt(int) {
-  if (interrupted) std::signal(SIGINT, SIG_DFL), std::raise(SIGINT);
-  interrupted = 1;
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  const long long before = interrupted_at, at = 1'000'000'000LL * now.tv_sec + now.tv_nsec;
+  if (before == 0) interrupted_at = at;
+  else if (at - before > apart) std::signal(SIGINT, SIG_DFL), std::raise(SIGINT);
 }
 
 }  // namespace
@@ -33,11 +41,11 @@ double cpu_of_children() {
 }
 
 Interrupt::Interrupt() {
-  interrupted = 0;
+  interrupted_at = 0;
   previous_ = std::signal(SIGINT, interrupt);
 }
 Interrupt::~Interrupt() { std::signal(SIGINT, previous_); }
-bool Interrupt::asked() { return interrupted != 0; }
+bool Interrupt::asked() { return interrupted_at != 0; }
 
 bool ProgressLine::due() {
   const auto now = Clock::now();

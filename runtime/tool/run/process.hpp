@@ -9,7 +9,8 @@ namespace cdot {
 double cpu_now();          // CPU time of this thread [s]
 double cpu_of_children();  // that of programs that it ran to their end
 
-// While an Interrupt lives, the first Ctrl-C only sets asked(). Do not nest them.
+// While an Interrupt lives, the first Ctrl-C only sets asked(); one that comes 0.3 s later ends the program. Do not
+// nest them.
 class Interrupt {
  public:
   Interrupt();
