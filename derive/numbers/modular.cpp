@@ -33,7 +33,10 @@ class Pose final : public Arithmetic<Modular> {
  public:
   explicit Pose(const Draws& draws) : draws_(draws), point_(draws.seed()) {}
 
-  Modular number(Rational value) override { return Modular(value.num()) * point_.inverse(Modular(value.den())); }
+  Modular number(Rational value) override {
+    const Modular whole(value.num());
+    return value.den() == 1 ? whole : whole * point_.inverse(Modular(value.den()));
+  }
 
   Modular scalar_leaf(const Node& symbol) override {
     if (symbol.role == Role::angle) return Modular(angle_of(symbol.body));
@@ -100,9 +103,10 @@ class Pose final : public Arithmetic<Modular> {
   std::array<Triple<Modular>, 3> any_triad() {
     const EulerParameters<Modular> e{point_.any(), point_.any(), point_.any(), point_.any()};
     const Modular square = e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3];
+    const Modular shrink = inverse(square);
     auto axes = axes_of(e);
     for (auto& axis : axes) {
-      for (Modular& component : axis) component = component * inverse(square);
+      for (Modular& component : axis) component = component * shrink;
     }
     return axes;
   }

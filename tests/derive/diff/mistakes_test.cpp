@@ -1,6 +1,7 @@
 // The verdicts of `cdot diff` over the catalogue: right derivations, also rewritten, agree; with one mistake they
 // differ. An oracle of its own decides which are right: the numbers of the matrices at random poses, up to the freedom
 // that an author has.
+#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 #include <functional>
@@ -51,10 +52,24 @@ Subject subject_of(const std::string& name) {
   return s;
 }
 
-// Replaces whole words; `after` is the rest of the expression behind a word. Most words are not there at all, and to
-// make a regex takes long.
-void replace(std::string& s, const std::string& word, const std::string& by, const std::string& after = "") {
-  if (s.find(word) != s.npos) s = std::regex_replace(s, std::regex("\\b" + word + after + "\\b"), by);
+// Replaces whole words. In vectors, a word goes with its component: axis_a_x becomes a.x.
+enum class In { scalars, vectors };
+void replace(std::string& s, const std::string& word, const std::string& by, In in = In::scalars) {
+  const auto in_word = [&](std::size_t at) {
+    return at < s.size() && (std::isalnum(static_cast<unsigned char>(s[at])) != 0 || s[at] == '_');
+  };
+  for (std::size_t at = 0; (at = s.find(word, at)) != s.npos;) {
+    const std::string part = in == In::vectors ? s.substr(at + word.size(), 2) : "";
+    const std::size_t end = at + word.size() + part.size();
+    const bool fits = in == In::scalars || part == "_x" || part == "_y" || part == "_z";
+    if (!fits || in_word(at - 1) || in_word(end)) {
+      ++at;
+      continue;
+    }
+    const std::string text = part.empty() ? by : by + "." + part[1];
+    s.replace(at, end - at, text);
+    at += text.size();
+  }
 }
 
 // An expression in the language of .hand files.
@@ -66,10 +81,10 @@ std::string in_hand(Expr e, const Joint& joint) {
     for (const char* stem : {"x", "v", "w"})
       replace(s, std::string(stem) + "_" + body, fmt::format("{}({})", stem, body));
     replace(s, "theta_" + body, "angle(" + body + ")");
-    replace(s, "axis_" + body, body + ".$1", "_([xyz])");
+    replace(s, "axis_" + body, body, In::vectors);
   }
   for (const Parameter& p : joint.parameters) {
-    if (p.kind == ParameterKind::frame) replace(s, p.name, p.name + ".$1", "_([xyz])");
+    if (p.kind == ParameterKind::frame) replace(s, p.name, p.name, In::vectors);
     if (p.kind == ParameterKind::point && p.body >= 0) replace(s, p.symbol->symbol, "arm(" + p.name + ")");
   }
   return s;
