@@ -1,10 +1,13 @@
 // A small program whose steps cost_test.cpp counts instruction by instruction. Built twice: CDOT_LINK_EFFECTS links the
-// code of the effects; an argument selects an effect.
+// code of the effects; an argument selects an effect. Each scene is counted in a process of its own. All processes
+// start alike, so that none costs more for what those before it left in memory.
 //
-//   cost_scene direct|iterative PENDULUMS [none|limit|motor|friction|spring|breaking|sleep] [LINKS]
+//   cost_scene "direct|iterative PENDULUMS [none|limit|motor|friction|spring|breaking|sleep] [LINKS]"...
 #include <cstdio>
-#include <cstdlib>
+#include <sstream>
 #include <string>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cdot/world.hpp>
 #ifdef CDOT_LINK_EFFECTS
@@ -50,17 +53,22 @@ extern "C" __attribute__((noinline)) void measured_steps(World<double>& world) {
   for (int i = 0; i < 20; ++i) world.step(1e-3);
 }
 
-int main(int count, char** arguments) {
-  if (count < 3) return 2;
-  const std::string effect = count > 3 ? arguments[3] : "none";
+namespace {
+
+void run(const std::string& scene) {
+  std::istringstream words(scene);
+  std::string solver, effect;
+  int pendulums = 0, links = 0;
+  words >> solver >> pendulums;
+  if (!(words >> effect)) effect = "none";
+  if (!(words >> links)) links = 2;
   cdot::Settings settings;
-  settings.solver = std::string(arguments[1]) == "direct" ? cdot::Solver::direct : cdot::Solver::iterative;
+  settings.solver = solver == "direct" ? cdot::Solver::direct : cdot::Solver::iterative;
   settings.gravity_y = -9.81;
   settings.sleep_after = 0.05;
   World<double> world(settings);
-  const int links = count > 4 ? std::atoi(arguments[4]) : 2;
   const int joint = add_pendulum(world, 0, false, links);
-  for (int i = 1; i < std::atoi(arguments[2]); ++i) add_pendulum(world, 4.0 * i, effect == "sleep", links);
+  for (int i = 1; i < pendulums; ++i) add_pendulum(world, 4.0 * i, effect == "sleep", links);
 #ifdef CDOT_LINK_EFFECTS
   add_effect(world, joint, effect);
 #endif
@@ -68,4 +76,15 @@ int main(int count, char** arguments) {
   measured_steps(world);
   std::printf("joint %d, hash %llx, asleep %d\n", joint, static_cast<unsigned long long>(world.hash()),
               world.sleeping_islands());
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  for (int i = 1; i < count; ++i) {
+    if (fork() == 0) return run(arguments[i]), 0;
+    int status = -1;
+    wait(&status);
+    if (status != 0) return 1;
+  }
 }
