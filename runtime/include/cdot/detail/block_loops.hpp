@@ -276,6 +276,8 @@ struct BlockLoops : BlockSlots<S, Joint, Block> {
   // K_rr: a share of all of K would leave the weakest directions of a block stiff, as the bending of a weld.
   static void soften(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, Velocity* of, T* impulses,
                      SoftSweep<T> soft) {
+    if (kernels == Kernels::robust && soft.share != T(0))
+      return BlockLoops<S, Joint, Block>::soften(batch, begin, end, all, of, impulses, soft);
     const auto change = [&](int slot, const Jacobian& J, const InverseMass(&m)[bodies], const T(&Jv)[rows],
                             T(&lambda)[rows]) {
       T K[triangle], F[triangle], b[rows];
@@ -286,11 +288,13 @@ struct BlockLoops : BlockSlots<S, Joint, Block> {
         K[r * (r + 3) / 2] += softness;
       }
       // A sweep waits for the last slot's velocities: of two rows, K^-1 is ready before them.
-      if constexpr (rows == 2 && kernels != Kernels::robust) {
+      if constexpr (kernels == Kernels::robust) {
+        factor_by_rows<width>(block_of<Block>(batch), J, m, F);
+        block_of<Block>(batch).solve(F, b, lambda);
+      } else if constexpr (rows == 2) {
         invert(K, F), multiply(F, b, lambda);
       } else {
-        if (kernels == Kernels::robust && soft.share == T(0)) factor_by_rows<width>(block_of<Block>(batch), J, m, F);
-        else block_of<Block>(batch).factor(K, F);
+        block_of<Block>(batch).factor(K, F);
         block_of<Block>(batch).solve(F, b, lambda);
       }
     };

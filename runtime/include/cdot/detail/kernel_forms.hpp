@@ -10,14 +10,10 @@ namespace cdot {
 //   L_rs = j_r M^-1 j_s / D_s,   j_r -= L_rs j_s,   D_r = j_r M^-1 j_r,
 // so no pivot is a difference of large numbers. The relative error of K's pivots grows with the square of the block's
 // condition, as for a long arm on a body of little inertia. The error of these pivots grows with the condition. F has
-// the layout of the kernel's factor.
-template <int columns, class Block, class Jacobian, class InverseMass, class T, int triangle>
-void factor_by_rows(const Block& block, const Jacobian& J, const InverseMass (&m)[Block::bodies], T (&F)[triangle]) {
-  constexpr int rows = Block::rows;
+// the layout of the kernel's factor. J and W = J M^-1 are dense, and lost. Compiled once for all blocks of a size.
+template <int rows, int columns, class T, int triangle>
+[[gnu::noinline]] void factor_conjugate_rows(T (&J)[rows][columns], T (&W)[rows][columns], T (&F)[triangle]) {
   const T round_off = T(64 * std::numeric_limits<typename ScalarOf<T>::type>::epsilon());
-  T D[rows][columns], W[rows][columns];
-  block.dense(J, D);
-  block.inverse_mass_jacobian(J, m, W);
   const auto product = [](const T(&x)[columns], const T(&y)[columns]) {
     T sum = x[0] * y[0];
     for (int c = 1; c < columns; ++c) sum = sum + x[c] * y[c];
@@ -25,18 +21,26 @@ void factor_by_rows(const Block& block, const Jacobian& J, const InverseMass (&m
   };
   for (int r = 0; r < rows; ++r) {
     T* const row = F + r * (r + 1) / 2;
-    const T before = product(D[r], W[r]);
+    const T before = product(J[r], W[r]);
     for (int s = 0; s < r; ++s) {
-      row[s] = product(D[r], W[s]) * F[s * (s + 3) / 2];
+      row[s] = product(J[r], W[s]) * F[s * (s + 3) / 2];
       for (int c = 0; c < columns; ++c) {
-        D[r][c] = D[r][c] - row[s] * D[s][c];
+        J[r][c] = J[r][c] - row[s] * J[s][c];
         W[r][c] = W[r][c] - row[s] * W[s][c];
       }
     }
-    const T left = product(D[r], W[r]);
+    const T left = product(J[r], W[r]);
     // A row that depends on earlier rows leaves the squares of round-off.
     row[r] = select(left > round_off * round_off * before, T(1) / left, T(0));
   }
+}
+
+template <int columns, class Block, class Jacobian, class InverseMass, class T, int triangle>
+void factor_by_rows(const Block& block, const Jacobian& J, const InverseMass (&m)[Block::bodies], T (&F)[triangle]) {
+  T D[Block::rows][columns], W[Block::rows][columns];
+  block.dense(J, D);
+  block.inverse_mass_jacobian(J, m, W);
+  factor_conjugate_rows(D, W, F);
 }
 
 // K^-1 of two rows in place of the factors: the solution needs two independent products instead of two dependent
