@@ -131,7 +131,9 @@ constexpr const char* margins_begin = R"(
       const T held = from_bounds / (m.of_force[i] + T(slight) * magnitude(m.force[i]));
       const T slips = select(s.hold[i] > T(0), G.missing[i], -G.missing[i]) / m.of_rate[i];
       const T bound = select(G.low[i] < G.high[i], slips, T(1e30));
-      const T away = select(has_one_end(G, i), gap(G, i) / m.of_value[i], bound);
+      // Ends that have crossed since a row was off: there was no way between them.
+      const T met = is_rate[i] ? bound : select(is_equation(G, i), -magnitude(G.off[i]) / m.of_value[i], bound);
+      const T away = select(has_one_end(G, i), gap(G, i) / m.of_value[i], met);
       m.margin[i] = smaller(select(magnitude(s.hold[i]) < T(0.5), held, away), T(1e30));
       passed = select(has_one_end(G, i), larger(passed, -gap(G, i) - T(4) * m.of_value[i]), passed);
     }

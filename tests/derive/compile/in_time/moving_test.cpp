@@ -12,6 +12,7 @@
 #include "ends_implicit.hpp"
 #include "ends_rattle.hpp"
 #include "ends_rk4.hpp"
+#include "falling_rk4.hpp"
 #include "ropes_euler.hpp"
 #include "ropes_implicit.hpp"
 #include "ropes_radau5.hpp"
@@ -73,6 +74,16 @@ void holds_at_the_lower_end(double within) {
 TEST(CompiledMoving, EndsThatCrossHold) {
   holds_at_the_lower_end<crossing_rk4<double>>(1e-9);
   holds_at_the_lower_end<crossing_euler<double>>(0.01);  // of first order
+}
+
+// The block passes its end before the ends cross, both within a step whose error is none.
+TEST(CompiledMoving, EndsThatCrossWithinAStepHold) {
+  using Falling = falling_rk4<double>;
+  Falling::State state;
+  Falling::reset(state);
+  Falling::step(state, 0.6);
+  EXPECT_NEAR(state.q[Falling::block].y, 0.2 * std::cos(2.4), 1e-9);
+  EXPECT_NEAR(state.v[Falling::block].y, -0.8 * std::sin(2.4), 1e-9);
 }
 
 // The wheel goes where its equal ends lead it: 0.5 sin(2 t)^2.
