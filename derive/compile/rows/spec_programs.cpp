@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <tuple>
 
 #include "derive/kernel/factor.hpp"
 #include "derive/kernel/plan.hpp"
@@ -54,11 +55,7 @@ std::map<std::string, std::string> leaves_of_law(const derive::Joint& joint) {
   return leaves;
 }
 
-}  // namespace
-
-SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& spec,
-                         const std::set<std::string>& coordinates, bool stiffness) {
-  const derive::ReadResult read = specs.read(specs.find(spec));
+SpecPrograms derived(const derive::ReadResult& read, const std::set<std::string>& coordinates, bool stiffness) {
   if (!read.joint) throw std::runtime_error(render(*read.file, read.diagnostics));
   const derive::Derivation derivation = derive::derive(*read.joint);
   derive::Kernel kernel = derive::plan(derivation);
@@ -91,6 +88,18 @@ SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& sp
     }
   }
   return programs;
+}
+
+}  // namespace
+
+SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& spec,
+                         const std::set<std::string>& coordinates, bool stiffness) {
+  static std::map<std::tuple<std::filesystem::path, std::set<std::string>, bool>, SpecPrograms> known;
+  const std::tuple key(specs.find(spec), coordinates, stiffness);
+  const auto found = known.find(key);
+  return found != known.end()
+             ? found->second
+             : known.emplace(key, derived(specs.read(std::get<0>(key)), coordinates, stiffness)).first->second;
 }
 
 }  // namespace cdot::compile

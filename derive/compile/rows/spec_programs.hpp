@@ -46,7 +46,7 @@ struct SpecPrograms {
 };
 
 // With these of its coordinates, and those of its rows with bounds; spec: "planar/revolute". stiffness: that of the
-// rows too.
+// rows too. They are derived once in a process: a bill asks for those of every part again and again.
 SpecPrograms programs_of(const derive::SpecsFolder& specs, const std::string& spec,
                          const std::set<std::string>& coordinates, bool stiffness);
 
