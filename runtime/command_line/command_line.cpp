@@ -181,6 +181,13 @@ int complain(const Program& program, const std::string& what, const std::string&
   return wrong_usage;
 }
 
+// The status, if all of the standard output has been written.
+int if_written(const Program& program, int status) {
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return status;
+  fmt::print(stderr, "{}: standard output cannot be written: {}\n", program.name, std::strerror(errno));
+  return wrong_usage;
+}
+
 void add_completion(CLI::App& app, const Program& program, Run& selected) {
   CLI::App& sub = *app.add_subcommand("completion", "Write the script by which a shell completes these commands");
   const auto shell = std::make_shared<std::string>();
@@ -222,12 +229,9 @@ int run(const Program& program, std::span<const Command> commands, int argc, con
   } catch (const CLI::ParseError& error) {
     if (const std::string unknown = unknown_option(app); !unknown.empty())
       return complain(program, unknown, app.get_subcommands().front()->get_name());
-    return app.exit(error) == 0 ? 0 : wrong_usage;
+    return if_written(program, app.exit(error) == 0 ? 0 : wrong_usage);
   }
-  const int status = selected();
-  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return status;
-  fmt::print(stderr, "{}: standard output cannot be written: {}\n", program.name, std::strerror(errno));
-  return wrong_usage;
+  return if_written(program, selected());
 }
 
 }  // namespace cdot::command_line

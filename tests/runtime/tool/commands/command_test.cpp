@@ -88,7 +88,7 @@ TEST(Command, OutputsNeverReplaceDevicesPipesOrLinks) {
 }
 
 TEST(Command, AFullDiskBehindStandardOutputIsNoSuccess) {
-  for (const char* arguments : {"list", "simulate {}"}) {
+  for (const char* arguments : {"list", "simulate {}", "--help", "simulate --help", "--version"}) {
     const std::string command = fmt::format(fmt::runtime(arguments), scene("simple_pendulum"));
     const CommandResult result = run_command(fmt::format("({} {} >/dev/full)", CDOT_RUN, command));
     EXPECT_EQ(result.status, 2) << command;
