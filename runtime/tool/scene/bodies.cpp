@@ -1,5 +1,6 @@
 // The [[body]] entries of a scene -> definitions of bodies. In the plane a direction has two numbers and a rotation
 // one. In space a rotation has three, and an inertia may be a tensor.
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -114,6 +115,18 @@ void read_vector_of(Entry& body, const char* key, Reading& to) {
   numbers.*x = vector[0], numbers.*y = vector[1], numbers.*z = vector[2];
 }
 
+// The origin moves among the bodies, by a shift that floats have to hold as well.
+constexpr double furthest = 1e30;  // [m]
+
+void read_position(Entry& body, const char* key, Reading& to) {
+  read_vector_of<&Definition::x, &Definition::y, &Definition::z>(body, key, to);
+  const Definition& at = to.body.spatial;
+  const double most = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)});
+  if (most > furthest)
+    body.error(body.where(key), fmt::format("`{}` is {:.3g} m from the origin, beyond {:.0e} m", key, most, furthest),
+               "numbers are metres: check the exponent");
+}
+
 // One number in the plane, three in space.
 template <Member x, Member y, Member z, bool angle>
 void read_turn(Entry& body, const char* key, Reading& to) {
@@ -179,7 +192,7 @@ constexpr Key<Reading> body_keys[] = {
     {"fixed_rotation", "never turns; needs no inertia", "false", read_flag<body_part, spatial_part, &Definition::fixed_rotation>},
     {"mass", "[kg]", "required", read_number<Sign::positive, body_part, spatial_part, &Definition::mass>},
     {"inertia", "about the centre of mass [kg m^2]; in space a number, three or a tensor", "of the shape, if uniform", read_inertia},
-    {"position", "of the centre of mass at the start [m]", "0", read_vector_of<&Definition::x, &Definition::y, &Definition::z>},
+    {"position", "of the centre of mass at the start [m]", "0", read_position},
     {"orientation", "of the body's frame, a quaternion of any length", "[1, 0, 0, 0]", read_quaternion, Where::in_space},
     {"axis", "with angle: the orientation as a rotation about this axis", "", read_axis, Where::in_space},
     {"angle", "of the body's frame at the start [rad]", "0", read_angle},
