@@ -10,10 +10,11 @@ Graph::Graph(const Program& program, Effort& effort) : effort_(effort), outputs_
   const std::size_t n = program.ops.size();
   slots_.assign(std::bit_ceil(2 * n + 64), -1);
   uses_ = use_counts(program);
+  ops_.reserve(n), place_.reserve(n), now_.reserve(n);
   users_.resize(n), hash_.resize(n), next_.resize(n, -1), state_.resize(n, State::settled);
   for (std::size_t i = 0; i < n; ++i) {
     const int op = static_cast<int>(i);
-    ops_.push_back(program.ops[i]);
+    ops_.push_back(&program.ops[i]);
     place_.push_back(0), now_.push_back(op);
     append(op);
     for (const int arg : program.ops[i].args) users_[index(arg)].push_back(op);
@@ -61,10 +62,10 @@ int Graph::intern(Operation op) {
   int sign = 0;
   const int other = known(op, hash, sign);
   if (other < 0) return store(std::move(op), hash);
-  SharedText& name = ops_[index(other)].name;
+  const SharedText& name = at(other).name;
   if (is_placed(other)) {
     if (sign < 0) return sum({{other}, {Rational(-1)}});
-    if (name.empty()) name = std::move(op.name);
+    if (name.empty() && !op.name.empty()) rename(other, std::move(op.name));
     return other;
   }
   // The known one comes later. A copy would store `op` here, and the known one would become this one or its negative.
@@ -72,8 +73,8 @@ int Graph::intern(Operation op) {
     make_pending(other);
     return store(std::move(op), hash);
   }
-  if (!name.empty()) late_names_[other] = std::move(name);
-  name = std::move(op.name);
+  if (!name.empty()) late_names_[other] = name;
+  if (name != op.name) rename(other, std::move(op.name));
   append(other);
   changes_.places.push_back(other);
   return other;
@@ -82,7 +83,7 @@ int Graph::intern(Operation op) {
 int Graph::store(Operation op, std::size_t hash) {
   const int made = size();
   for (const int arg : op.args) use(arg, made);
-  ops_.push_back(std::move(op));
+  ops_.push_back(&made_.emplace_back(std::move(op)));
   uses_.push_back(0), place_.push_back(0), now_.push_back(made), next_.push_back(-1);
   hash_.push_back(hash), users_.emplace_back(), state_.push_back(State::settled);
   enter(made);
@@ -90,6 +91,12 @@ int Graph::store(Operation op, std::size_t hash) {
   without_use_.push_back(made);
   changes_.ops.push_back(made);
   return made;
+}
+
+void Graph::rename(int op, SharedText name) {
+  Operation& renamed = made_.emplace_back(at(op));
+  renamed.name = std::move(name);
+  ops_[index(op)] = &renamed;
 }
 
 void Graph::use(int op, int user) {
@@ -140,12 +147,12 @@ void Graph::begin(const std::vector<int>& ops) {
 
 void Graph::rewrite(const std::vector<int>& ops, const Rewrite& rewrite) {
   begin(ops);
+  rewritten_ = true;
   for (const int op : rest_) {
     if (state_[index(op)] == State::gone) continue;
     if (is_placed(op)) {  // moved to the front
       const auto late = late_names_.find(op);
-      SharedText& name = ops_[index(op)].name;
-      if (late != late_names_.end() && name.empty()) name = late->second;
+      if (late != late_names_.end() && at(op).name.empty()) rename(op, late->second);
     } else if (state_[index(op)] == State::settled) {
       append(op);
     } else {
@@ -179,7 +186,7 @@ void Graph::take_over(int op, int made) {
     std::ranges::replace(users_[index(arg)], made, op);
   }
   leave(made);
-  ops_[to] = std::move(ops_[from]);
+  ops_[to] = ops_[from];
   hash_[to] = hash_[from];
   state_[to] = State::settled;
   enter(op);
@@ -238,6 +245,11 @@ Program Graph::program() const {
   }
   for (const Output& output : outputs_) program.outputs.push_back({output.name, to[index(output.op)]});
   return program;
+}
+
+std::optional<Program> Graph::result() const {
+  const bool is_same = !rewritten_ && unneeded_.empty();
+  return is_same ? std::nullopt : std::optional(program());
 }
 
 }  // namespace cdot::derive

@@ -19,6 +19,7 @@ namespace cdot::derive {
 // come just before the one that first needs them.
 class Graph final : public Builder {
  public:
+  // Reads the operations of `program` where they are, so the program must outlive the graph.
   Graph(const Program& program, Effort& effort);
 
   // The replacement of an operation, built from `now` of its operands; nullopt to leave it as it is.
@@ -27,7 +28,8 @@ class Graph final : public Builder {
   // The present number of an operand of the operation that is being rewritten.
   int now(int op) const { return now_[index(op)]; }
 
-  const Operation& at(int op) const override { return ops_[index(op)]; }
+  // Stays as it is as long as the graph: a rewriting, or a new name, makes another one.
+  const Operation& at(int op) const override { return *ops_[index(op)]; }
   bool is_needed(int op) const { return state_[index(op)] == State::settled; }
   int uses(int op) const { return uses_[index(op)]; }
   int place(int op) const { return place_[index(op)]; }
@@ -45,6 +47,8 @@ class Graph final : public Builder {
   const Changes& changes() const { return changes_; }
 
   Program program() const;
+  // The same, or nullopt where nothing was rewritten and all is needed.
+  std::optional<Program> result() const;
 
  private:
   enum class State : std::uint8_t {
@@ -58,6 +62,7 @@ class Graph final : public Builder {
   static std::size_t index(int op) { return static_cast<std::size_t>(op); }
   int intern(Operation op) override;
   int store(Operation op, std::size_t hash);
+  void rename(int op, SharedText name);
   int known(const Operation& op, std::size_t hash, int& sign) const;
   void enter(int op);
   void leave(int op);
@@ -73,7 +78,8 @@ class Graph final : public Builder {
   void drop_unneeded();
 
   Effort& effort_;
-  std::deque<Operation> ops_;
+  std::vector<const Operation*> ops_;  // of the program or in `made_`
+  std::deque<Operation> made_;
   std::vector<Output> outputs_;
   std::vector<State> state_;
   std::vector<int> uses_, place_, now_, next_;  // next_: the next operation in the same slot
@@ -82,6 +88,7 @@ class Graph final : public Builder {
   std::vector<int> slots_;  // hash table: the first operation in each slot, or -1
   std::vector<int> order_;  // the first `placed_` of it
   std::size_t placed_ = 0;
+  bool rewritten_ = false;
   std::vector<int> rest_;                 // in `rewrite`: what has no place yet
   std::vector<int> unneeded_;             // without use since the last rewriting
   std::map<int, SharedText> late_names_;  // of operations that moved to the front: given at their old place

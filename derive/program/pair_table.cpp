@@ -30,7 +30,7 @@ void PairTable::follow() {
 
 // How often the i-th and the j-th operand occur as a pair. x^4 = (x^2)^2 has the pair x x twice, x^2 y^2 = (x y)^2 the
 // pair x y.
-int PairTable::times(const Counted& counted, std::size_t i, std::size_t j) const {
+int PairTable::times(const Operation& counted, std::size_t i, std::size_t j) const {
   if (kind_ == OpKind::product) {
     return i == j ? counted.exponents[i] / 2 : std::min(counted.exponents[i], counted.exponents[j]);
   }
@@ -41,7 +41,7 @@ int PairTable::times(const Counted& counted, std::size_t i, std::size_t j) const
 }
 
 // Which operands of `from` are missing in `to`, or have another coefficient or exponent there.
-std::vector<bool> PairTable::changed(const Counted& from, const Counted& to) {
+std::vector<bool> PairTable::changed(const Operation& from, const Operation& to) {
   std::vector<bool> changed(from.args.size(), true);
   if ((from.args.size() > 2) != (to.args.size() > 2)) return changed;
   position_.resize(at_index(graph_.size()));
@@ -57,20 +57,18 @@ std::vector<bool> PairTable::changed(const Counted& from, const Counted& to) {
 }
 
 void PairTable::update(int op) {
-  if (at_index(op) >= counted_.size()) counted_.resize(at_index(op) + 1);
-  Counted now;
-  if (graph_.is_needed(op) && graph_.at(op).kind == kind_) {
-    const Operation& o = graph_.at(op);
-    now = {o.args, o.exponents, o.coefs};
-  }
-  Counted& before = counted_[at_index(op)];
-  if (now.args.empty() && before.args.empty()) return;
-  add(before, changed(before, now), op, -1);
-  add(now, changed(now, before), op, 1);
-  before = std::move(now);
+  static const Operation none;
+  if (at_index(op) >= counted_.size()) counted_.resize(at_index(graph_.size()), nullptr);
+  const bool counts = graph_.is_needed(op) && graph_.at(op).kind == kind_;
+  const Operation* now = counts ? &graph_.at(op) : nullptr;
+  const Operation* before = std::exchange(counted_[at_index(op)], now);
+  if (now == before) return;
+  const auto pairs_of = [](const Operation* counted) -> const Operation& { return counted ? *counted : none; };
+  add(pairs_of(before), changed(pairs_of(before), pairs_of(now)), op, -1);
+  add(pairs_of(now), changed(pairs_of(now), pairs_of(before)), op, 1);
 }
 
-void PairTable::add(const Counted& counted, const std::vector<bool>& changed, int op, int sign) {
+void PairTable::add(const Operation& counted, const std::vector<bool>& changed, int op, int sign) {
   for (std::size_t i = 0; i < changed.size(); ++i) {
     if (!changed[i]) continue;
     effort_.spend(changed.size());
@@ -80,7 +78,7 @@ void PairTable::add(const Counted& counted, const std::vector<bool>& changed, in
   }
 }
 
-void PairTable::add_pair(const Counted& counted, std::size_t i, std::size_t j, int op, int sign) {
+void PairTable::add_pair(const Operation& counted, std::size_t i, std::size_t j, int op, int sign) {
   const int n = times(counted, i, j);
   if (n == 0) return;
   if (counted.args[i] > counted.args[j]) std::swap(i, j);

@@ -43,18 +43,13 @@ class PairTable {
     int next = -1;  // the next entry in the same slot of the hash table
     Few<Occurrence, 2> in;
   };
-  // The operands of an operation when it was last counted.
-  struct Counted {
-    Operands args, exponents;
-    Coefs coefs;
-  };
   struct Rank;
 
   void update(int op);
-  void add(const Counted& counted, const std::vector<bool>& changed, int op, int sign);
-  void add_pair(const Counted& counted, std::size_t i, std::size_t j, int op, int sign);
-  int times(const Counted& counted, std::size_t i, std::size_t j) const;
-  std::vector<bool> changed(const Counted& from, const Counted& to);
+  void add(const Operation& counted, const std::vector<bool>& changed, int op, int sign);
+  void add_pair(const Operation& counted, std::size_t i, std::size_t j, int op, int sign);
+  int times(const Operation& counted, std::size_t i, std::size_t j) const;
+  std::vector<bool> changed(const Operation& from, const Operation& to);
   int entry(const Key& key);
   void enter(int entry);
   void leave(int entry);
@@ -65,9 +60,9 @@ class PairTable {
   const Graph& graph_;
   OpKind kind_;
   Effort& effort_;
-  std::vector<Counted> counted_;       // by operation
-  std::vector<std::size_t> position_;  // by operand, in `changed`
-  std::vector<int> slots_;             // hash table: the first entry in each slot, or -1
+  std::vector<const Operation*> counted_;  // by operation, as it was last counted; null: no pairs
+  std::vector<std::size_t> position_;      // by operand, in `changed`
+  std::vector<int> slots_;                 // hash table: the first entry in each slot, or -1
   std::vector<Entry> entries_;
   std::vector<int> free_;
   std::vector<std::vector<int>> buckets_;  // entries by count, from two on

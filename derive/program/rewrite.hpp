@@ -21,12 +21,15 @@ using Made = std::optional<int>;
 using Rewrite = std::function<Made(ProgramBuilder&, const Operation&, int index, const Moved& at)>;
 Program rewritten(const Program& program, const Rewrite& rewrite);
 
+// A pass: nullopt where it would give the same program.
+using Passed = std::optional<Program>;
+
 // Passes that compute a common pair once. They begin with the most frequent pair, the first of equals, and end where no
 // pair occurs twice or the effort is spent.
-Program share_terms(const Program& program, Effort& effort);    // x + ratio y
-Program share_factors(const Program& program, Effort& effort);  // x y
+Passed share_terms(const Program& program, Effort& effort);    // x + ratio y
+Passed share_factors(const Program& program, Effort& effort);  // x y
 // a x + b x = x (a + b). Begins with the factor that most terms of a sum have.
-Program take_out_factors(const Program& program, Effort& effort);
+Passed take_out_factors(const Program& program, Effort& effort);
 
 // Openings cost by themselves, but from there the search may find a cheaper program; nullopt if there is nothing to
 // open. 2 x y with the factor 2, which then is shared and taken out as any other: (2 x) y + (2 x) z.

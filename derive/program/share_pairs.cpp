@@ -56,7 +56,7 @@ SharedText name_of(const Graph& graph, const Pair& pair) {
 }  // namespace
 
 // x + y once for all sums that contain it.
-Program share_terms(const Program& program, Effort& effort) {
+Passed share_terms(const Program& program, Effort& effort) {
   Graph graph(program, effort);
   PairTable pairs(graph, OpKind::sum, effort);
   for (std::optional<Pair> pair; !effort.spent() && (pair = pairs.most_frequent()); pairs.follow()) {
@@ -71,11 +71,11 @@ Program share_terms(const Program& program, Effort& effort) {
       return builder.sum(std::move(terms), op.name);
     });
   }
-  return graph.program();
+  return graph.result();
 }
 
 // x y once for all products that contain it.
-Program share_factors(const Program& program, Effort& effort) {
+Passed share_factors(const Program& program, Effort& effort) {
   Graph graph(program, effort);
   PairTable pairs(graph, OpKind::product, effort);
   for (std::optional<Pair> pair; !effort.spent() && (pair = pairs.most_frequent()); pairs.follow()) {
@@ -96,7 +96,7 @@ Program share_factors(const Program& program, Effort& effort) {
       return builder.product(std::move(args), std::move(powers), op.name);
     });
   }
-  return graph.program();
+  return graph.result();
 }
 
 }  // namespace cdot::derive

@@ -23,9 +23,9 @@ Rational coefficient_of(const Operation& op) {
 }
 
 // -x - y = -(x + y) and 2 x - 2 y = 2 (x - y): one factor for the sum, not one per term.
-Program take_out_coefficients(Program program) {
+Passed take_out_coefficients(const Program& program, Effort&) {
   const auto has_none = [](const Operation& op) { return coefficient_of(op) == Rational(1); };
-  if (std::ranges::all_of(program.ops, has_none) && all_needed(use_counts(program))) return program;
+  if (std::ranges::all_of(program.ops, has_none) && all_needed(use_counts(program))) return std::nullopt;
   return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
     const Rational factor = coefficient_of(op);
     if (factor == Rational(1)) return std::nullopt;
@@ -44,7 +44,7 @@ bool flattens(const Operation& outer, Rational coef, const Operation& inner, int
   return inner.name.empty() || (opens_with_minus && has_minus);
 }
 
-Program flatten_sums(Program program) {
+Passed flatten_sums(const Program& program, Effort&) {
   const std::vector<int> uses = use_counts(program);
   std::vector<bool> absorbed(program.ops.size());
   bool any = !all_needed(uses);
@@ -57,7 +57,7 @@ Program flatten_sums(Program program) {
       any = any || absorbed[a];
     }
   }
-  if (!any) return program;
+  if (!any) return std::nullopt;
   return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int index, const Moved& at) -> Made {
     if (absorbed[static_cast<std::size_t>(index)]) return builder.number(0);  // never read
     if (op.kind != OpKind::sum) return std::nullopt;
@@ -76,7 +76,7 @@ Program flatten_sums(Program program) {
 }
 
 // k (x y) = k x y, where the inner product has no other user: any two of the factors may then be shared.
-Program flatten_products(Program program) {
+Passed flatten_products(const Program& program, Effort&) {
   const std::vector<int> uses = use_counts(program);
   const auto absorbed = [&](int arg, int exponent) {
     const Operation& inner = program.at(arg);
@@ -89,7 +89,7 @@ Program flatten_products(Program program) {
       if (absorbed(op.args[i], op.exponents[i])) return true;
     return false;
   };
-  if (std::ranges::none_of(program.ops, absorbs) && all_needed(uses)) return program;
+  if (std::ranges::none_of(program.ops, absorbs) && all_needed(uses)) return std::nullopt;
   return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
     if (!absorbs(op)) return std::nullopt;
     Operands args, exponents;
@@ -151,58 +151,85 @@ Program without_cancelling(Program program, Effort& effort) {
   return program;
 }
 
-using Pass = Program (*)(const Program&, Effort&);
-
-// Orders of passes begin alike, and a search often repeats an earlier one: each step is made once.
-struct Step {
-  const Program* from;
-  Pass pass;
-  Program to;
-};
-const Program& after(const Program& from, Pass pass, std::deque<Step>& made, Effort& effort) {
-  effort.spend(8 * from.ops.size());
-  for (const Step& step : made) {
-    if (step.pass == pass && (step.from == &from || *step.from == from)) return step.to;
-  }
-  return made.emplace_back(Step{&from, pass, flatten_sums(pass(from, effort))}).to;
-}
-
 // Cost in units of an addition; a division or root weighs as on current processors.
 int weight(const Count& c) { return c.add + c.multiply + c.compare + 6 * (c.divide + c.root) + 40 * c.call; }
 
-// The cheapest program that the passes find from here.
-Program searched(const Program& program, Effort& effort) {
+using Pass = Passed (*)(const Program&, Effort&);
+
+// Looks for the cheapest program that the passes find. Orders of passes begin alike, most passes leave a program as it
+// is, and many ways lead to the same one: each program is kept once, and each step from it is made once.
+class Search {
+ public:
+  explicit Search(Effort& effort) : effort_(effort) {}
+
+  // The cheapest program from here.
+  Program from(const Program& program);
+
+ private:
+  struct Step {
+    const Program *from, *to;
+    Pass pass;
+  };
+  const Program* kept(Program program);
+  const Program* after(const Program* from, Pass pass);
+  const Program* tidied(const Program* program, bool coefficients_out);
+  const Program* costly_step(const Program* from, Pass pass);
+
+  Effort& effort_;
+  std::deque<Program> programs_;
+  std::deque<Step> steps_;
+};
+
+const Program* Search::kept(Program program) {
+  const auto known = std::ranges::find(programs_, program);
+  return known != programs_.end() ? &*known : &programs_.emplace_back(std::move(program));
+}
+
+const Program* Search::after(const Program* from, Pass pass) {
+  for (const Step& step : steps_)
+    if (step.pass == pass && step.from == from) return step.to;
+  Passed passed = pass(*from, effort_);
+  return steps_.emplace_back(Step{from, passed ? kept(std::move(*passed)) : from, pass}).to;
+}
+
+const Program* Search::tidied(const Program* program, bool coefficients_out) {
+  if (coefficients_out) program = after(program, take_out_coefficients);
+  return after(after(program, flatten_products), flatten_sums);
+}
+
+const Program* Search::costly_step(const Program* from, Pass pass) {
+  effort_.spend(8 * from->ops.size());
+  return after(after(from, pass), flatten_sums);
+}
+
+Program Search::from(const Program& program) {
   static constexpr Pass orders[][3] = {{share_factors, share_terms, take_out_factors},
                                        {take_out_factors, share_factors, share_terms},
                                        {share_terms, take_out_factors, share_factors},
                                        {share_terms, share_factors, take_out_factors},
                                        {take_out_factors, share_terms, share_factors}};
-  std::deque<Step> steps;
-  std::deque<Program> starts;  // of this turn and of those before, from which steps are known
-  Program best = program;
-  int least = weight(count(best));
-  for (bool improved = true; improved && !effort.spent();) {
+  const Program* best = kept(program);
+  int least = weight(count(*best));
+  std::set<const Program*> weighed;
+  for (bool improved = true; improved && !effort_.spent();) {
     improved = false;
-    const auto tidied = [](const Program& p, bool coefficients_out) {
-      return flatten_sums(flatten_products(coefficients_out ? take_out_coefficients(p) : p));
-    };
-    const Program* const start[] = {&starts.emplace_back(tidied(best, false)),
-                                    &starts.emplace_back(tidied(best, true))};
+    const Program* const start[] = {tidied(best, false), tidied(best, true)};
     for (const auto& order : orders) {
       for (const bool coefficients_out : {false, true}) {
         const Program* last = start[coefficients_out];
-        for (const Pass pass : order) last = &after(*last, pass, steps, effort);
-        Program candidate = tidied(*last, coefficients_out);
-        const int candidate_weight = weight(count(candidate));
-        if (candidate_weight >= least) continue;
-        best = std::move(candidate), least = candidate_weight;
+        for (const Pass pass : order) last = costly_step(last, pass);
+        last = tidied(last, coefficients_out);
+        if (!weighed.insert(last).second) continue;
+        const int last_weight = weight(count(*last));
+        if (last_weight >= least) continue;
+        best = last, least = last_weight;
         improved = true;
       }
     }
   }
   // Of equals, x - w (2 y + z) rather than x + w (-2 y - z).
-  Program positive = flatten_sums(take_out_coefficients(best));
-  return weight(count(positive)) <= least ? positive : best;
+  const Program* positive = after(after(best, take_out_coefficients), flatten_sums);
+  return weight(count(*positive)) <= least ? *positive : *best;
 }
 
 Program cheaper(Program a, Program b) { return weight(count(a)) <= weight(count(b)) ? std::move(a) : std::move(b); }
@@ -211,17 +238,19 @@ Program cheaper(Program a, Program b) { return weight(count(a)) <= weight(count(
 
 Program simplify(const Program& program, Effort& effort) {
   const Program start = without_cancelling(program, effort);
-  Program best = searched(start, effort);
-  if (find_cancelling(program)) best = cheaper(std::move(best), searched(program, effort));
+  const auto searched = [&](const Program& from) { return Search(effort).from(from); };
+  const auto passed = [&](const Program& from, Pass pass) { return pass(from, effort).value_or(from); };
+  Program best = searched(start);
+  if (find_cancelling(program)) best = cheaper(std::move(best), searched(program));
   const auto try_from = [&](const std::optional<Program>& from) {
-    if (from && !effort.spent()) best = cheaper(std::move(best), searched(*from, effort));
+    if (from && !effort.spent()) best = cheaper(std::move(best), searched(*from));
   };
-  const auto with_numbers = [](const std::optional<Program>& from) {
-    return from ? with_numbers_as_factors(flatten_sums(*from)) : std::nullopt;
+  const auto with_numbers = [&](const std::optional<Program>& from) {
+    return from ? with_numbers_as_factors(passed(*from, flatten_sums)) : std::nullopt;
   };
   // h^2 + k h^2 is one product.
-  const Program factored = take_out_coefficients(flatten_sums(take_out_factors(start, effort)));
-  const std::optional<Program> beside = with_products_beside_squares_opened(flatten_sums(factored));
+  const Program factored = passed(passed(passed(start, take_out_factors), flatten_sums), take_out_coefficients);
+  const std::optional<Program> beside = with_products_beside_squares_opened(passed(factored, flatten_sums));
   for (const std::optional<Program>& from : {std::optional(start), distributed(start), beside})
     try_from(with_numbers(from));
   try_from(beside);

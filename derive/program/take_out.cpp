@@ -121,13 +121,13 @@ int taken_out(Graph& graph, const Operation& sum, int factor) {
 
 }  // namespace
 
-Program take_out_factors(const Program& program, Effort& effort) {
+Passed take_out_factors(const Program& program, Effort& effort) {
   Graph graph(program, effort);
   CommonFactors factors(graph, effort);
   for (int sum = -1; !effort.spent() && (sum = factors.best()) >= 0; factors.follow()) {
     graph.rewrite({sum}, [&](Graph&, const Operation& op) { return taken_out(graph, op, factors.factor_of(sum)); });
   }
-  return graph.program();
+  return graph.result();
 }
 
 }  // namespace cdot::derive
