@@ -21,25 +21,25 @@ class Few {
   Few() = default;
   Few(std::initializer_list<T> elements) { append(elements.begin(), elements.size()); }
   Few(const std::vector<T>& elements) { append(elements.data(), elements.size()); }
-  Few(const Few& other) { append(other.begin(), other.size()); }
+  Few(const Few& other) { copy(other); }
   Few(Few&& other) noexcept { take(other); }
-  ~Few() { delete[] many_; }
+  ~Few() { free(); }
   Few& operator=(const Few& other) {
-    if (this != &other) size_ = 0, append(other.begin(), other.size());
+    if (this != &other) size_ = 0, copy(other);
     return *this;
   }
   Few& operator=(Few&& other) noexcept {
     if (this == &other) return *this;
-    delete[] many_;
+    free();
     take(other);
     return *this;
   }
 
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
-  T* begin() { return many_ ? many_ : few_; }
+  T* begin() { return has_many() ? place_.many : place_.few; }
   T* end() { return begin() + size_; }
-  const T* begin() const { return many_ ? many_ : few_; }
+  const T* begin() const { return has_many() ? place_.many : place_.few; }
   const T* end() const { return begin() + size_; }
   T& operator[](std::size_t i) { return begin()[i]; }
   const T& operator[](std::size_t i) const { return begin()[i]; }
@@ -62,23 +62,36 @@ class Few {
   friend bool operator==(const Few& a, const Few& b) { return std::equal(a.begin(), a.end(), b.begin(), b.end()); }
 
  private:
+  union Place {
+    Place() : few{} {}
+    T few[N];
+    T* many;
+  };
+
+  bool has_many() const { return capacity_ > N; }
+  void free() {
+    if (has_many()) delete[] place_.many;
+  }
   void reserve(std::size_t n) {
     if (n <= capacity_) return;
     T* larger = new T[n];
     std::copy_n(begin(), size_, larger);
-    delete[] many_;
-    many_ = larger, capacity_ = static_cast<std::uint32_t>(n);
+    free();
+    place_.many = larger, capacity_ = static_cast<std::uint32_t>(n);
+  }
+  // Into an empty one.
+  void copy(const Few& other) {
+    if (has_many() || other.has_many()) append(other.begin(), other.size());
+    else place_ = other.place_, size_ = other.size_;
   }
   void take(Few& other) {
     size_ = std::exchange(other.size_, 0);
     capacity_ = std::exchange(other.capacity_, N);
-    many_ = std::exchange(other.many_, nullptr);
-    if (!many_) std::copy_n(other.few_, size_, few_);
+    place_ = other.place_;
   }
 
   std::uint32_t size_ = 0, capacity_ = N;
-  T* many_ = nullptr;
-  T few_[N]{};
+  Place place_;
 };
 
 }  // namespace cdot::derive

@@ -8,7 +8,6 @@ namespace cdot::derive {
 
 Graph::Graph(const Program& program, Effort& effort) : effort_(effort), outputs_(program.outputs) {
   const std::size_t n = program.ops.size();
-  slots_.assign(std::bit_ceil(2 * n + 64), -1);
   uses_ = use_counts(program);
   ops_.reserve(n), place_.reserve(n), now_.reserve(n);
   users_.resize(n), hash_.resize(n), next_.resize(n, -1), state_.resize(n, State::settled);
@@ -18,11 +17,18 @@ Graph::Graph(const Program& program, Effort& effort) : effort_(effort), outputs_
     place_.push_back(0), now_.push_back(op);
     append(op);
     for (const int arg : program.ops[i].args) users_[index(arg)].push_back(op);
-    hash_[i] = hash_of(program.ops[i]);
-    if (uses_[i] > 0) enter(op);
-    else state_[i] = State::unneeded, unneeded_.push_back(op);
+    if (uses_[i] == 0) state_[i] = State::unneeded, unneeded_.push_back(op);
   }
   effort_.spend(n);
+}
+
+// Most passes find nothing to rewrite: the hash table waits for the first rewriting.
+void Graph::enter_all() {
+  slots_.assign(std::bit_ceil(2 * ops_.size() + 64), -1);
+  for (int op = 0; op < size(); ++op) {
+    hash_[index(op)] = hash_of(at(op));
+    if (is_needed(op)) enter(op);
+  }
 }
 
 void Graph::enter(int op) {
@@ -45,6 +51,21 @@ void Graph::append(int op) {
   if (placed_ == order_.size()) order_.resize(2 * placed_ + 64);
   place_[index(op)] = static_cast<int>(placed_);
   order_[placed_++] = op;
+}
+
+// Appends the rest from here on up to the first operation that may have changed or moved; gives that one's place.
+std::size_t Graph::append_settled(std::size_t from) {
+  const std::size_t end = changes_.places.empty() ? rest_.size() : from;
+  order_.resize(std::max(order_.size(), placed_ + (end - from)));
+  const State* const state = state_.data();
+  int *const place = place_.data(), *const order = order_.data();
+  std::size_t placed = placed_;
+  for (; from < end && state[rest_[from]] == State::settled; ++from) {
+    place[rest_[from]] = static_cast<int>(placed);
+    order[placed++] = rest_[from];
+  }
+  placed_ = placed;
+  return from;
 }
 
 // The known operation equal to `op` or to its negative; -1 if there is none.
@@ -146,11 +167,12 @@ void Graph::begin(const std::vector<int>& ops) {
 }
 
 void Graph::rewrite(const std::vector<int>& ops, const Rewrite& rewrite) {
+  if (!std::exchange(rewritten_, true)) enter_all();
   begin(ops);
-  rewritten_ = true;
-  for (const int op : rest_) {
+  for (std::size_t i = 0; (i = append_settled(i)) < rest_.size(); ++i) {
+    const int op = rest_[i];
     if (state_[index(op)] == State::gone) continue;
-    if (is_placed(op)) {  // moved to the front
+    if (!changes_.places.empty() && is_placed(op)) {  // moved to the front
       const auto late = late_names_.find(op);
       if (late != late_names_.end() && at(op).name.empty()) rename(op, late->second);
     } else if (state_[index(op)] == State::settled) {

@@ -64,10 +64,12 @@ class Graph final : public Builder {
   int store(Operation op, std::size_t hash);
   void rename(int op, SharedText name);
   int known(const Operation& op, std::size_t hash, int& sign) const;
+  void enter_all();
   void enter(int op);
   void leave(int op);
   bool is_placed(int op) const;
   void append(int op);
+  std::size_t append_settled(std::size_t from);
   void begin(const std::vector<int>& ops);
   void settle(int op, const Rewrite& rewrite);
   void take_over(int op, int made);

@@ -1,6 +1,7 @@
 #include "derive/program/pair_table.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <compare>
 
 namespace cdot::derive {
@@ -19,8 +20,13 @@ std::size_t hash_of(int x, int y, Rational ratio) {
 
 }  // namespace
 
-PairTable::PairTable(const Graph& graph, OpKind kind, Effort& effort)
-    : graph_(graph), kind_(kind), effort_(effort), slots_(64, -1) {
+PairTable::PairTable(const Graph& graph, OpKind kind, Effort& effort) : graph_(graph), kind_(kind), effort_(effort) {
+  std::size_t pairs = 64;
+  for (int op = 0; op < graph.size(); ++op) {
+    const std::size_t n = counts(op) ? graph.at(op).args.size() : 0;
+    pairs += n * n / 2;
+  }
+  entries_.reserve(pairs), slots_.assign(std::bit_ceil(pairs), -1);
   for (int op = 0; op < graph.size(); ++op) update(op);
 }
 
@@ -59,8 +65,7 @@ std::vector<bool> PairTable::changed(const Operation& from, const Operation& to)
 void PairTable::update(int op) {
   static const Operation none;
   if (at_index(op) >= counted_.size()) counted_.resize(at_index(graph_.size()), nullptr);
-  const bool counts = graph_.is_needed(op) && graph_.at(op).kind == kind_;
-  const Operation* now = counts ? &graph_.at(op) : nullptr;
+  const Operation* now = counts(op) ? &graph_.at(op) : nullptr;
   const Operation* before = std::exchange(counted_[at_index(op)], now);
   if (now == before) return;
   const auto pairs_of = [](const Operation* counted) -> const Operation& { return counted ? *counted : none; };

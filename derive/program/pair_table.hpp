@@ -45,6 +45,7 @@ class PairTable {
   };
   struct Rank;
 
+  bool counts(int op) const { return graph_.is_needed(op) && graph_.at(op).kind == kind_; }
   void update(int op);
   void add(const Operation& counted, const std::vector<bool>& changed, int op, int sign);
   void add_pair(const Operation& counted, std::size_t i, std::size_t j, int op, int sign);

@@ -5,6 +5,9 @@
 #include <bit>
 #include <cstdint>
 #include <fmt/format.h>
+#include <map>
+#include <mutex>
+#include <unordered_set>
 
 #include "derive/program/builder.hpp"
 
@@ -33,6 +36,13 @@ void add_cost(const Program& program, const Operation& op, Count& count) {
 }
 
 }  // namespace
+
+const std::string* SharedText::kept(const std::string& text) {
+  static std::mutex one_at_a_time;
+  static std::unordered_set<std::string> texts;
+  const std::lock_guard lock(one_at_a_time);
+  return &*texts.insert(text).first;
+}
 
 std::size_t hash_of(const Operation& op) {
   std::uint64_t hash = op.kind == OpKind::input ? std::hash<std::string>()(op.input.text()) : 0;

@@ -1,8 +1,8 @@
 // A kernel function as a flat list of scalar operations by index. Passes rewrite this form, printers read it.
 #pragma once
 
+#include <cstdint>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,7 +11,7 @@
 
 namespace cdot::derive {
 
-enum class OpKind {
+enum class OpKind : std::uint8_t {
   number,  // moves into coefficients
   factor,  // a number that stays a factor of products, to be shared and taken out as any other
   input,
@@ -20,11 +20,11 @@ enum class OpKind {
   function
 };
 
-// A text that the copies of an operation share: passes copy programs thousands of times.
+// A text that operations share: passes copy programs thousands of times. Each one is kept until the process ends.
 class SharedText {
  public:
   SharedText() = default;
-  SharedText(const std::string& text) : text_(text.empty() ? nullptr : std::make_shared<const std::string>(text)) {}
+  SharedText(const std::string& text) : text_(text.empty() ? nullptr : kept(text)) {}
   SharedText(const char* text) : SharedText(std::string(text)) {}
 
   bool empty() const { return !text_; }
@@ -33,12 +33,12 @@ class SharedText {
     return text_ ? *text_ : none;
   }
   operator const std::string&() const { return text(); }
-  friend bool operator==(const SharedText& a, const SharedText& b) {
-    return a.text_ == b.text_ || a.text() == b.text();
-  }
+  friend bool operator==(SharedText a, SharedText b) = default;
 
  private:
-  std::shared_ptr<const std::string> text_;
+  static const std::string* kept(const std::string& text);
+
+  const std::string* text_ = nullptr;
 };
 
 using Operands = Few<int, 4>;
@@ -47,10 +47,10 @@ using Coefs = Few<Rational, 2>;
 // Operands come before their users. Sums and products have any number of operands.
 struct Operation {
   OpKind kind = OpKind::number;
-  Rational value;            // number, factor
-  SharedText input;          // input: the symbol's name
   bool is_position = false;  // input: a coordinate of a centre of mass (large, so differences come first)
   Fn fn{};                   // function
+  Rational value;            // number, factor
+  SharedText input;          // input: the symbol's name
   Operands args;
   Coefs coefs;         // sum
   Operands exponents;  // product, positive

@@ -1,5 +1,6 @@
 // The pass that takes common factors out of sums.
 #include <algorithm>
+#include <utility>
 
 #include "derive/program/rewrite.hpp"
 
@@ -58,17 +59,16 @@ class CommonFactors {
   int best() {
     for (const int op : marked_) {
       const bool is_sum = graph_.is_needed(op) && graph_.at(op).kind == OpKind::sum;
-      common_[place(op)] = is_sum ? most_common(graph_, graph_.at(op)) : Common{};
+      const Common before = std::exchange(common_[place(op)], is_sum ? most_common(graph_, graph_.at(op)) : Common{});
+      if (before.terms == 0 && common_[place(op)].terms > 0) candidates_.push_back(op);
       effort_.spend(1 + graph_.at(op).args.size());
       is_marked_[place(op)] = false;
     }
     marked_.clear();
-    int best = -1;
-    for (const int op : graph_.order()) {
-      const std::size_t most = best < 0 ? 0 : common_[place(best)].terms;
-      if (common_[place(op)].terms > most) best = op;
-    }
-    return best;
+    std::erase_if(candidates_, [&](int op) { return common_[place(op)].terms == 0; });
+    const auto rank = [&](int op) { return std::pair(common_[place(op)].terms, -graph_.place(op)); };
+    const auto best = std::ranges::max_element(candidates_, {}, rank);
+    return best == candidates_.end() ? -1 : *best;
   }
   int factor_of(int sum) const { return common_[place(sum)].factor; }
 
@@ -90,6 +90,7 @@ class CommonFactors {
   std::vector<Common> common_;  // by operation
   std::vector<bool> is_marked_;
   std::vector<int> marked_;
+  std::vector<int> candidates_;  // sums with a common factor
 };
 
 // a x + b x as x (a + b), besides the terms without x.
