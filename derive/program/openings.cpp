@@ -1,6 +1,7 @@
 // Products and numbers opened: costlier by themselves, but from there the search may find a cheaper program.
 #include <algorithm>
 #include <map>
+#include <ranges>
 #include <set>
 
 #include "derive/program/rewrite.hpp"
@@ -94,20 +95,32 @@ int opened_term(ProgramBuilder& builder, const Operation& product, const Operati
   return builder.product({builder.product(std::move(args), std::move(powers)), square}, {1, 1});
 }
 
+// 2 x, but not -x.
+bool costs_a_number(const Program& program, const Operation& sum, std::size_t term) {
+  return abs(sum.coefs[term]) != Rational(1) && program.at(sum.args[term]).kind != OpKind::number;
+}
+
 }  // namespace
 
 std::optional<Program> with_numbers_as_factors(const Program& program) {
-  bool any = false;
-  Program opened = rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
+  const std::vector<int> uses = use_counts(program);
+  const auto opens = [&](std::size_t op) {
+    const Operation& sum = program.ops[op];
+    bool any = false;
+    for (std::size_t i = 0; sum.kind == OpKind::sum && i < sum.args.size(); ++i)
+      any = any || costs_a_number(program, sum, i);
+    return any && uses[op] > 0;
+  };
+  if (std::ranges::none_of(std::views::iota(std::size_t{0}, uses.size()), opens)) return std::nullopt;
+  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
     if (op.kind != OpKind::sum) return std::nullopt;
     Summands terms;
     for (std::size_t i = 0; i < op.args.size(); ++i) {
-      const Rational size = abs(op.coefs[i]);
-      if (size == Rational(1) || program.at(op.args[i]).kind == OpKind::number) {
+      if (!costs_a_number(program, op, i)) {
         terms.add(op.coefs[i], at(op.args[i]));
         continue;
       }
-      any = true;
+      const Rational size = abs(op.coefs[i]);
       Operation number;
       number.kind = OpKind::factor;
       number.value = size;
@@ -120,16 +133,17 @@ std::optional<Program> with_numbers_as_factors(const Program& program) {
     }
     return builder.sum(std::move(terms), op.name);
   });
-  return any ? std::optional(std::move(opened)) : std::nullopt;
 }
 
 std::optional<Program> distributed(const Program& program) {
   const std::vector<int> uses = use_counts(program);
-  bool any = false;
-  Program opened = rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
+  const auto opens = [&](std::size_t op) {
+    return uses[op] > 0 && sum_among(program, program.ops[op], uses) < program.ops[op].args.size();
+  };
+  if (std::ranges::none_of(std::views::iota(std::size_t{0}, uses.size()), opens)) return std::nullopt;
+  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
     const std::size_t i = sum_among(program, op, uses);
     if (i == op.args.size()) return std::nullopt;
-    any = true;
     const Operation& sum = program.at(op.args[i]);
     Summands terms;
     for (std::size_t k = 0; k < sum.args.size(); ++k) {
@@ -146,7 +160,6 @@ std::optional<Program> distributed(const Program& program) {
     }
     return builder.sum(std::move(terms), op.name);
   });
-  return any ? std::optional(std::move(opened)) : std::nullopt;
 }
 
 std::optional<Program> with_products_beside_squares_opened(const Program& program) {

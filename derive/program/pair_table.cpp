@@ -46,20 +46,19 @@ int PairTable::times(const Operation& counted, std::size_t i, std::size_t j) con
   return alike || counted.args.size() == 2 ? 1 : 0;
 }
 
-// Which operands of `from` are missing in `to`, or have another coefficient or exponent there.
-std::vector<bool> PairTable::changed(const Operation& from, const Operation& to) {
-  std::vector<bool> changed(from.args.size(), true);
-  if ((from.args.size() > 2) != (to.args.size() > 2)) return changed;
+// Which operands of `from` are missing in `to`, or have another coefficient or exponent there: into `changed_`.
+void PairTable::compare(const Operation& from, const Operation& to) {
+  changed_.assign(from.args.size(), true);
+  if (to.args.empty() || (from.args.size() > 2) != (to.args.size() > 2)) return;
   position_.resize(at_index(graph_.size()));
   for (std::size_t i = 0; i < to.args.size(); ++i) position_[at_index(to.args[i])] = i + 1;
   for (std::size_t i = 0; i < from.args.size(); ++i) {
     const std::size_t same = position_[at_index(from.args[i])];
     if (same == 0) continue;
-    changed[i] =
+    changed_[i] =
         kind_ == OpKind::sum ? from.coefs[i] != to.coefs[same - 1] : from.exponents[i] != to.exponents[same - 1];
   }
   for (const int arg : to.args) position_[at_index(arg)] = 0;
-  return changed;
 }
 
 void PairTable::update(int op) {
@@ -69,16 +68,18 @@ void PairTable::update(int op) {
   const Operation* before = std::exchange(counted_[at_index(op)], now);
   if (now == before) return;
   const auto pairs_of = [](const Operation* counted) -> const Operation& { return counted ? *counted : none; };
-  add(pairs_of(before), changed(pairs_of(before), pairs_of(now)), op, -1);
-  add(pairs_of(now), changed(pairs_of(now), pairs_of(before)), op, 1);
+  add(pairs_of(before), pairs_of(now), op, -1);
+  add(pairs_of(now), pairs_of(before), op, 1);
 }
 
-void PairTable::add(const Operation& counted, const std::vector<bool>& changed, int op, int sign) {
-  for (std::size_t i = 0; i < changed.size(); ++i) {
-    if (!changed[i]) continue;
-    effort_.spend(changed.size());
-    for (std::size_t j = 0; j < changed.size(); ++j) {
-      if (j >= i || !changed[j]) add_pair(counted, i, j, op, sign);
+// The pairs of `counted` that `other` has not.
+void PairTable::add(const Operation& counted, const Operation& other, int op, int sign) {
+  compare(counted, other);
+  for (std::size_t i = 0; i < changed_.size(); ++i) {
+    if (!changed_[i]) continue;
+    effort_.spend(changed_.size());
+    for (std::size_t j = 0; j < changed_.size(); ++j) {
+      if (j >= i || !changed_[j]) add_pair(counted, i, j, op, sign);
     }
   }
 }

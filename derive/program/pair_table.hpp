@@ -47,10 +47,10 @@ class PairTable {
 
   bool counts(int op) const { return graph_.is_needed(op) && graph_.at(op).kind == kind_; }
   void update(int op);
-  void add(const Operation& counted, const std::vector<bool>& changed, int op, int sign);
+  void add(const Operation& counted, const Operation& other, int op, int sign);
   void add_pair(const Operation& counted, std::size_t i, std::size_t j, int op, int sign);
   int times(const Operation& counted, std::size_t i, std::size_t j) const;
-  std::vector<bool> changed(const Operation& from, const Operation& to);
+  void compare(const Operation& from, const Operation& to);
   int entry(const Key& key);
   void enter(int entry);
   void leave(int entry);
@@ -62,7 +62,8 @@ class PairTable {
   OpKind kind_;
   Effort& effort_;
   std::vector<const Operation*> counted_;  // by operation, as it was last counted; null: no pairs
-  std::vector<std::size_t> position_;      // by operand, in `changed`
+  std::vector<std::size_t> position_;      // by operand, in `compare`
+  std::vector<bool> changed_;              // by operand, from `compare`
   std::vector<int> slots_;                 // hash table: the first entry in each slot, or -1
   std::vector<Entry> entries_;
   std::vector<int> free_;
