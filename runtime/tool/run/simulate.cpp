@@ -9,6 +9,7 @@
 #include "runtime/state/world_data.hpp"
 #include "runtime/tool/run/balance_report.hpp"
 #include "runtime/tool/run/error_estimate.hpp"
+#include "runtime/tool/run/error_report.hpp"
 #include "runtime/tool/run/process.hpp"
 #include "runtime/tool/run/requested_frames.hpp"
 
@@ -145,6 +146,25 @@ void look(const Scene& scene, BasicWorld<S>& world, RunResult& result) {
   ++result.diagnoses;
 }
 
+double evaluations_of(const RunResult& result) {
+  return static_cast<double>(result.counts.evaluations + result.solves);
+}
+
+// A trial ends that is on the way to so many times its bound, foreseen from this share of it. A start may cost a dozen
+// times what follows: of those that were cures, the dearest start foresaw half of that. A trial also ends that has lost
+// what fails it, from this share of the time on: a tenth of that is no cure, and energies hardly grow tenfold then.
+constexpr double surely_beyond = 3, foreseen_from = 0.1, lost_from = 0.1;
+
+// Errors of joints, undecided blows and the trajectory's estimate never shrink.
+bool in_vain(const Scene& scene, const RunOptions& options, const RunResult& so_far, const TrajectoryError& error) {
+  if (so_far.worst_error > scene.tolerance || so_far.worst_end.by > scene.tolerance) return true;
+  if (so_far.counts.undecided > 0 || error.share > warned_trajectory_share(scene)) return true;
+  const double passed = (so_far.time - so_far.start) / (scene.duration - so_far.start);
+  if (passed > lost_from && worst_share(so_far.balance) > scene.energy_tolerance) return true;
+  const double spent = evaluations_of(so_far), most = options.most_evaluations;
+  return spent > foreseen_from * most && spent > surely_beyond * most * passed;
+}
+
 template <class S>
 RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string& warnings) {
   RunResult result;
@@ -198,7 +218,8 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     next_diagnosis = due;
     result.counts = world.step_counts(), result.solves = data.solves;
     result.stopped = (options.look && !options.look(after, result)) ||
-                     static_cast<double>(result.counts.evaluations + result.solves) > options.most_evaluations;
+                     evaluations_of(result) > options.most_evaluations ||
+                     (options.is_trial && in_vain(scene, options, result, error.error()));
     if (result.stopped && !options.diagnose_times.empty()) look(scene, world, result);
     if (Interrupt::asked() && options.save_at && result.state.empty()) result.state = world.snapshot();
     if (k == steps.count() || result.stopped || Interrupt::asked()) break;

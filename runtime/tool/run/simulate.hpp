@@ -36,6 +36,7 @@ struct RunOptions {
   std::function<bool(const Frame&, const RunResult&)> look;
   // Beyond so many the run is stopped; within a step, an implicit method finishes it then.
   double most_evaluations = std::numeric_limits<double>::infinity();
+  bool is_trial = false;  // stopped as soon as it fails or warns, or is on the way far beyond most_evaluations
   // Of a method that chooses its steps: those of an earlier run, to follow, and where to note those of this one.
   const Paces* paced_by = nullptr;
   Paces* paces = nullptr;
@@ -55,6 +56,7 @@ struct TriedFix {
   double cost = 0;                 // work (search/work.hpp) in units of the run's; 0: that took no step
   long long steps = 0;             // and their price in counts: of steps, or of the intervals of those that a method
   long long evaluations = 0;       // chooses, and of accelerations
+  double work = 0;                 // of all trials
   double until = 0;                // [s] up to which the trials ran; 0: like the run
   std::vector<std::string> tried;  // all options tried, in order
 };

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <tuple>
 
 #include <cdot/methods.hpp>
 
@@ -56,8 +57,17 @@ Candidate both(const Candidate& a, const Candidate& b) {
   return {a.options + " " + b.options, [=](Scene& scene) { a.change(scene), b.change(scene); }};
 }
 
+// Only a start that the run has told to be inconsistent changes.
+bool may_project(const Scene& scene, const RunOptions& options) {
+  if (scene.project || !options.from.empty()) return false;
+  std::string told;
+  const auto start = [&]<class S>(S) { world_at_start<S>(scene, told); };
+  scene.single ? in_space_of<float>(scene, start) : in_space_of<double>(scene, start);
+  return !told.empty();
+}
+
 // `fails`: the run ended at a step that failed.
-std::vector<Candidate> candidates_for(const Scene& scene, bool fails) {
+std::vector<Candidate> candidates_for(const Scene& scene, bool fails, bool projects) {
   std::vector<Candidate> all;
   const Settings& settings = scene.settings;
   if (scene.on_failure == OnFailure::stop && fails)
@@ -78,7 +88,7 @@ std::vector<Candidate> candidates_for(const Scene& scene, bool fails) {
   if (settings.local_error == 0) all.push_back(by_step(scene.step / 8));
   if (settings.local_error == 0)
     all.push_back(both(by_integrator(scene, Integrator::rattle, 0), by_step(scene.step / 8)));
-  if (!scene.project && !scene.joints.empty()) {
+  if (projects) {
     all.push_back(project());
     all.push_back(both(by_integrator(scene, Integrator::dop853, 1e-6), project()));
   }
@@ -86,14 +96,14 @@ std::vector<Candidate> candidates_for(const Scene& scene, bool fails) {
 }
 
 // `reached`: the accuracy so far. A search that did not reach it has tried finer ones.
-std::vector<Candidate> finer_accuracies(const Scene& scene, bool reached) {
+std::vector<Candidate> finer_accuracies(const Scene& scene, bool reached, bool projects) {
   std::vector<Candidate> all;
   const double asked = scene.accuracy > 0 ? scene.accuracy : default_accuracy;
   if (reached)
     for (const double share : {1e-1, 1e-3})
       all.push_back({fmt::format("--accuracy {:.0e}", share * asked),
                      [=](Scene& changed) { changed.accuracy = std::stod(fmt::format("{:.0e}", share * asked)); }});
-  if (!scene.project && !scene.joints.empty()) all.push_back(project());
+  if (projects) all.push_back(project());
   return all;
 }
 
@@ -117,7 +127,7 @@ struct Trial {
 // a hundredth of the local error, at equal times.
 double distance_from_finer(Scene scene, RunOptions options, const RunResult& run, Trial& trial) {
   scene.settings.local_error /= 100;
-  options.most_evaluations -= static_cast<double>(run.counts.evaluations);
+  options.most_evaluations = 2 * options.most_evaluations - static_cast<double>(run.counts.evaluations);
   std::string warnings;
   const RunResult finer = simulate(scene, options, warnings);
   trial.work += work_of(scene, finer);
@@ -134,7 +144,9 @@ double distance_from_finer(Scene scene, RunOptions options, const RunResult& run
 Trial try_out(const Scene& scene, RunOptions options, double most, bool off) {
   const bool own_steps = off && scene.settings.local_error > 0 && !chooses_method(scene);
   if (own_steps) options.film_times = equal_times(scene.duration, compared_times, 1);
-  options.most_evaluations = most / work_of_evaluation(scene);
+  // A finer run costs no less; a search judges its runs itself.
+  options.most_evaluations = most / work_of_evaluation(scene) / (own_steps ? 2 : 1);
+  options.is_trial = !chooses_method(scene);
   Trial trial;
   try {
     std::string warnings;
@@ -152,6 +164,27 @@ Trial try_out(const Scene& scene, RunOptions options, double most, bool off) {
   return trial;
 }
 
+// With a candidate, up to `until` if that is above 0; nothing if its methods exclude each other.
+std::optional<Scene> changed_by(const Candidate& candidate, const Scene& scene, double until) {
+  Scene changed = scene;
+  candidate.change(changed);
+  if (mistake_in_methods(changed.settings)) return {};
+  if (until > 0) changed.duration = until;
+  const bool changes_step = scene.settings.local_error == 0 && changed.settings.local_error > 0;
+  if (changes_step && scene.step_by_options) changed.step = usual_step(changed.duration, true);
+  return changed;
+}
+
+// By all that candidates change.
+bool run_alike(const Scene& a, const Scene& b) {
+  const auto key = [](const Scene& scene) {
+    const Settings& s = scene.settings;
+    return std::tuple(s.integrator, s.solver, s.drift, s.local_error, scene.step, scene.on_failure, scene.accuracy,
+                      scene.project);
+  };
+  return key(a) == key(b);
+}
+
 // A picked integrator is named with other options: with these another one might be picked.
 std::string named_with(const Scene& scene, const Candidate& candidate) {
   const bool names = candidate.options.find("--integrator") != std::string::npos;
@@ -164,8 +197,10 @@ std::string named_with(const Scene& scene, const Candidate& candidate) {
 std::optional<TriedFix> find_advice(const Scene& scene, const RunOptions& options, const RunResult& result) {
   // A search in vain that took its whole budget: trials, which get less, would end in vain as well.
   if (result.choice && result.choice->ended_by_budget) return {};
-  const std::vector<Candidate> candidates = result.choice ? finer_accuracies(scene, result.choice->reached)
-                                                          : candidates_for(scene, result.failed_step.has_value());
+  const bool projects = may_project(scene, options);
+  const std::vector<Candidate> candidates = result.choice
+                                                ? finer_accuracies(scene, result.choice->reached, projects)
+                                                : candidates_for(scene, result.failed_step.has_value(), projects);
   if (candidates.empty()) return {};
   TriedFix advice;
   const double own_work = work_of(scene, result);
@@ -181,20 +216,17 @@ std::optional<TriedFix> find_advice(const Scene& scene, const RunOptions& option
     if (try_out(begun, trial_options, most_work_of_a_trial, false).cures) return advice;
   }
   const bool off = !trajectory_warning(scene, result).empty() || !trajectory_failure(scene, result).empty();
-  double left = most_work;
+  std::vector<Scene> run{scene};
   for (const Candidate& candidate : candidates) {
-    Scene changed = scene;
-    candidate.change(changed);
-    if (mistake_in_methods(changed.settings)) continue;
-    if (advice.until > 0) changed.duration = advice.until;
-    const bool changes_step = scene.settings.local_error == 0 && changed.settings.local_error > 0;
-    if (changes_step && scene.step_by_options) changed.step = usual_step(changed.duration, true);
-    const double most = std::min(left, most_work_of_a_trial);
-    if (!chooses_method(changed) && work_of_steps(changed) > most) continue;
+    const std::optional<Scene> changed = changed_by(candidate, scene, advice.until);
+    if (!changed || std::ranges::any_of(run, std::bind_front(run_alike, *changed))) continue;
+    const double most = std::min(most_work - advice.work, most_work_of_a_trial);
+    if (!chooses_method(*changed) && work_of_steps(*changed) > most) continue;
     if (!(most > 0)) break;
-    const Trial trial = try_out(changed, trial_options, most, off);
+    run.push_back(*changed);
+    const Trial trial = try_out(*changed, trial_options, most, off);
     if (trial.interrupted) break;
-    left -= trial.work;
+    advice.work += trial.work;
     advice.tried.push_back(candidate.options + named_with(scene, candidate));
     if (!trial.cures) continue;
     advice.options = advice.tried.back();

@@ -11,7 +11,7 @@ bool needs_advice(const Scene& scene, const RunResult& result);
 
 // Searches the candidates in a fixed order for the first whose run over the same time passes without a failure and
 // without such a warning. The trials have a bounded work (work.hpp); a candidate that does not end within
-// it is none.
+// it is none. Each ends as soon as it is in vain (RunOptions::is_trial).
 std::optional<TriedFix> find_advice(const Scene& scene, const RunOptions& options, const RunResult& result);
 
 }  // namespace cdot

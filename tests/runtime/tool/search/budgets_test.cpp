@@ -164,9 +164,9 @@ TEST(Budgets, LeaveNoTrialsAfterASearchThatTookItsOwn) {
   const Scene scene = rattling_fingers(1, "");
   RunResult result;
   result.finite = false;  // so that it fails
-  result.choice.emplace();
+  result.choice.emplace().reached = true;
   result.time = 1;
-  EXPECT_FALSE(find_advice(scene, {}, result)->tried.empty());
+  EXPECT_FALSE(find_advice(scene, {}, result).value().tried.empty());
   result.choice->ended_by_budget = true;
   EXPECT_FALSE(find_advice(scene, {}, result));
 }

@@ -3,6 +3,7 @@
 
 #include "runtime/tool/search/advice.hpp"
 #include "runtime/tool/search/simulate.hpp"
+#include "tests/runtime/tool/support.hpp"
 
 namespace cdot::test::in_vain_test {
 namespace {
@@ -65,6 +66,69 @@ TEST(SearchInVain, AdvisesNoFinerAccuracy) {
   const std::string why = failure(scene, result);
   EXPECT_EQ(why.find("Tried"), std::string::npos) << why;
   EXPECT_NE(why.find("Likely fix: an earlier end (--until)"), std::string::npos) << why;
+}
+
+Scene hard_case(const std::string& name) {
+  Scene scene = read_scene((source_dir() / "tests/hard_cases" / name).string());
+  scene.settings.integrator = Integrator::rattle;
+  return scene;
+}
+
+std::vector<std::string> tried_for(const Scene& scene, double most_work) {
+  std::string warnings;
+  const RunResult result = simulate(scene, {}, warnings);
+  EXPECT_TRUE(needs_advice(scene, result));
+  const std::optional<TriedFix> advice = find_advice(scene, {}, result);
+  EXPECT_LT(advice.value().work, most_work);
+  return advice->tried;
+}
+
+// Each trial of dop853 took the 4e6 that a trial may, three times: with that it passes a fifth of the run. Steps of
+// RATTLE are the run's own, and the start satisfies the joint.
+TEST(TrialsInVain, EndByTheirForeseenPriceAndComeOnce) {
+  const std::vector<std::string> tried = {"--integrator implicit", "--step 0.00833333",
+                                          "--integrator dop853 --local-error 1e-06",
+                                          "--integrator dop853 --local-error 1e-09", "--step 0.00208333"};
+  EXPECT_EQ(tried_for(hard_case("stiff_servo/planar.toml"), 2e6), tried);
+}
+
+// A run that is off is compared with a finer one, which costs no less. So this trial ends after 2e6 of the 4e6 that it
+// may take.
+TEST(TrialsInVain, LeaveHalfOfTheirWorkToAFinerRun) { tried_for(hard_case("stick_slip/planar.toml"), 3e6); }
+
+RunResult tried_out(const Scene& scene, double most_evaluations) {
+  RunOptions options;
+  options.is_trial = true;
+  options.most_evaluations = most_evaluations;
+  std::string warnings;
+  return run_once(scene, options, warnings);
+}
+
+// The joints are open by a metre at the start.
+TEST(TrialsInVain, EndWhereTheyFail) {
+  const RunResult result = tried_out(hard_case("stretched_chain/planar.toml"), 1e9);
+  EXPECT_TRUE(result.stopped);
+  EXPECT_EQ(result.steps, 0);
+}
+
+// The estimate of the trajectory passes its bound long before the end.
+TEST(TrialsInVain, EndWhereTheyWarn) {
+  const Scene scene = hard_case("stiff_servo/planar.toml");
+  const RunResult result = tried_out(scene, 1e9);
+  EXPECT_TRUE(result.stopped);
+  EXPECT_LT(result.time, scene.duration / 2);
+}
+
+// The energy of an oscillation swings by steps of Euler's method, by more than the tolerance from the first turn on.
+TEST(TrialsInVain, EndWhereTheyHaveLostTheirEnergy) {
+  Scene scene = read_scene(
+      "duration = 100\nstep = 0.1\nintegrator = \"euler\"\ngravity = [0, 0]\nenergy_tolerance = 0.01\n"
+      "trajectory_tolerance = 1e9\n[[body]]\nname = \"bob\"\nmass = 1\ninertia = 1\nposition = [2, 0]\n"
+      "[[spring]]\nbodies = [\"world\", \"bob\"]\nstiffness = 9\nrest = 1\n",
+      "spring.toml");
+  const RunResult result = tried_out(scene, 1e9);
+  EXPECT_TRUE(result.stopped);
+  EXPECT_NEAR(result.time, scene.duration / 10, 5);
 }
 
 }  // namespace
