@@ -33,6 +33,19 @@ void each_guarded_row(Island<S>& island, F f) {
   });
 }
 
+// True if a motor of unlimited force acts beside ends, which it may drive its bodies against.
+template <class S>
+bool has_unlimited_motor_beside_ends(const Island<S>& island) {
+  bool motor = false, ends = false;
+  Guard<typename S::Scalar> guards[most_rows];
+  each_guarded_slot(island, [&](const Batch<S>& batch, int slot) {
+    ends |= batch.law->error != nullptr;
+    batch.law->guard(batch, slot, guards);
+    for (int r = 0; r < batch.ops->rows; ++r) motor |= guards[r].of_rate && guards[r].bilateral();
+  });
+  return motor && ends;
+}
+
 // J v of every row under a law, into Batch::rate.
 template <class S>
 void find_rates(WorldData<S>& world, Island<S>& island) {

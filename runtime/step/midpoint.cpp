@@ -14,6 +14,7 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/balance/balance.hpp"
+#include "runtime/events/guarded.hpp"
 #include "runtime/motion/momentum.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/motion/vectors.hpp"
@@ -37,11 +38,14 @@ constexpr int most_parts = static_cast<int>(by_precision<T>(8, 64));  // of a st
 constexpr double small_turn = 0.25, most_turning_parts = 64;          // of step_midpoint_from() [rad]
 
 // `correction` becomes the first guess of lambda, from the last step scaled by `share`; `lambda` the impulses of
-// dampers at the start.
+// dampers at the start. Of an end and of an unlimited motor that drives against it, the impulses have no size of their
+// own. As guesses they would add up from step to step, and hold the bodies at the end until they are undone.
 template <class S>
 void push_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h, typename S::Scalar share) {
+  using T = typename S::Scalar;
+  const bool adds_up = has_unlimited_motor_beside_ends(island);
   each_row(island, [&](Batch<S>& batch, int i) {
-    batch.correction[i] = share * (batch.lambda[i] + batch.correction[i]);
+    batch.correction[i] = adds_up && is_bounded(batch) ? T(0) : share * (batch.lambda[i] + batch.correction[i]);
     batch.lambda[i] = 0;
   });
   weigh_springs(world, island);

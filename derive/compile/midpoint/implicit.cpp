@@ -40,8 +40,19 @@ constexpr const char* part_guesses = R"(    T lambda[rows], C[rows], y[rows];
 // low and high: bounds of mu in the middle.
 constexpr const char* guesses_bounded = R"(    Bounded B;
     T mu[bounded], x[bounded], low[bounded], high[bounded];
-    for (int i = 0; i < bounded; ++i) mu[i] = h * s.force[i], low[i] = mu[i], high[i] = mu[i];
+    for (int i = 0; i < bounded; ++i) mu[i] = {}, low[i] = mu[i], high[i] = mu[i];
 )";
+// Impulses of an end and of a motor that drives against it would add up.
+constexpr const char* lists_anew = "    constexpr bool anew[bounded] = {{{}}};\n";
+
+std::string guesses_of(const std::vector<Effect>& bounded) {
+  const auto beside_motor = std::ranges::count_if(bounded, &Effect::beside_motor);
+  if (beside_motor == 0) return fmt::format(guesses_bounded, "h * s.force[i]");
+  std::string list;
+  for (const Effect& of : bounded) list += fmt::format("{}{}", list.empty() ? "" : ", ", of.beside_motor);
+  return fmt::format(lists_anew, list) + fmt::format(guesses_bounded, "anew[i] ? T(0) : h * s.force[i]");
+}
+
 constexpr const char* declares_ends = "    T off[bounded], side[bounded], missed_ends[bounded];\n";
 
 // Goals of Newton: the change of a pose beside the size of the mechanism, and C beside its tolerance. Round-off may
@@ -378,7 +389,7 @@ std::string implicit(const Mechanism& mechanism, const Contents& has) {
   text += declares(has);
   text += declares_borne(has);
   if (has.rows) text += part_guesses;
-  if (has.bounded) text += guesses_bounded;
+  if (has.bounded) text += guesses_of(mechanism.bounded);
   if (has.ends) text += declares_ends;
   text += round(mechanism, has);
   if (has.rows) text += judges_middle;

@@ -9,6 +9,7 @@
 
 #include "derive/compile/scene/bonds.hpp"
 #include "derive/compile/scene/groups.hpp"
+#include "runtime/events/guarded.hpp"
 #include "runtime/rows/spline.hpp"
 #include "runtime/state/world_data.hpp"
 #include "runtime/tool/scene/profile.hpp"
@@ -81,8 +82,10 @@ class EffectReader {
     effect.holds = number_among_breakable(world_, joint);
     prepare_topology(world_.data());
     for (const int body : record(joint).bodies)
-      if (const int island = world_.data().island_of[static_cast<std::size_t>(body)]; island >= 0)
-        effect.size = double(world_.data().islands[static_cast<std::size_t>(island)].size);
+      if (const int number = world_.data().island_of[static_cast<std::size_t>(body)]; number >= 0) {
+        const Island<S>& island = world_.data().islands[static_cast<std::size_t>(number)];
+        effect.size = double(island.size), effect.beside_motor = has_unlimited_motor_beside_ends(island);
+      }
     return effect;
   }
 

@@ -95,6 +95,7 @@ struct Effect {
   std::map<std::size_t, InTime> in_time{};             // those of `numbers` that follow functions of time
   std::map<std::size_t, InTime> parameters_in_time{};  // on a rope or a soft joint: those of its `parameters`
   double size = 1;                                     // Island::size of its mechanism [m]
+  bool beside_motor = false;  // in whose mechanism a motor without a largest force acts beside ends
   // Of a row whose bounds grow with a load: what carries it, among Mechanism::bounded or Mechanism::joints.
   int loaded_by_row = -1, loaded_by_joint = -1;
   int cone = -1;   // of a row of a force along several coordinates: the first one of these, among Mechanism::bounded

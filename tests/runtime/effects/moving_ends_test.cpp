@@ -199,6 +199,28 @@ TEST(MovingEnds, EndsThatCrossWithinAStepAreMet) {
   }
 }
 
+// A motor of unlimited force with the speed 2 cos(pi t) drives a block against an end at 0.3 m, and away from it from
+// 0.5 s on.
+template <class S>
+void expect_left_as_the_motor_turns_back(Integrator integrator) {
+  Track<S> track(integrator, 3);
+  const int rail = track.rail();
+  add_effect(track.world, rail, "slide", SpecEffect{"motor", {in_time("speed", {cosine(0, 2, pi)})}});
+  add_effect(track.world, rail, "slide", SpecEffect{"limit", {{"lower", {-1}}, {"upper", {0.3}}}});
+  track.run(0.4, 0.01);
+  EXPECT_NEAR(track.world.coordinate(rail, "slide"), 0.3, 1e-9) << name_of(integrators, integrator);
+  track.run(0.3, 0.01);
+  EXPECT_NEAR(track.world.coordinate(rail, "slide"), 0.3 - 2 / pi * (1 - std::sin(0.7 * pi)), 0.02)
+      << name_of(integrators, integrator);
+}
+
+TEST(MovingEnds, AMotorThatTurnsBackLeavesItsEnd) {
+  for (const IntegratorRow& row : integrator_rows) {
+    expect_left_as_the_motor_turns_back<Planar<double>>(row.integrator);
+    expect_left_as_the_motor_turns_back<Spatial<double>>(row.integrator);
+  }
+}
+
 // A racket that moves at v meets a block at rest without a bounce: the block leaves with v, which the racket puts in.
 TEST(MovingEnds, ARacketHitsABlock) {
   constexpr double m = 2, v = 3, way = 0.3, t = 0.5;

@@ -20,6 +20,7 @@
 #include "ropes_rk4.hpp"
 #include "stop_implicit.hpp"
 #include "tests/derive/compile/beside_world.hpp"
+#include "turning_implicit.hpp"
 
 namespace {
 
@@ -60,6 +61,14 @@ TEST(CompiledMoving, RatesOfSpecsAreThoseOfTheWorld) {
 // Parts of steps of 5 s have no middle: linearly implicit Euler takes them.
 TEST(CompiledMoving, IsRescuedAsTheWorld) {
   cdot::runs_as_the_world<stop_implicit<double>>(room + "stop.toml", Integrator::implicit, 1e-11, 50, 5);
+}
+
+TEST(CompiledMoving, AMotorThatTurnsBackLeavesItsEnd) {
+  cdot::runs_as_the_world<turning_implicit<double>>(room + "turning.toml", Integrator::implicit, 1e-11);
+  turning_implicit<double>::State state;
+  turning_implicit<double>::reset(state);
+  for (int k = 0; k < 700; ++k) turning_implicit<double>::step(state, 0.001);
+  EXPECT_NEAR(state.q[turning_implicit<double>::rod].angle, 0.3 - 2 / M_PI * (1 - std::sin(0.7 * M_PI)), 1e-4);
 }
 
 // Between 0.46 and 0.64 s the ends -0.2 cos(4 t) and 0.1 + 0.2 cos(4 t) have crossed.
