@@ -1,7 +1,6 @@
 // Products and numbers opened: costlier by themselves, but from there the search may find a cheaper program.
 #include <algorithm>
 #include <map>
-#include <ranges>
 #include <set>
 
 #include "derive/program/rewrite.hpp"
@@ -100,6 +99,13 @@ bool costs_a_number(const Program& program, const Operation& sum, std::size_t te
   return abs(sum.coefs[term]) != Rational(1) && program.at(sum.args[term]).kind != OpKind::number;
 }
 
+template <class Opens>
+bool opens_none(const Program& program, Opens opens) {
+  for (std::size_t op = 0; op < program.ops.size(); ++op)
+    if (opens(op)) return false;
+  return true;
+}
+
 }  // namespace
 
 std::optional<Program> with_numbers_as_factors(const Program& program) {
@@ -111,7 +117,7 @@ std::optional<Program> with_numbers_as_factors(const Program& program) {
       any = any || costs_a_number(program, sum, i);
     return any && uses[op] > 0;
   };
-  if (std::ranges::none_of(std::views::iota(std::size_t{0}, uses.size()), opens)) return std::nullopt;
+  if (opens_none(program, opens)) return std::nullopt;
   return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
     if (op.kind != OpKind::sum) return std::nullopt;
     Summands terms;
@@ -140,7 +146,7 @@ std::optional<Program> distributed(const Program& program) {
   const auto opens = [&](std::size_t op) {
     return uses[op] > 0 && sum_among(program, program.ops[op], uses) < program.ops[op].args.size();
   };
-  if (std::ranges::none_of(std::views::iota(std::size_t{0}, uses.size()), opens)) return std::nullopt;
+  if (opens_none(program, opens)) return std::nullopt;
   return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
     const std::size_t i = sum_among(program, op, uses);
     if (i == op.args.size()) return std::nullopt;
