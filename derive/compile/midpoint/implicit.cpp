@@ -37,20 +37,17 @@ constexpr const char* part_guesses = R"(    T lambda[rows], C[rows], y[rows];
     for (int i = 0; i < rows; ++i) lambda[i] = h * s.lambda[i];
 )";
 
-// low and high: bounds of mu in the middle.
-constexpr const char* guesses_bounded = R"(    Bounded B;
+// low and high: bounds of mu in the middle. Impulses of an end and of a motor that drives against it would add up.
+constexpr const char* guesses_bounded = R"({}    Bounded B;
     T mu[bounded], x[bounded], low[bounded], high[bounded];
-    for (int i = 0; i < bounded; ++i) mu[i] = {}, low[i] = mu[i], high[i] = mu[i];
+    for (int i = 0; i < bounded; ++i) mu[i] = {}h * s.force[i], low[i] = mu[i], high[i] = mu[i];
 )";
-// Impulses of an end and of a motor that drives against it would add up.
-constexpr const char* lists_anew = "    constexpr bool anew[bounded] = {{{}}};\n";
 
 std::string guesses_of(const std::vector<Effect>& bounded) {
-  const auto beside_motor = std::ranges::count_if(bounded, &Effect::beside_motor);
-  if (beside_motor == 0) return fmt::format(guesses_bounded, "h * s.force[i]");
-  std::string list;
-  for (const Effect& of : bounded) list += fmt::format("{}{}", list.empty() ? "" : ", ", of.beside_motor);
-  return fmt::format(lists_anew, list) + fmt::format(guesses_bounded, "anew[i] ? T(0) : h * s.force[i]");
+  std::string anew;
+  for (const Effect& of : bounded) anew += fmt::format("{}{}", anew.empty() ? "" : ", ", of.beside_motor);
+  if (!std::ranges::any_of(bounded, &Effect::beside_motor)) return fmt::format(guesses_bounded, "", "");
+  return fmt::format(guesses_bounded, "    constexpr bool anew[bounded] = {" + anew + "};\n", "anew[i] ? T(0) : ");
 }
 
 constexpr const char* declares_ends = "    T off[bounded], side[bounded], missed_ends[bounded];\n";
