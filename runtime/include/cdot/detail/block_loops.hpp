@@ -288,13 +288,11 @@ struct BlockLoops : BlockSlots<S, Joint, Block> {
         K[r * (r + 3) / 2] += softness;
       }
       // A sweep waits for the last slot's velocities: of two rows, K^-1 is ready before them.
-      if constexpr (kernels == Kernels::robust) {
-        factor_by_rows<width>(block_of<Block>(batch), J, m, F);
-        block_of<Block>(batch).solve(F, b, lambda);
-      } else if constexpr (rows == 2) {
+      if constexpr (rows == 2 && kernels != Kernels::robust) {
         invert(K, F), multiply(F, b, lambda);
       } else {
-        block_of<Block>(batch).factor(K, F);
+        if constexpr (kernels == Kernels::robust) factor_by_rows<width>(block_of<Block>(batch), J, m, F);
+        else block_of<Block>(batch).factor(K, F);
         block_of<Block>(batch).solve(F, b, lambda);
       }
     };
