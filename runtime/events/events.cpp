@@ -45,37 +45,64 @@ bool has_strong_motor(Island<S>& island) {
   return any;
 }
 
+// True if such a motor acts beside an end that is met.
+template <class S>
+bool may_press(Island<S>& island) {
+  using T = typename S::Scalar;
+  bool met = false;
+  each_guarded_row(island, [&](Batch<S>&, int, const Guard<T>& guard, const Resolution<T>& resolution) {
+    met |= guard.one_sided() && guard.gap() <= resolution.C;
+  });
+  return met && has_strong_motor(island);
+}
+
+// The mode of a row where motors of unlimited force press on ends, after find_pressed_ends(). Such an end holds on both
+// sides, whatever the forces are. A motor that it stops has no force, until it turns back. An end that motors drive
+// away from lets go.
+template <class S>
+void offer_by_motors(Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard,
+                     const Resolution<typename S::Scalar>& resolution) {
+  using T = typename S::Scalar;
+  const T missing = guard.rate - (batch.error[i] + batch.bias[i]);
+  const bool lacks = std::abs(missing) > T(4) * resolution.rate;
+  if (guard.bilateral() && guard.of_rate && lacks) {
+    batch.mode[i] = missing > T(0) ? Mode::pushed : Mode::pulled;
+    batch.lower[i] = batch.upper[i] = 0;
+  } else if (guard.one_sided() && batch.mode[i] == Mode::held && batch.impulse[i] != T(0)) {
+    batch.mode[i] = Mode::pressed;
+    batch.lower[i] = -infinite<T>, batch.upper[i] = infinite<T>;
+  } else if (guard.one_sided() && batch.mode[i] == Mode::held && lacks) {
+    batch.mode[i] = Mode::off;
+    batch.lower[i] = batch.upper[i] = 0;
+  }
+}
+
 // Sets the bounds of each row's force and a first mode. True if the forces must decide about some rows.
 template <class S>
 bool offer_bounds(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
-  const bool driven = has_strong_motor(island);
   bool open = false;
+  const bool pressed = may_press(island) && find_pressed_ends(world, island);
   find_rates(world, island);
   clear_laws(island);
   each_guarded_row(
       island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
         if (batch.law->cone_rows > 0) return;
         const T missing = guard.rate - (batch.rate[i] + batch.bias[i]);
-        const bool struck = batch.mode[i] == Mode::held;
         const bool hops = guard.one_sided() && missing * missing <= resolution.hop;
-        const bool slow = std::abs(missing) <= T(4) * resolution.rate || hops || struck;
+        const bool slow = std::abs(missing) <= T(4) * resolution.rate || hops || batch.mode[i] == Mode::held;
         batch.mode[i] = Mode::held;
         batch.lower[i] = guard.lower;
         batch.upper[i] = guard.upper;
-        if (guard.bilateral()) return;
-        open = true;
         if (guard.one_sided() && !(slow && guard.gap() <= resolution.C)) {
           batch.mode[i] = Mode::off;
           batch.lower[i] = batch.upper[i] = 0;
-        } else if (guard.one_sided() && struck && driven) {
-          // Beside a motor that has lost against it no force presses on the end that is met. Let go, it is met again.
-          if (guard.lower < T(0)) batch.upper[i] += resolution.force;
-          else batch.lower[i] -= resolution.force;
-        } else if (!guard.one_sided() && !slow) {
+        } else if (!guard.bilateral() && !guard.one_sided() && !slow) {
           batch.mode[i] = missing > T(0) ? Mode::pushed : Mode::pulled;
           batch.lower[i] = batch.upper[i] = missing > T(0) ? guard.upper : guard.lower;
         }
+        if (pressed) offer_by_motors(batch, i, guard, resolution);
+        open |= !guard.bilateral();
       });
   return offer_bounds_to_cones(island) || open;
 }
@@ -118,6 +145,7 @@ typename S::Scalar margin_within(const Batch<S>& batch, int i, const Guard<typen
     case Mode::pulled:
       if (guard.lower == guard.upper) return infinite<T>;
       return (batch.mode[i] == Mode::pushed ? guard.rate - rate : rate - guard.rate) / resolution.rate;
+    case Mode::pressed:
     case Mode::bounded: break;
   }
   return infinite<T>;

@@ -204,6 +204,28 @@ bool stop_what_hits(WorldData<S>& world, Island<S>& island, typename S::Scalar t
 }
 
 template <class S>
+bool find_pressed_ends(WorldData<S>& world, Island<S>& island) {
+  using T = typename S::Scalar;
+  Bodies<S>& all = world.bodies;
+  for (int i : island.bodies) all.displacement[i] = all.velocity[i];
+  offer_impulses(island);
+  solve(world, island, all.velocity.data());
+  take_back_rates(island);
+  find_rates(world, island);
+  for (int i : island.bodies) all.velocity[i] = all.displacement[i];
+  T largest = 0;
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>&) {
+    batch.error[i] = batch.rate[i];
+    batch.impulse[i] = guard.one_sided() ? batch.lambda[i] : T(0);
+    largest = std::max(largest, std::abs(batch.impulse[i]));
+  });
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>&, const Resolution<T>&) {
+    if (std::abs(batch.impulse[i]) <= slight<T> * largest) batch.impulse[i] = 0;
+  });
+  return largest > T(0);
+}
+
+template <class S>
 void end_blow(WorldData<S>& world, const Island<S>& island, Blow& blow) {
   const double left = kinetic_energy(world, island), lost = blow.left - left;
   blow.left = left;
@@ -213,6 +235,7 @@ void end_blow(WorldData<S>& world, const Island<S>& island, Blow& blow) {
 
 #define CDOT_INSTANTIATE(S)                                                             \
   template bool stop_what_hits(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar, Blow&); \
+  template bool find_pressed_ends(WorldData<S>&, Island<S>&);                           \
   template void end_blow(WorldData<S>&, const Island<S>&, Blow&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

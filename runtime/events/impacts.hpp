@@ -26,4 +26,10 @@ bool stop_what_hits(WorldData<S>& world, Island<S>& island, typename S::Scalar t
 template <class S>
 void end_blow(WorldData<S>& world, const Island<S>& island, Blow& blow);
 
+// The impulses by which ends that are met would stop motors of unlimited force that drive against them, into
+// Batch::impulse, without those that are round-off; J v after them into Batch::error. False if there are none. The
+// state stays.
+template <class S>
+bool find_pressed_ends(WorldData<S>& world, Island<S>& island);
+
 }  // namespace cdot

@@ -24,7 +24,8 @@ void find_known_forces(WorldData<S>& world, Batch<S>& batch, int begin, int end,
   }
 }
 
-// The bounds of specs may change: the forces of rows at a bound follow it, and held rows the prescribed rate.
+// The bounds of specs may change: the forces of rows at a bound follow it, and held rows the prescribed rate. A motor
+// of unlimited force that ends stop has none.
 template <class S>
 void follow_bounds(Batch<S>& batch, int begin, int end) {
   Guard<typename S::Scalar> guard[most_rows];
@@ -32,6 +33,7 @@ void follow_bounds(Batch<S>& batch, int begin, int end) {
     batch.load[i] = 0;                 // the solver finds it
     batch.law->guard(batch, i, guard);
     batch.bias[i] -= guard->acceleration;
+    if (guard->bilateral()) continue;
     if (batch.mode[i] == Mode::pushed) batch.lower[i] = batch.upper[i] = guard->upper;
     if (batch.mode[i] == Mode::pulled) batch.lower[i] = batch.upper[i] = guard->lower;
   }

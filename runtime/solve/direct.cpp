@@ -26,7 +26,7 @@ constexpr double rough = by_precision<T>(1e-5, 1e-12);
 constexpr int most_refinements = 4;
 template <class S>
 bool is_held(const Batch<S>& batch, int i) {
-  return !batch.law || batch.mode[i] == Mode::held;
+  return !batch.law || holds(batch.mode[i]);
 }
 
 // True if the row has an error to correct, or is an end that has an impulse already.

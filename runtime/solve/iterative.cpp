@@ -161,8 +161,7 @@ void sweep_lawful_poses(WorldData<S>& world, const Island<S>& island, const Segm
   if (!island.acceleration_level) return correct_bounded(batch, segment.begin, segment.end, world.bodies, time);
   for (int slot = segment.begin; slot < segment.end; ++slot) {
     const auto mode = batch.mode.begin() + slot * batch.ops->rows;
-    if (std::find(mode, mode + batch.ops->rows, Mode::held) != mode + batch.ops->rows)
-      correct_bounded(batch, slot, slot + 1, world.bodies, time);
+    if (std::any_of(mode, mode + batch.ops->rows, holds)) correct_bounded(batch, slot, slot + 1, world.bodies, time);
   }
 }
 
@@ -200,7 +199,7 @@ void bound_for_projection(const Island<S>& island) {
     Batch<S>& batch = *segment.batch;
     if (!batch.law) continue;
     for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i) {
-      const bool held = batch.mode[i] == Mode::held;
+      const bool held = holds(batch.mode[i]);
       batch.softness[i] = 0;
       batch.lower[i] = held ? -std::numeric_limits<T>::infinity() : batch.lambda[i];
       batch.upper[i] = held ? std::numeric_limits<T>::infinity() : batch.lambda[i];

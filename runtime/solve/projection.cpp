@@ -35,7 +35,7 @@ void error_of_law(const Island<S>& island, const Batch<S>& batch, int slot, type
   Guard<T> guards[most_rows];
   batch.law->guard(batch, slot, guards);
   for (int r = 0; r < rows; ++r)
-    if (batch.mode[slot * rows + r] == Mode::held && !is_passed(island, batch, guards[r])) error[r] = guards[r].off_by;
+    if (holds(batch.mode[slot * rows + r]) && !is_passed(island, batch, guards[r])) error[r] = guards[r].off_by;
 }
 
 // Adds `share` of the prescribed rates of held rows to the bias.

@@ -117,12 +117,12 @@ double largest_error_of_collocation(const Flow<S>& flow, F unit) {
   return worst;
 }
 
-// Combines both estimates.
+// Combines both estimates. The squares of smaller ones underflow.
 template <class S, class F>
 double estimated_error(const Flow<S>& flow, const RungeKuttaOf<S>& method, typename S::Scalar h, F unit) {
   if (method.implicit) return largest_error_of_collocation(flow, unit);
   const double first = largest_error(flow, method, 0, h, unit), second = largest_error(flow, method, 1, h, unit);
-  if (second == 0) return first;
+  if (second < 1e-100) return first;
   return first * first / std::sqrt(first * first + 0.01 * second * second);
 }
 

@@ -8,23 +8,11 @@ namespace cdot::compile {
 namespace {
 
 // As the World does it: runtime/events/impacts.cpp.
-constexpr const char* stops = R"(
-  // Inelastic impacts: rows that close at their end stop by impulses. True for those that have one.{9}
-  static {8} stop_what_hits(State& s, {10}Mask (&stopped)[bounded]) {{
-    Guards G;
-    Bounded B;
-    guard($ss.q, s.time, s.v, G);
-    Mask hits = T(1) < T(0);
-    for (int i = 0; i < bounded; ++i) {{
-      stopped[i] = T(1) < T(0);
-      const T bound = select(G.missing[i] > T(0), G.high[i], G.low[i]);
-      const Mask one = has_one_end(G, i), meets = one && gap(G, i) <= s.modes.of_value[i];
-      const Mask drives = is_rate[i] ? !is_equation(G, i) : T(1) < T(0);
-{6}      hits = hits || ((meets || drives{7}) && is_endless(bound) && magnitude(G.missing[i]) > s.modes.of_rate[i]);
-    }}
-    if (!any(hits)) return{11};
+constexpr const char* finds_blow = R"(
+  // The impulses of a blow: ends that are met only push, and motors with a bounded force do not act.
+  static void find_blow(State& s, const Guards& G, Bounded& B, T (&mu)[bounded]) {{
     reach($ss.q, s.time, {0}B);
-    T hold[bounded], mu[bounded];
+    T hold[bounded];
     for (int i = 0; i < bounded; ++i) {{
       const Mask low = is_endless(G.low[i]), high = is_endless(G.high[i]), one = has_one_end(G, i);
       const Mask both = low && high, some = is_rate[i] ? low || high : both;
@@ -36,11 +24,53 @@ constexpr const char* stops = R"(
       for (T& of_row : hold) of_row = T(0);
       settle(B, hold, now);
     }};
-{5}{2}    for (int e = 0; e < bounded; ++e) {{
-      stopped[e] = hits && magnitude(mu[e]) > T(0){3};
+{3}{2}  }}
+)";
+
+constexpr const char* finds_pressed_ends = R"(
+  // The impulses by which ends that are met would stop motors of unlimited force that drive against them, without those
+  // that are round-off, and what the rates miss after them. False in lanes without such an impulse.
+  static Mask find_pressed_ends(State s, T (&mu)[bounded], T (&missing)[bounded]) {
+    Guards G;
+    Bounded B;
+    guard($ss.q, s.time, s.v, G);
+    find_blow(s, G, B, mu);
+    for (int e = 0; e < bounded; ++e) {
+      for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + mu[e] * B.g[e][i];
+      mu[e] = select(has_one_end(G, e), mu[e], T(0));
+    }
+    guard($ss.q, s.time, s.v, G);
+    const T most = largest(mu);
+    for (int e = 0; e < bounded; ++e) {
+      missing[e] = G.missing[e];
+      mu[e] = select(magnitude(mu[e]) <= T(slight) * most, T(0), mu[e]);
+    }
+    return most > T(0);
+  }
+)";
+
+constexpr const char* stops = R"(
+  // Inelastic impacts: rows that close at their end stop by impulses. True for those that have one.{5}
+  static {4} stop_what_hits(State& s, {6}Mask (&stopped)[bounded]) {{
+    Guards G;
+    Bounded B;
+    guard($ss.q, s.time, s.v, G);
+    Mask hits = T(1) < T(0);
+    for (int i = 0; i < bounded; ++i) {{
+      stopped[i] = T(1) < T(0);
+      const T bound = select(G.missing[i] > T(0), G.high[i], G.low[i]);
+      const Mask one = has_one_end(G, i), meets = one && gap(G, i) <= s.modes.of_value[i];
+      const Mask drives = is_rate[i] ? !is_equation(G, i) : T(1) < T(0);
+{2}      hits = hits || ((meets || drives{3}) && is_endless(bound) && magnitude(G.missing[i]) > s.modes.of_rate[i]);
+    }}
+    if (!any(hits)) return{7};
+    T mu[bounded];
+    find_blow(s, G, B, mu);
+    for (int e = 0; e < bounded; ++e) {{
+      stopped[e] = hits && magnitude(mu[e]) > T(0){0};
       for (int i = 0; i < bodies; ++i) s.v[i] = choose(hits, s.v[i] + mu[e] * B.g[e][i], s.v[i]);
     }}
-{4}  }}
+{1}  }}
 )";
 
 // From its event on a latch holds its bodies on both sides.
@@ -96,16 +126,17 @@ bool yields_to_loads(const Contents& has) { return has.forces || has.snaps; }
 std::string stops_of(const Contents& has) {
   const bool may_end = yields_to_loads(has);
   const std::string J = has.rows ? "s.J, " : "";
-  const auto text = [&](const char* by_load, const std::string& settles, const char* slips, const std::string& turns) {
-    return fmt::format(stops, J, by_load, settles, slips, yields_of(has), turns, has.events ? latches_close : "",
-                       has.events ? " || closes" : "", may_end ? "Mask" : "void",
-                       may_end ? "\n  // Returns the lanes in which it ends a row or a joint by its load." : "",
-                       may_end ? "const T& h, " : "", may_end ? " hits" : "");
-  };
-  if (!has.loads) return text("", "    solve(mu);\n", "", "");
   const std::string none = has.rows ? "T none[rows];\n    for (T& of_row : none) of_row = T(0);\n    " : "";
-  return text(impacts_by_load, fmt::format(settles_impact, none, (has.rows ? "s.J, none, " : "") + corners(has)),
-              unless_it_slips, has.cones ? std::string(all_turn) + none_turned : "");
+  const std::string settles = has.loads
+                                  ? fmt::format(settles_impact, none, (has.rows ? "s.J, none, " : "") + corners(has))
+                                  : "    solve(mu);\n";
+  return fmt::format(finds_blow, J, has.loads ? impacts_by_load : "", settles,
+                     has.cones ? std::string(all_turn) + none_turned : "") +
+         (has.strong ? finds_pressed_ends : "") +
+         fmt::format(stops, has.loads ? unless_it_slips : "", yields_of(has), has.events ? latches_close : "",
+                     has.events ? " || closes" : "", may_end ? "Mask" : "void",
+                     may_end ? "\n  // Returns the lanes in which it ends a row or a joint by its load." : "",
+                     may_end ? "const T& h, " : "", may_end ? " hits" : "");
 }
 
 }  // namespace cdot::compile

@@ -19,7 +19,7 @@ constexpr const char* pulls = R"(
 {11}    Mask held[bounded];
     for (int e = 0; e < bounded; ++e) held[e] = magnitude(hold[e]) < T(0.5);
     const auto solve = [&](T (&now)[bounded]) {{
-      for (int e = 0; e < bounded; ++e) now[e] = is_rate[e] ? select(hold[e] > T(0), B.high[e], B.low[e]) : T(0);
+      for (int e = 0; e < bounded; ++e) now[e] = is_rate[e] ? {14} : T(0);
       divide(B.S, held, B.c, now);
     }};
     {8}
@@ -83,7 +83,7 @@ constexpr const char* decides = R"(
     guard($ss.q, s.time, s.v, G);
     accelerate($ss.q, s.time, s.v, {0}s.a, B);
     T hold[bounded], force[bounded];
-    for (int i = 0; i < bounded; ++i) {{
+{5}    for (int i = 0; i < bounded; ++i) {{
       const Mask both = is_equation(G, i), one = has_one_end(G, i);
       const Mask hops = one && G.missing[i] * G.missing[i] <= s.modes.of_hop[i];
       const Mask slow = stopped[i] || hops || magnitude(G.missing[i]) <= T(4) * s.modes.of_rate[i];
@@ -93,13 +93,13 @@ constexpr const char* decides = R"(
       B.high[i] = select(off, T(0), select(down, G.low[i], G.high[i]));
       const T end = select(magnitude(G.low[i]) > T(0), T(1), T(-1));
       s.hold[i] = select(off, end, select(up, T(1), select(down, T(-1), T(0))));
-{1}    }}
+{8}{1}    }}
     const auto solve = [&](T (&now)[bounded]) {{
-      for (T& of_row : hold) of_row = T(0);
+      {9}
       settle(B, hold, now);
     }};
 {6}    {2}
-{5}    for (int i = 0; i < bounded; ++i) {{
+    for (int i = 0; i < bounded; ++i) {{
       const Mask up = force[i] >= B.high[i], down = force[i] <= B.low[i];
       const Mask leaves = !is_equation(G, i) && magnitude(s.hold[i]) < T(0.5) && (up || down){4};
       const T end = select(magnitude(G.low[i]) > T(0), T(1), T(-1));
@@ -117,6 +117,8 @@ constexpr const char* holds_beyond = R"(    constexpr bool late[bounded] = {{{0}
     }}
 )";
 
+constexpr const char* is_pressed =
+    "      m.margin[i] = select(s.hold[i] < T(0) && s.hold[i] > T(-0.5), T(1e30), m.margin[i]);  // a motor presses\n";
 constexpr const char* margins_begin = R"(
   // How far each row is from its next event, in units of the resolution. Off: C - end. Held: its force from its bounds.
   // At a bound: the missing rate. Returns how far the furthest end is passed, beyond a few resolutions.
@@ -135,6 +137,7 @@ constexpr const char* margins_begin = R"(
       const T met = is_rate[i] ? bound : select(is_equation(G, i), -magnitude(G.off[i]) / m.of_value[i], bound);
       const T away = select(has_one_end(G, i), gap(G, i) / m.of_value[i], met);
       m.margin[i] = smaller(select(magnitude(s.hold[i]) < T(0.5), held, away), T(1e30));
+      m.margin[i] = select(s.hold[i] < T(0) && s.hold[i] > T(-0.5), T(1e30), m.margin[i]);  // a motor presses
       passed = select(has_one_end(G, i), larger(passed, -gap(G, i) - T(4) * m.of_value[i]), passed);
     }
 )";
@@ -252,15 +255,27 @@ constexpr const char* holds_jammed = R"(
       solve(now);
       for (int e = 0; e < bounded; ++e) force[e] = select(jams, now[e], force[e]);
     })";
-// An end that has stopped such a motor holds without a force: let go, it would be passed.
-constexpr const char* finds_strong_motors = R"(    Mask drives = T(1) < T(0);
-    for (int i = 0; i < bounded; ++i)
-      if (is_rate[i]) drives = drives || is_equation(G, i);
+// Where motors of unlimited force press on ends. Such an end holds on both sides, whatever the forces are. A motor that
+// it stops has no force, until it turns back. An end that motors drive away from lets go.
+constexpr const char* presses = R"(    T mu[bounded], missing[bounded], first[bounded];
+    const Mask pressed = find_pressed_ends(s, mu, missing);
+)";
+constexpr const char* offers_by_motors = R"(
+      const Mask lacks = pressed && magnitude(missing[i]) > T(4) * s.modes.of_rate[i], met = one && !off;
+      const Mask stands = lacks && is_rate[i] && both;
+      const Mask presses = pressed && met && magnitude(mu[i]) > T(0), leaves = lacks && met && !presses;
+      B.low[i] = select(presses, T(-1e30), select(stands || leaves, T(0), B.low[i]));
+      B.high[i] = select(presses, T(1e30), select(stands || leaves, T(0), B.high[i]));
+      s.hold[i] = select(presses, T(-0.25), select(leaves, end, s.hold[i]));
+      s.hold[i] = select(stands, select(missing[i] > T(0), T(1), T(-1)), s.hold[i]);
+      first[i] = select(one && !presses, end, T(0));  // an end without a force, if motors drive away from it
 )";
 
 std::string pull_of(const Contents& has) {
   const bool rows = has.rows, loads = has.loads;
   const char* const slips = has.cones ? "share, step, " : "";
+  std::string at_bound = "select(hold[e] > T(0), B.high[e], B.low[e])";
+  if (has.strong) at_bound = "select(is_endless(B.low[e]) && is_endless(B.high[e]), T(0), " + at_bound + ")";
   return fmt::format(pulls, rows ? "const Jacobian& J, " : "", rows ? "T (&lambda)[rows], " : "",
                      rows ? "J, lambda, " : "", rows ? adds_forces : "", rows ? "Jacobian& J, T (&forces)[rows], " : "",
                      rows ? "    evaluate($pat.q, at.time, J);\n" : "",
@@ -271,7 +286,7 @@ std::string pull_of(const Contents& has) {
                            : "solve(force);",
                      loads ? "load, " : "", has.cones ? "const T (&share)[bounded], const T& step, " : "",
                      has.cones ? aims_at_stage : "", has.cones ? "T (&force)[bounded], " : "",
-                     has.cones ? "" : "    T force[bounded];\n");
+                     has.cones ? "" : "    T force[bounded];\n", at_bound);
 }
 
 // Where forces of a choice call for another one.
@@ -300,10 +315,11 @@ std::string decides_of(const Contents& has, const std::string& late, double tole
       has.loads ? fmt::format("const Mask jams = settle_loads($ss.q, s.time, {}{}B, force, s.modes.load, solve);", J,
                               corners(has))
                 : "solve(force);",
-      has.loads ? stops_jammed : "",
-      std::string(has.loads ? " && !jams" : "") + (has.strong ? " && !(drives && stopped[i])" : ""),
-      has.strong ? finds_strong_motors : "", has.cones ? offers_cones : "",
-      (has.cones ? decides_cones : "") + (has.late_ends ? fmt::format(holds_beyond, late, tolerance) : ""));
+      has.loads ? stops_jammed : "", has.loads ? " && !jams" : "", has.strong ? presses : "",
+      has.cones ? offers_cones : "",
+      (has.cones ? decides_cones : "") + (has.late_ends ? fmt::format(holds_beyond, late, tolerance) : ""),
+      has.strong ? offers_by_motors : "",
+      has.strong ? "for (int i = 0; i < bounded; ++i) hold[i] = first[i];" : "for (T& of_row : hold) of_row = T(0);");
 }
 
 }  // namespace
@@ -334,8 +350,9 @@ std::string modes_of(const Contents& has, const std::string& waits, const std::s
   if (has.forces) text += latches;
   text += stops_of(has) + decides_of(has, late, tolerance);
   std::string margins = margins_begin;
-  const std::string_view growing = "    grow(G, m);\n";
-  if (!has.loads) margins.erase(margins.find(growing), growing.size());
+  const auto leave_out = [&](std::string_view line) { margins.erase(margins.find(line), line.size()); };
+  if (!has.loads) leave_out("    grow(G, m);\n");
+  if (!has.strong) leave_out(is_pressed);
   text += margins;
   if (has.cones) text += margins_of_cones;
   if (has.events) text += fmt::format(margins_of_events, waits, has.forces ? "m.force, " : "");

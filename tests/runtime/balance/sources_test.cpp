@@ -171,6 +171,26 @@ TEST(WorkBySource, TheSumIsThatOfTheBalance) {
   }
 }
 
+// A motor of unlimited force turns a rod of 1/3 kg m^2 at 2 rad/s against an end, off which gravity pulls it: the blow
+// takes the energy of its turn, and nothing works while the motor presses.
+TEST(WorkBySource, AMotorOfUnlimitedForceWorksAtAnEndByItsBlowAlone) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::dop853, Integrator::radau5}) {
+    Settings settings;
+    settings.integrator = integrator, settings.gravity_y = -9.81;
+    World<double> world(settings);
+    const int body = world.add_body({.x = 0.5, .mass = 1, .inertia = 1. / 12});
+    const int pin = revolute(world, world.ground(), body, 0, 0, -0.5, 0);
+    add_motor(world, pin, "angle", {.speed = 2});
+    add_limit(world, pin, "angle", {.lower = -1, .upper = 1});
+    for (int k = 0; k < 100; ++k) ASSERT_TRUE(world.step(0.01));
+    EXPECT_NEAR(world.coordinate(pin, "angle"), 1, 1e-8) << name_of(integrators, integrator);
+    EXPECT_NEAR(work_of(world, "limit"), -2. / 3, 1e-6) << name_of(integrators, integrator);
+    EXPECT_NEAR(work_of(world, "motor"), 2. / 3 + 9.81 * std::sin(1.) / 2, 1e-6) << name_of(integrators, integrator);
+    EXPECT_EQ(world.step_counts().events, 1) << name_of(integrators, integrator);
+    EXPECT_EQ(world.step_counts().rescued, 0) << name_of(integrators, integrator);
+  }
+}
+
 // A snapshot and what follows it give the same accounts as the run that was not interrupted.
 TEST(WorkBySource, SnapshotsKeepIt) {
   for (const Method& method : methods()) {

@@ -86,7 +86,11 @@ enum class Mode : char {
   held,     // the rate is prescribed, the force lies within its bounds
   pushed,   // the force is known: its upper bound
   pulled,   // the same at the lower bound
+  pressed,  // an end that a motor of unlimited force presses on: held, by a force of any sign
 };
+
+// True if the rate is prescribed.
+constexpr bool holds(Mode mode) { return mode == Mode::held || mode == Mode::pressed; }
 
 // The events of a row so far: it acts after `began`, if its law waits for that, and until `ended`.
 enum class Event : char { none = 0, began = 1, ended = 2, both = 3 };

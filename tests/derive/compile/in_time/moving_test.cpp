@@ -13,6 +13,8 @@
 #include "ends_rattle.hpp"
 #include "ends_rk4.hpp"
 #include "falling_rk4.hpp"
+#include "pressing_radau5.hpp"
+#include "pressing_rk4.hpp"
 #include "ropes_euler.hpp"
 #include "ropes_implicit.hpp"
 #include "ropes_radau5.hpp"
@@ -69,6 +71,26 @@ TEST(CompiledMoving, AMotorThatTurnsBackLeavesItsEnd) {
   turning_implicit<double>::reset(state);
   for (int k = 0; k < 700; ++k) turning_implicit<double>::step(state, 0.001);
   EXPECT_NEAR(state.q[turning_implicit<double>::rod].angle, 0.3 - 2 / M_PI * (1 - std::sin(0.7 * M_PI)), 1e-4);
+}
+
+// Off its ends the rod goes 2/pi sin(pi t) beyond its place at the time when the motor turned round.
+template <class Pressing>
+void leaves_its_ends(Integrator integrator) {
+  cdot::runs_as_the_world<Pressing>(room + "pressing.toml", integrator, by_events, 3, 0.01);
+  typename Pressing::State state;
+  Pressing::reset(state);
+  const auto expect_angle = [&](double t, double angle) {
+    while (state.time < t - 1e-9) Pressing::step(state, 0.01);
+    EXPECT_NEAR(state.q[Pressing::rod].angle, angle, 1e-8) << t << " s";
+  };
+  const double way = 2 / M_PI * (1 - std::sin(0.7 * M_PI));
+  expect_angle(0.4, 0.3), expect_angle(0.7, 0.3 - way);
+  expect_angle(1.4, -0.3), expect_angle(1.7, -0.3 + way);
+  expect_angle(2.4, 0.3), expect_angle(2.7, 0.3 - way);
+}
+TEST(CompiledMoving, AMotorPressesOnItsEndsInTurn) {
+  leaves_its_ends<pressing_rk4<double>>(Integrator::rk4);
+  leaves_its_ends<pressing_radau5<double>>(Integrator::radau5);
 }
 
 // Between 0.46 and 0.64 s the ends -0.2 cos(4 t) and 0.1 + 0.2 cos(4 t) have crossed.
