@@ -59,22 +59,6 @@ inline constexpr const char* guards = R"(
   static T pivot(const T& d, const T& k) { return select(d > T(64 * epsilon) * k, T(1) / d, T(0)); }
 )";
 
-// Four maxima and minima, side by side in the processor.
-inline constexpr const char* largest_row = R"(
-  // The largest size.
-  template <int n>
-  static T largest(const T (&x)[n]) {
-    T a = T(0), b = a, c = a, d = a, e = a, f = a, g = a, h = a;
-    int i = 0;
-    for (; i + 4 <= n; i += 4) {
-      a = larger(x[i], a), b = larger(x[i + 1], b), c = larger(x[i + 2], c), d = larger(x[i + 3], d);
-      e = lower(x[i], e), f = lower(x[i + 1], f), g = lower(x[i + 2], g), h = lower(x[i + 3], h);
-    }
-    for (; i < n; ++i) a = larger(x[i], a), e = lower(x[i], e);
-    return larger(-lower(lower(e, f), lower(g, h)), larger(larger(a, b), larger(c, d)));
-  }
-)";
-
 inline constexpr const char* slope = R"(
   // The rates of change at a stage of a Runge-Kutta method, whose poses are turned.
   static void slope($dEvaluated& at, const Velocity (&v)[bodies], Jacobian& J, T (&forces)[rows], Slope& k) {

@@ -136,10 +136,6 @@ constexpr double missed = by_precision<Real>(1e-9);
 template <class T>
 constexpr double slight_softness = std::max(1e-8, 10 * Ldlt::pivot_share<T>);
 
-// The softness of a motor that others hold, as a share of its diagonal: it pushes with what would bring the bodies to
-// its speed.
-constexpr double softness_of_motor = 1;
-
 // Joints and limits hold the motors that contradict them: these become soft. Call after share_contradictions(), which
 // leaves an error above `slight` in the rows of a contradiction. A limit far away, which does not act, sets no scale.
 // True if rows changed.
@@ -150,7 +146,7 @@ bool hold_motors(System<S>& system, Real slight) {
     const bool motor = batch.law && !batch.law->error && !batch.law->spring;
     if (!motor || system.fixed[r] || system.broken[r] || system.softness[r] != 0) return;
     if (!(std::abs(system.unmet(r)) > slight)) return;
-    system.softness[r] = softness_of_motor * system.diagonal(r);
+    system.softness[r] = system.softness_of_motors * system.diagonal(r);
     held = true;
   });
   return held;
@@ -171,9 +167,26 @@ void System<S>::solve() {
   share_redundant_loads(Bounds::unknown);
 }
 
-// A motor and the limit that it runs into are the same row twice: elimination drops the later one. If holding motors
-// leaves a bounded row unsatisfied, all bounded rows become slightly soft, so the weaker one reaches its bound. True if
-// rows changed.
+// The impulses of contradicting rows grow along their error, without end where no bound is met. True if there are such
+// rows with a bound ahead: they become slightly soft, so that the weaker of two clutches on one axle reaches its bound
+// and slips. Bounds that loads move are only assumed.
+template <class S>
+bool System<S>::let_bounds_decide() {
+  const Real few = slight(largest_b(Of::free_rows));
+  bool any = false;
+  each_row([&](int r, const Batch<S>& batch, int) {
+    const Real rest = unmet(r);
+    if (fixed[r] || broken[r] || !(std::abs(rest) > few) || !std::isfinite(rest > 0 ? upper[r] : lower[r])) return;
+    if (batch.law && batch.law->by_load) return;
+    softness[r] += slight_softness<T> * ldlt_.diagonal(r);
+    any = true;
+  });
+  return any;
+}
+
+// A motor and the limit that it runs into are the same row twice: elimination drops the later one. Bounds decide, or
+// joints and limits hold motors of unlimited force. If that leaves a bounded row unsatisfied, all bounded rows become
+// slightly soft, so the weaker one reaches its bound. True if rows changed.
 template <class S>
 bool System<S>::part_contradicting_rows() {
   const auto bounded = [&](int r) { return std::isfinite(lower[r]) || std::isfinite(upper[r]); };
@@ -181,7 +194,7 @@ bool System<S>::part_contradicting_rows() {
   bool any = false;
   for (int r = 0; r < rows_; ++r) any |= bounded(r) && !fixed[r] && !broken[r] && std::abs(excess(r)) > most;
   share_contradictions();
-  if (hold_motors(*this, slight(scale))) return yields_ = true;
+  if (let_bounds_decide() || hold_motors(*this, slight(scale))) return yields_ = true;
   for (int r = 0; any && r < rows_; ++r)
     if (bounded(r)) softness[r] += slight_softness<T> * ldlt_.diagonal(r);
   return any;
@@ -221,7 +234,7 @@ int System<S>::find_active_set() {
     solve_rows();
     if (round >= fast && dependent > 0) {
       share_contradictions();
-      if (hold_motors(*this, slight(largest_b(Of::free_rows)))) {
+      if (let_bounds_decide() || hold_motors(*this, slight(largest_b(Of::free_rows)))) {
         yields_ = true;
         circle_.begin(fixed);
         continue;

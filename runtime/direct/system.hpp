@@ -103,6 +103,10 @@ class System {
       for (int r = 0; r < block.rows; ++r) f(block.first + r, *block.batch, block.slot * block.rows + r);
   }
 
+  // Of motors that others hold, as a share of their diagonals. With 1 they push with what would bring the bodies to
+  // their speeds.
+  double softness_of_motors = 1;
+
   // Vectors over all rows, in the order of the blocks; the caller's to fill between the calls.
   std::vector<Real> b, lambda;
   std::vector<Real> softness, lower, upper;
@@ -198,6 +202,7 @@ class System {
   int end_turns();
   int part_and_settle();
   bool part_contradicting_rows();
+  bool let_bounds_decide();
   void solve_rows();
   void solve_kept_rows();
   static Real slight(Real scale);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <cdot/spaces.hpp>
 
@@ -45,44 +46,11 @@ bool has_strong_motor(Island<S>& island) {
   return any;
 }
 
-// True if such a motor acts beside an end that is met.
-template <class S>
-bool may_press(Island<S>& island) {
-  using T = typename S::Scalar;
-  bool met = false;
-  each_guarded_row(island, [&](Batch<S>&, int, const Guard<T>& guard, const Resolution<T>& resolution) {
-    met |= guard.one_sided() && guard.gap() <= resolution.C;
-  });
-  return met && has_strong_motor(island);
-}
-
-// The mode of a row where motors of unlimited force press on ends, after find_pressed_ends(). Such an end holds on both
-// sides, whatever the forces are. A motor that it stops has no force, until it turns back. An end that motors drive
-// away from lets go.
-template <class S>
-void offer_by_motors(Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard,
-                     const Resolution<typename S::Scalar>& resolution) {
-  using T = typename S::Scalar;
-  const T missing = guard.rate - (batch.error[i] + batch.bias[i]);
-  const bool lacks = std::abs(missing) > T(4) * resolution.rate;
-  if (guard.bilateral() && guard.of_rate && lacks) {
-    batch.mode[i] = missing > T(0) ? Mode::pushed : Mode::pulled;
-    batch.lower[i] = batch.upper[i] = 0;
-  } else if (guard.one_sided() && batch.mode[i] == Mode::held && batch.impulse[i] != T(0)) {
-    batch.mode[i] = Mode::pressed;
-    batch.lower[i] = -infinite<T>, batch.upper[i] = infinite<T>;
-  } else if (guard.one_sided() && batch.mode[i] == Mode::held && lacks) {
-    batch.mode[i] = Mode::off;
-    batch.lower[i] = batch.upper[i] = 0;
-  }
-}
-
 // Sets the bounds of each row's force and a first mode. True if the forces must decide about some rows.
 template <class S>
 bool offer_bounds(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   bool open = false;
-  const bool pressed = may_press(island) && find_pressed_ends(world, island);
   find_rates(world, island);
   clear_laws(island);
   each_guarded_row(
@@ -90,8 +58,8 @@ bool offer_bounds(WorldData<S>& world, Island<S>& island) {
         if (batch.law->cone_rows > 0) return;
         const T missing = guard.rate - (batch.rate[i] + batch.bias[i]);
         const bool hops = guard.one_sided() && missing * missing <= resolution.hop;
-        const bool slow = std::abs(missing) <= T(4) * resolution.rate || hops || batch.mode[i] == Mode::held;
-        batch.mode[i] = Mode::held;
+        const Mode noted = std::exchange(batch.mode[i], Mode::held);  // held: it has struck
+        const bool slow = std::abs(missing) <= T(4) * resolution.rate || hops || noted == Mode::held;
         batch.lower[i] = guard.lower;
         batch.upper[i] = guard.upper;
         if (guard.one_sided() && !(slow && guard.gap() <= resolution.C)) {
@@ -101,7 +69,11 @@ bool offer_bounds(WorldData<S>& world, Island<S>& island) {
           batch.mode[i] = missing > T(0) ? Mode::pushed : Mode::pulled;
           batch.lower[i] = batch.upper[i] = missing > T(0) ? guard.upper : guard.lower;
         }
-        if (pressed) offer_by_motors(batch, i, guard, resolution);
+        if (noted == Mode::pressed) {  // it holds on both sides, whatever the forces are
+          batch.mode[i] = noted, batch.lower[i] = -infinite<T>, batch.upper[i] = infinite<T>;
+        } else if (guard.bilateral() && (noted == Mode::pushed || noted == Mode::pulled)) {  // a motor that ends stop
+          batch.mode[i] = noted, batch.lower[i] = batch.upper[i] = 0;
+        }
         open |= !guard.bilateral();
       });
   return offer_bounds_to_cones(island) || open;
@@ -198,7 +170,9 @@ bool choose_modes_once(WorldData<S>& world, Island<S>& island, typename S::Scala
     latch_by_lambda(island, T(1));
     free_accelerations(world, island);
     find_resolution(world, island, h);
+    find_pressed_ends(world, island);
     if (stop_what_hits(world, island, time, h, blow)) return false;
+    start_motors(world, island);
     if (offer_bounds(world, island)) {
       decide_by_forces(world, island, time);
       evaluate_anew(world, island, time);

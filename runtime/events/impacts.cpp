@@ -26,12 +26,32 @@ bool strikes(const Guard<T>& guard, const Resolution<T>& resolution, T missing, 
   return may_act && std::isinf(bound) && std::abs(missing) > resolution.rate;
 }
 
-// True if an impact at another row may call for an impulse of this one.
+// True for a motor of unlimited force that lacks its rate by `missing`.
 template <class T>
-bool may_strike(const Guard<T>& guard, const Resolution<T>& resolution, bool loaded) {
-  if (loaded) return true;
+bool is_stopped(const Guard<T>& guard, const Resolution<T>& resolution, T missing) {
+  return guard.bilateral() && guard.of_rate && std::abs(missing) > T(4) * resolution.rate;
+}
+
+// True for a motor that ends stop, as find_pressed_ends() notes it.
+template <class T>
+bool stands(const Guard<T>& guard, Mode mode) {
+  return guard.bilateral() && guard.of_rate && (mode == Mode::pushed || mode == Mode::pulled);
+}
+
+// True if an impact at another row may call for an impulse of this one.
+template <class S>
+bool may_strike(const Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard,
+                const Resolution<typename S::Scalar>& resolution) {
+  if (stands(guard, batch.mode[i])) return false;
+  if (batch.law->by_load) return true;
   if (guard.one_sided()) return guard.gap() <= resolution.C;
   return guard.bilateral() || (guard.of_rate && (std::isinf(guard.lower) || std::isinf(guard.upper)));
+}
+
+// What a row lacks to its rate.
+template <class S>
+typename S::Scalar missing_of(const Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard) {
+  return guard.rate - (batch.rate[i] + batch.bias[i]);
 }
 
 // The row that strikes hardest, in units of its resolution.
@@ -41,7 +61,7 @@ Blow what_hits(Island<S>& island) {
   T hardest = 0;
   Blow blow;
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
-    const T missing = guard.rate - (batch.rate[i] + batch.bias[i]), share = std::abs(missing) / resolution.rate;
+    const T missing = missing_of(batch, i, guard), share = std::abs(missing) / resolution.rate;
     if (!strikes(guard, resolution, missing, batch.law->distance && island.kinked < 0) || !(share > hardest)) return;
     hardest = share;
     blow.source = static_cast<int>(batch.source), blow.joint = batch.joint[i / batch.ops->rows];
@@ -49,17 +69,18 @@ Blow what_hits(Island<S>& island) {
   return blow;
 }
 
-// Bounds of impulses: rows at their ends only push; motors with a bounded force do not act. Loads begin at none:
-// friction that jams would keep a load that it once had.
+// Bounds of impulses: rows at their ends only push, or hold where motors press; motors with a bounded force do not act.
+// Loads begin at none: friction that jams would keep a load that it once had.
 template <class S>
 void offer_impulses(Island<S>& island) {
   using T = typename S::Scalar;
   clear_laws(island);
   fill_lambda(island, T(0));
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
-    if (!may_strike(guard, resolution, batch.law->by_load != nullptr)) return;
-    batch.lower[i] = std::isinf(guard.lower) ? guard.lower : T(0);
-    batch.upper[i] = std::isinf(guard.upper) ? guard.upper : T(0);
+    if (!may_strike(batch, i, guard, resolution)) return;
+    const bool pressed = batch.mode[i] == Mode::pressed;
+    batch.lower[i] = pressed || std::isinf(guard.lower) ? -std::numeric_limits<T>::infinity() : T(0);
+    batch.upper[i] = pressed || std::isinf(guard.upper) ? std::numeric_limits<T>::infinity() : T(0);
     batch.bias[i] -= guard.rate;
   });
 }
@@ -69,7 +90,7 @@ template <class S>
 void take_back_rates(Island<S>& island) {
   using T = typename S::Scalar;
   each_guarded_row(island, [](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
-    if (may_strike(guard, resolution, batch.law->by_load != nullptr)) batch.bias[i] += guard.rate;
+    if (may_strike(batch, i, guard, resolution)) batch.bias[i] += guard.rate;
   });
 }
 
@@ -78,9 +99,61 @@ template <class S>
 void hold_what_struck(Island<S>& island) {
   using T = typename S::Scalar;
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
-    if (!may_strike(guard, resolution, batch.law->by_load != nullptr)) return;
+    if (batch.mode[i] == Mode::pressed || !may_strike(batch, i, guard, resolution)) return;
     const bool slips = batch.law->by_load && !(batch.lower[i] < batch.lambda[i] && batch.lambda[i] < batch.upper[i]);
     if (batch.lambda[i] != T(0) && !slips) batch.mode[i] = Mode::held;
+  });
+}
+
+// True if a motor of unlimited force that does not stand lacks its rate.
+template <class S>
+bool lacks_motors(Island<S>& island) {
+  using T = typename S::Scalar;
+  bool any = false;
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
+    any |= !stands(guard, batch.mode[i]) && is_stopped(guard, resolution, missing_of(batch, i, guard));
+  });
+  return any;
+}
+
+// True if an end is met beside a motor of unlimited force. Rows that have struck stay `held`, others have no mode yet.
+template <class S>
+bool may_press(Island<S>& island) {
+  using T = typename S::Scalar;
+  bool met = false, motor = false;
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
+    if (batch.mode[i] != Mode::held) batch.mode[i] = Mode::bounded;
+    met |= guard.one_sided() && guard.gap() <= resolution.C;
+    motor |= guard.bilateral() && guard.of_rate;
+  });
+  return met && motor;
+}
+
+// The impulses that rows need for their rates, which change the velocities.
+template <class S>
+void strike(WorldData<S>& world, Island<S>& island) {
+  offer_impulses(island);
+  solve(world, island, world.bodies.velocity.data());
+  take_back_rates(island);
+}
+
+// Ends are `pressed` that have an impulse of more than the share `few` of the largest, and motors that stand `pushed`
+// or `pulled`. Beside what others lack, a motor that turns back lacks round-off. None if no end has an impulse.
+template <class S>
+void note_pressed_ends(Island<S>& island, typename S::Scalar few) {
+  using T = typename S::Scalar;
+  T largest = 0, lacked = 0;
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
+    const T missing = missing_of(batch, i, guard);
+    if (guard.one_sided()) largest = std::max(largest, std::abs(batch.lambda[i]));
+    if (is_stopped(guard, resolution, missing)) lacked = std::max(lacked, std::abs(missing));
+  });
+  if (largest == T(0)) return;
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
+    const T missing = missing_of(batch, i, guard);
+    if (guard.one_sided() && std::abs(batch.lambda[i]) > few * largest) batch.mode[i] = Mode::pressed;
+    if (is_stopped(guard, resolution, missing) && std::abs(missing) > few * few * few * lacked)
+      batch.mode[i] = missing > T(0) ? Mode::pushed : Mode::pulled;
   });
 }
 
@@ -189,9 +262,7 @@ bool stop_what_hits(WorldData<S>& world, Island<S>& island, typename S::Scalar t
   if (now.source < 0) return false;
   blow = now, blow.left = kinetic_energy(world, island);
   if (world.settings.local_error > 0 && island.flow.locates && !island.loads.empty()) judge_blow(world, island, blow);
-  offer_impulses(island);
-  solve(world, island, world.bodies.velocity.data());
-  take_back_rates(island);
+  strike(world, island);
   hold_what_struck(island);
   end_blow(world, island, blow);
   count_impulses(island);
@@ -203,26 +274,29 @@ bool stop_what_hits(WorldData<S>& world, Island<S>& island, typename S::Scalar t
   return latched || broken;
 }
 
+// Motors push ten thousand times as hard as the bodies are heavy: whatever else has an impulse is slight beside them.
 template <class S>
-bool find_pressed_ends(WorldData<S>& world, Island<S>& island) {
+void find_pressed_ends(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
+  constexpr double nearly_rigid = 1e-4;
+  if (!may_press(island)) return;
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.displacement[i] = all.velocity[i];
-  offer_impulses(island);
-  solve(world, island, all.velocity.data());
-  take_back_rates(island);
+  island.system.softness_of_motors = nearly_rigid;
+  strike(world, island);
+  island.system.softness_of_motors = 1;
   find_rates(world, island);
+  if (lacks_motors(island)) note_pressed_ends(island, T(std::sqrt(nearly_rigid)));
   for (int i : island.bodies) all.velocity[i] = all.displacement[i];
-  T largest = 0;
-  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>&) {
-    batch.error[i] = batch.rate[i];
-    batch.impulse[i] = guard.one_sided() ? batch.lambda[i] : T(0);
-    largest = std::max(largest, std::abs(batch.impulse[i]));
-  });
-  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>&, const Resolution<T>&) {
-    if (std::abs(batch.impulse[i]) <= slight<T> * largest) batch.impulse[i] = 0;
-  });
-  return largest > T(0);
+}
+
+template <class S>
+void start_motors(WorldData<S>& world, Island<S>& island) {
+  find_rates(world, island);
+  if (!lacks_motors(island)) return;
+  const double before = kinetic_energy(world, island);
+  strike(world, island);
+  book_change(world, Source::motor, kinetic_energy(world, island) - before);
 }
 
 template <class S>
@@ -235,7 +309,8 @@ void end_blow(WorldData<S>& world, const Island<S>& island, Blow& blow) {
 
 #define CDOT_INSTANTIATE(S)                                                             \
   template bool stop_what_hits(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar, Blow&); \
-  template bool find_pressed_ends(WorldData<S>&, Island<S>&);                           \
+  template void find_pressed_ends(WorldData<S>&, Island<S>&);                           \
+  template void start_motors(WorldData<S>&, Island<S>&);                                \
   template void end_blow(WorldData<S>&, const Island<S>&, Blow&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

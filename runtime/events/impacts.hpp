@@ -26,10 +26,13 @@ bool stop_what_hits(WorldData<S>& world, Island<S>& island, typename S::Scalar t
 template <class S>
 void end_blow(WorldData<S>& world, const Island<S>& island, Blow& blow);
 
-// The impulses by which ends that are met would stop motors of unlimited force that drive against them, into
-// Batch::impulse, without those that are round-off; J v after them into Batch::error. False if there are none. The
-// state stays.
+// Ends that are met and stop motors of unlimited force, whatever moves and whatever the forces are: `pressed`, and
+// these motors `pushed` or `pulled`.
 template <class S>
-bool find_pressed_ends(WorldData<S>& world, Island<S>& island);
+void find_pressed_ends(WorldData<S>& world, Island<S>& island);
+
+// The other such motors that lack their rates reach them by impulses.
+template <class S>
+void start_motors(WorldData<S>& world, Island<S>& island);
 
 }  // namespace cdot

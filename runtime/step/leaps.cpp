@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <cdot/detail/drives.hpp>
 #include <cdot/spaces.hpp>
 
 #include "runtime/events/events.hpp"
@@ -44,22 +45,42 @@ struct Way {
 constexpr int looks = 128;
 constexpr double unseen = 0.2;
 
-// f() with C at each point of the way.
+// True if functions of time move the end of the row, its rate or its bounds.
+template <class S>
+bool moves(const Batch<S>& batch, int i) {
+  return batch.law->moving || (batch.driven() && !batch.drives_of(i).empty());
+}
+
+template <class S>
+void go_to(Batch<S>& batch, int i, typename S::Scalar time) {
+  batch.time = time;
+  if (batch.driven()) follow(batch, i, i + 1, time);
+}
+
+// f(share) with C and the numbers in time at each point of the way, over a step of h that ends at `end`.
 template <class S, class F>
-void look_along(Batch<S>& batch, int i, const Way<typename S::Scalar>& way, F f) {
+void look_along(Batch<S>& batch, int i, const Way<typename S::Scalar>& way, typename S::Scalar end,
+                typename S::Scalar h, F f) {
   using T = typename S::Scalar;
   const T C = batch.C[i];
-  for (int look = 0; look <= looks; ++look) batch.C[i] = way.at(T(look) / T(looks)), f();
+  const bool in_time = moves(batch, i);
+  for (int look = 0; look <= looks; ++look) {
+    const T share = T(look) / T(looks);
+    if (in_time) go_to(batch, i, end - h * (T(1) - share));
+    batch.C[i] = way.at(share), f(share);
+  }
+  if (in_time) go_to(batch, i, end);
   batch.C[i] = C;
 }
 
 template <class S>
-bool leaps_over_bound(Batch<S>& batch, int i, const Way<typename S::Scalar>& way) {
+bool leaps_over_bound(Batch<S>& batch, int i, const Way<typename S::Scalar>& way, typename S::Scalar end,
+                      typename S::Scalar h) {
   const bool up = batch.mode[i] == Mode::pushed;
-  if (!batch.law->moving || (!up && batch.mode[i] != Mode::pulled)) return false;
+  if (!moves(batch, i) || (!up && batch.mode[i] != Mode::pulled)) return false;
   double first = 0, last = 0, changes = 0, most = 0;
   bool any = false;
-  look_along(batch, i, way, [&] {
+  look_along(batch, i, way, end, h, [&](typename S::Scalar) {
     Guard<typename S::Scalar> guard;
     batch.law->guard(batch, i, &guard);
     const double bound = double(up ? guard.upper : guard.lower);
@@ -94,26 +115,37 @@ double threshold(const Flow<S>& flow, size_t k) {
   return std::min(double(flow.margins_chosen[k]), 0.0) + passed;
 }
 
-// Only a way that turns back, or twice, comes back from an end, or from the place of another event.
+// Only a way that turns back, or twice, comes back from an end that stands, or from the place of another event.
 template <class S>
 bool may_come_back(const Batch<S>& batch, int i, const Way<typename S::Scalar>& way) {
-  return (batch.mode[i] == Mode::off || batch.law->distance) && (way.turns_back() || way.may_turn_twice());
+  return (batch.mode[i] == Mode::off || batch.law->distance) &&
+         (moves(batch, i) || way.turns_back() || way.may_turn_twice());
+}
+
+template <class S>
+bool slips(const Batch<S>& batch, int i) {
+  return batch.mode[i] == Mode::pushed || batch.mode[i] == Mode::pulled;
 }
 
 // A row that slips comes to rest within the step and slips on in its end. Between them it may have stuck.
 template <class S>
 bool may_rest(const Batch<S>& batch, int i, const Way<typename S::Scalar>& way) {
-  const bool slips = batch.mode[i] == Mode::pushed || batch.mode[i] == Mode::pulled;
-  return slips && way.turn() > 0 && way.turn() < 1;
+  return slips(batch, i) && way.turn() > 0 && way.turn() < 1;
+}
+
+// A row whose prescribed rate moves reaches it within the step and falls behind again.
+template <class S>
+bool may_catch_up(const Batch<S>& batch, int i) {
+  return slips(batch, i) && moves(batch, i);
 }
 
 template <class S>
 Dip dip_of_way(Batch<S>& batch, int i, const Way<typename S::Scalar>& way,
-               const Resolution<typename S::Scalar>& resolution, typename S::Scalar rate) {
+               const Resolution<typename S::Scalar>& resolution, typename S::Scalar end, typename S::Scalar h) {
   double first = 0, last = 0, least = 0;
   bool any = false;
-  look_along(batch, i, way, [&] {
-    last = double(margin_of_row(batch, i, resolution, rate));
+  look_along(batch, i, way, end, h, [&](typename S::Scalar share) {
+    last = double(margin_of_row(batch, i, resolution, way.rate_at(share) / h));
     if (!std::exchange(any, true)) first = least = last;
     least = std::min(least, last);
   });
@@ -125,6 +157,38 @@ Dip dip_of_rate(const Batch<S>& batch, int i, const Way<typename S::Scalar>& way
                 const Resolution<typename S::Scalar>& resolution, typename S::Scalar h) {
   const auto margin = [&](auto rate) { return double(margin_of_row(batch, i, resolution, rate / h)); };
   return {std::max(margin(way.rate_from), margin(way.rate_to)), margin(way.rate_at(way.turn()))};
+}
+
+// The stages of a step resolve a function of time that differs from the cubic with the values and rates at its ends by
+// this share of its largest value: 1.5 rad of a sine where forces may make events happen, 3 rad where they work.
+constexpr double resolved_events = 0.013, resolved_work = 0.2;
+
+// True if the stages of a step from `time` over h may miss how this number moves.
+bool is_unresolved(const Drive& drive, const ProfileSpan& span, double time, double h, double resolved) {
+  constexpr int points = 16;
+  const ProfileValue start = drive.profile.at(time, span), end = drive.profile.at(time + h, span);
+  const Way<double> way{start.value, end.value, h * start.rate, h * end.rate};
+  double differs = 0, most = std::max(std::abs(start.value), std::abs(end.value));
+  for (int point = 1; point < points; ++point) {
+    const double share = double(point) / points, value = drive.profile.at(time + share * h, span).value;
+    differs = std::max(differs, std::abs(value - way.at(share))), most = std::max(most, std::abs(value));
+  }
+  return differs > resolved * most;
+}
+
+// True if the stages of a step may miss how the numbers in time of the island's rows move.
+template <class S>
+bool leaps_over_functions(const Island<S>& island, double time, double h, double resolved) {
+  for (const Segment<S>& segment : island.segments) {
+    const Batch<S>& batch = *segment.batch;
+    for (int slot = segment.begin; batch.driven() && slot < segment.end; ++slot) {
+      const ProfileSpan span{batch.spans[2 * static_cast<size_t>(slot)],
+                             batch.spans[2 * static_cast<size_t>(slot) + 1]};
+      for (const Drive& drive : batch.drives_of(slot))
+        if (is_unresolved(drive, span, time, h, resolved)) return true;
+    }
+  }
+  return false;
 }
 
 // The state between is looked at in the points between so many parts of the step.
@@ -217,15 +281,17 @@ bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
     const auto look = [&](const Dip& dip) {
       any |= dip.leaps(threshold(flow, k)), start.near |= dip.comes_near(threshold(flow, k));
     };
-    any |= leaps_over_bound(batch, i, way);
+    any |= leaps_over_bound(batch, i, way, time + h, h);
     const bool bounded = may_have_let_go(batch, i, flow, k);
     any |= bounded && start.least < threshold(flow, k);
-    if (may_come_back(batch, i, way)) look(dip_of_way(batch, i, way, flow.resolution[k], flow.row_rates[k]));
-    if (may_rest(batch, i, way)) look(dip_of_rate(batch, i, way, flow.resolution[k], h));
+    if (may_come_back(batch, i, way) || may_catch_up(batch, i))
+      look(dip_of_way(batch, i, way, flow.resolution[k], time + h, h));
+    else if (may_rest(batch, i, way)) look(dip_of_rate(batch, i, way, flow.resolution[k], h));
     near |= start.near;
     held |= bounded;
   });
-  if (any) return true;
+  const double resolved = held ? resolved_events : resolved_work;
+  if (any || (world.driven && leaps_over_functions(island, double(time), double(h), resolved))) return true;
   const auto at_stage = [&](int stage) { return h * T(method.c[stage]); };
   if (held && method.implicit && passes_between(world, island, method, time, h, true, method.stages - 1, at_stage))
     return true;

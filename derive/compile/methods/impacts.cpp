@@ -9,49 +9,79 @@ namespace {
 
 // As the World does it: runtime/events/impacts.cpp.
 constexpr const char* finds_blow = R"(
-  // The impulses of a blow: ends that are met only push, and motors with a bounded force do not act.
-  static void find_blow(State& s, const Guards& G, Bounded& B, T (&mu)[bounded]) {{
+  // The impulses of a blow: ends that are met only push, and motors with a bounded force do not act.{4}
+  static void find_blow(State& s, const Guards& G, {5}Bounded& B, T (&mu)[bounded]{9}) {{
     reach($ss.q, s.time, {0}B);
     T hold[bounded];
     for (int i = 0; i < bounded; ++i) {{
       const Mask low = is_endless(G.low[i]), high = is_endless(G.high[i]), one = has_one_end(G, i);
       const Mask both = low && high, some = is_rate[i] ? low || high : both;
-      const Mask may = (one && gap(G, i) <= s.modes.of_value[i]) || (!one && some);
-      B.low[i] = select(may && low, G.low[i], T(0)), B.high[i] = select(may && high, G.high[i], T(0));
+      const Mask may = {6}(one && gap(G, i) <= s.modes.of_value[i]) || (!one && some){7};
+{8}
       B.c[i] = G.missing[i], B.K[i] = entry(B.S, i, i);
 {1}    }}
     const auto solve = [&](T (&now)[bounded]) {{
       for (T& of_row : hold) of_row = T(0);
-      settle(B, hold, now);
+      settle(B, hold, now{10});
     }};
 {3}{2}  }}
 )";
 
-constexpr const char* finds_pressed_ends = R"(
-  // The impulses by which ends that are met would stop motors of unlimited force that drive against them, without those
-  // that are round-off, and what the rates miss after them. False in lanes without such an impulse.
-  static Mask find_pressed_ends(State s, T (&mu)[bounded], T (&missing)[bounded]) {
+constexpr const char* bounds_of_blow =
+    "      B.low[i] = select(may && low, G.low[i], T(0)), B.high[i] = select(may && high, G.high[i], T(0));";
+constexpr const char* bounds_beside_motors =
+    "      B.low[i] = select(may && (low || pressed[i]), T(-1e30), T(0));\n"
+    "      B.high[i] = select(may && (high || pressed[i]), T(1e30), T(0));";
+
+constexpr const char* starts_motors = R"(
+  // Of a row: it is a motor of unlimited force that lacks its rate.
+  static Mask lacks(const Guards& G, const Modes& m, int i) {
+    return is_rate[i] ? is_equation(G, i) && magnitude(G.missing[i]) > T(4) * m.of_rate[i] : T(1) < T(0);
+  }
+
+  // Ends that are met and stop such motors are pressed, whatever moves and whatever the forces are, and these motors
+  // stand. Motors push ten thousand times as hard as the bodies are heavy: any other impulse is slight beside them.
+  static void find_pressed_ends(State s, Mask (&pressed)[bounded], Mask (&stands)[bounded]) {
     Guards G;
     Bounded B;
+    T mu[bounded], lacked = T(0);
+    for (int e = 0; e < bounded; ++e) pressed[e] = stands[e] = T(1) < T(0);
     guard($ss.q, s.time, s.v, G);
-    find_blow(s, G, B, mu);
+    find_blow(s, G, pressed, stands, B, mu, T(1e-4));
     for (int e = 0; e < bounded; ++e) {
       for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + mu[e] * B.g[e][i];
       mu[e] = select(has_one_end(G, e), mu[e], T(0));
     }
     guard($ss.q, s.time, s.v, G);
+    for (int e = 0; e < bounded; ++e)
+      lacked = larger(lacked, select(lacks(G, s.modes, e), magnitude(G.missing[e]), T(0)));
     const T most = largest(mu);
+    const Mask some = lacked > T(0) && most > T(0);
     for (int e = 0; e < bounded; ++e) {
-      missing[e] = G.missing[e];
-      mu[e] = select(magnitude(mu[e]) <= T(slight) * most, T(0), mu[e]);
+      pressed[e] = some && magnitude(mu[e]) > T(1e-2) * most;
+      stands[e] = some && lacks(G, s.modes, e) && magnitude(G.missing[e]) > T(1e-6) * lacked;
     }
-    return most > T(0);
+  }
+
+  // The other motors reach their rates by impulses.
+  static void start_motors(State& s, const Mask (&pressed)[bounded], const Mask (&stands)[bounded]) {
+    Guards G;
+    Bounded B;
+    T mu[bounded];
+    guard($ss.q, s.time, s.v, G);
+    Mask now = T(1) < T(0);
+    for (int e = 0; e < bounded; ++e) now = now || (lacks(G, s.modes, e) && !stands[e]);
+    if (!any(now)) return;
+    find_blow(s, G, pressed, stands, B, mu, T(1));
+    for (int e = 0; e < bounded; ++e) {
+      for (int i = 0; i < bodies; ++i) s.v[i] = choose(now, s.v[i] + mu[e] * B.g[e][i], s.v[i]);
+    }
   }
 )";
 
 constexpr const char* stops = R"(
   // Inelastic impacts: rows that close at their end stop by impulses. True for those that have one.{5}
-  static {4} stop_what_hits(State& s, {6}Mask (&stopped)[bounded]) {{
+  static {4} stop_what_hits(State& s, {6}{8}Mask (&stopped)[bounded]) {{
     Guards G;
     Bounded B;
     guard($ss.q, s.time, s.v, G);
@@ -65,7 +95,7 @@ constexpr const char* stops = R"(
     }}
     if (!any(hits)) return{7};
     T mu[bounded];
-    find_blow(s, G, B, mu);
+    find_blow(s, G, {9}B, mu{10});
     for (int e = 0; e < bounded; ++e) {{
       stopped[e] = hits && magnitude(mu[e]) > T(0){0};
       for (int i = 0; i < bodies; ++i) s.v[i] = choose(hits, s.v[i] + mu[e] * B.g[e][i], s.v[i]);
@@ -130,13 +160,19 @@ std::string stops_of(const Contents& has) {
   const std::string settles = has.loads
                                   ? fmt::format(settles_impact, none, (has.rows ? "s.J, none, " : "") + corners(has))
                                   : "    solve(mu);\n";
+  const auto if_strong = [&](const char* text) { return has.strong ? text : ""; };
   return fmt::format(finds_blow, J, has.loads ? impacts_by_load : "", settles,
-                     has.cones ? std::string(all_turn) + none_turned : "") +
-         (has.strong ? finds_pressed_ends : "") +
+                     has.cones ? std::string(all_turn) + none_turned : "",
+                     if_strong("\n  // Pressed ends hold on both sides, and rows that are out have none."),
+                     if_strong("const Mask (&pressed)[bounded], const Mask (&out)[bounded], "),
+                     if_strong("!out[i] && ("), if_strong(")"), has.strong ? bounds_beside_motors : bounds_of_blow,
+                     if_strong(", const T& softness"), if_strong(", softness")) +
+         if_strong(starts_motors) +
          fmt::format(stops, has.loads ? unless_it_slips : "", yields_of(has), has.events ? latches_close : "",
                      has.events ? " || closes" : "", may_end ? "Mask" : "void",
                      may_end ? "\n  // Returns the lanes in which it ends a row or a joint by its load." : "",
-                     may_end ? "const T& h, " : "", may_end ? " hits" : "");
+                     may_end ? "const T& h, " : "", may_end ? " hits" : "", if_strong(pressed_and_standing),
+                     if_strong("pressed, stands, "), if_strong(", T(1)"));
 }
 
 }  // namespace cdot::compile

@@ -77,13 +77,13 @@ constexpr const char* resolutions = R"(
 
 constexpr const char* decides = R"(
   // Forces and accelerations are complementary: a row stays held if its force lies within its bounds.
-  static void decide(State& s, const Mask (&stopped)[bounded]) {{
+  static void decide(State& s, {10}const Mask (&stopped)[bounded]) {{
     Guards G;
     Bounded B;
-    guard($ss.q, s.time, s.v, G);
+{5}    guard($ss.q, s.time, s.v, G);
     accelerate($ss.q, s.time, s.v, {0}s.a, B);
     T hold[bounded], force[bounded];
-{5}    for (int i = 0; i < bounded; ++i) {{
+    for (int i = 0; i < bounded; ++i) {{
       const Mask both = is_equation(G, i), one = has_one_end(G, i);
       const Mask hops = one && G.missing[i] * G.missing[i] <= s.modes.of_hop[i];
       const Mask slow = stopped[i] || hops || magnitude(G.missing[i]) <= T(4) * s.modes.of_rate[i];
@@ -163,7 +163,7 @@ constexpr const char* chooses = R"(
     fall($ss.q, s.time, s.v, a);
     raise_resolutions(s, a, h);
     Mask stopped[bounded];
-{5}    decide(s, stopped);
+{7}{5}{8}    decide(s, {9}stopped);
     project(s);
     pull($ss.q, s.time, s.v, {0});
     raise_resolutions(s, s.a, h);
@@ -174,7 +174,7 @@ constexpr const char* chooses = R"(
 )";
 
 constexpr const char* stops_and_keeps =
-    "    const Mask ended = stop_what_hits(s, h, stopped);\n    const State struck = s;\n";
+    "    const Mask ended = stop_what_hits(s, h, {}stopped);\n    const State struck = s;\n";
 // Forces may make events happen, as of a pin that is too weak: then the modes are others.
 constexpr const char* latches = R"(
   // True in lanes where an event happens.
@@ -256,19 +256,16 @@ constexpr const char* holds_jammed = R"(
       for (int e = 0; e < bounded; ++e) force[e] = select(jams, now[e], force[e]);
     })";
 // Where motors of unlimited force press on ends. Such an end holds on both sides, whatever the forces are. A motor that
-// it stops has no force, until it turns back. An end that motors drive away from lets go.
-constexpr const char* presses = R"(    T mu[bounded], missing[bounded], first[bounded];
-    const Mask pressed = find_pressed_ends(s, mu, missing);
+// it stops has no force, until it turns back.
+constexpr const char* offers_by_motors =
+    R"(      B.low[i] = select(pressed[i], T(-1e30), select(stands[i], T(0), B.low[i]));
+      B.high[i] = select(pressed[i], T(1e30), select(stands[i], T(0), B.high[i]));
+      s.hold[i] = select(pressed[i], T(-0.1), s.hold[i]);
+      s.hold[i] = select(stands[i], select(G.missing[i] > T(0), T(1), T(-1)), s.hold[i]);
+      first[i] = select(one && !pressed[i], end, T(0));  // an end without a force, if motors drive away from it
 )";
-constexpr const char* offers_by_motors = R"(
-      const Mask lacks = pressed && magnitude(missing[i]) > T(4) * s.modes.of_rate[i], met = one && !off;
-      const Mask stands = lacks && is_rate[i] && both;
-      const Mask presses = pressed && met && magnitude(mu[i]) > T(0), leaves = lacks && met && !presses;
-      B.low[i] = select(presses, T(-1e30), select(stands || leaves, T(0), B.low[i]));
-      B.high[i] = select(presses, T(1e30), select(stands || leaves, T(0), B.high[i]));
-      s.hold[i] = select(presses, T(-0.25), select(leaves, end, s.hold[i]));
-      s.hold[i] = select(stands, select(missing[i] > T(0), T(1), T(-1)), s.hold[i]);
-      first[i] = select(one && !presses, end, T(0));  // an end without a force, if motors drive away from it
+constexpr const char* finds_pressed = R"(    Mask pressed[bounded], stands[bounded];
+    find_pressed_ends(s, pressed, stands);
 )";
 
 std::string pull_of(const Contents& has) {
@@ -292,11 +289,13 @@ std::string pull_of(const Contents& has) {
 // Where forces of a choice call for another one.
 std::string choices_of(const Contents& has) {
   const bool again = yields_to_loads(has);
-  std::string text =
-      fmt::format(chooses, arguments_of_pull(has), has.events ? "    latch(s);\n" : "",
-                  again ? "choose_once" : "choose_modes", again ? " Not in lanes where a blow ended something." : "",
-                  again ? "Mask" : "void", again ? stops_and_keeps : "    stop_what_hits(s, stopped);\n",
-                  again ? "    replace(s, struck, ended);\n    return ended;\n" : "");
+  std::string text = fmt::format(
+      chooses, arguments_of_pull(has), has.events ? "    latch(s);\n" : "", again ? "choose_once" : "choose_modes",
+      again ? " Not in lanes where a blow ended something." : "", again ? "Mask" : "void",
+      fmt::format(fmt::runtime(again ? stops_and_keeps : "    stop_what_hits(s, {}stopped);\n"),
+                  has.strong ? "pressed, stands, " : ""),
+      again ? "    replace(s, struck, ended);\n    return ended;\n" : "", has.strong ? finds_pressed : "",
+      has.strong ? "    start_motors(s, pressed, stands);\n" : "", has.strong ? "pressed, stands, " : "");
   if (!again) return text;
   const auto snaps = [&](const char* unless) {
     return fmt::format("snap(s, {}, select({}, T(-1e30), {}))", forces_of_state(has), unless, near_event);
@@ -315,11 +314,12 @@ std::string decides_of(const Contents& has, const std::string& late, double tole
       has.loads ? fmt::format("const Mask jams = settle_loads($ss.q, s.time, {}{}B, force, s.modes.load, solve);", J,
                               corners(has))
                 : "solve(force);",
-      has.loads ? stops_jammed : "", has.loads ? " && !jams" : "", has.strong ? presses : "",
+      has.loads ? stops_jammed : "", has.loads ? " && !jams" : "", has.strong ? "    T first[bounded];\n" : "",
       has.cones ? offers_cones : "",
       (has.cones ? decides_cones : "") + (has.late_ends ? fmt::format(holds_beyond, late, tolerance) : ""),
       has.strong ? offers_by_motors : "",
-      has.strong ? "for (int i = 0; i < bounded; ++i) hold[i] = first[i];" : "for (T& of_row : hold) of_row = T(0);");
+      has.strong ? "for (int i = 0; i < bounded; ++i) hold[i] = first[i];" : "for (T& of_row : hold) of_row = T(0);",
+      has.strong ? pressed_and_standing : "");
 }
 
 }  // namespace

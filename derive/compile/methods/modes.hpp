@@ -18,6 +18,8 @@ std::string arguments_of_pull(const Contents& has);
 // True if loads may end a row or a joint; the distance from such an event that counts as none.
 bool yields_to_loads(const Contents& has);
 inline constexpr const char* near_event = "T(single ? 1e-5 : 1e-10)";
+// Of rows: the ends on which motors press, and these motors.
+inline constexpr const char* pressed_and_standing = "const Mask (&pressed)[bounded], const Mask (&stands)[bounded], ";
 // stop_what_hits().
 std::string stops_of(const Contents& has);
 

@@ -88,6 +88,47 @@ TEST(Motor, PullsAWheelAgainstItsFrictionWithAllItHas) {
   }
 }
 
+// The stronger of the two wins, however slow the motor is: friction slips with all it has.
+TEST(Motor, TurnsAWheelSlowlyAgainstWeakerFriction) {
+  constexpr double I = 1. / 6, speed = 0.1, most = 10, friction = 4;
+  for (const auto& [name, integrator] : integrators)
+    for (const Solver solver : both) {
+      if (solver == Solver::iterative && integrator != Integrator::euler) continue;
+      Settings s = settings(solver);
+      s.integrator = integrator;
+      World<double> world(s);
+      int wheel;
+      const int joint = add_wheel(world, I, &wheel);
+      add_motor(world, joint, "angle", {.speed = speed, .max_force = most});
+      add_friction(world, joint, "angle", {.max_force = friction});
+      run(world, 1, 1.0 / 60);
+      // The motor reaches its speed after I speed / (most - friction), half of which is lost.
+      EXPECT_NEAR(world.coordinate(joint, "angle"), speed, speed * speed * I / (most - friction) + 1e-3 * speed)
+          << name;
+      EXPECT_NEAR(world.coordinate_rate(joint, "angle"), speed, 1e-7) << name;
+    }
+}
+
+// From the first step on, although friction holds the wheel before the motor starts.
+TEST(Motor, OfUnlimitedForceStartsAgainstFriction) {
+  for (const IntegratorRow& row : integrator_rows) {
+    Settings s = settings(Solver::direct);
+    s.integrator = row.integrator;
+    World<double> world(s);
+    int wheel;
+    const int joint = add_wheel(world, 2, &wheel);
+    add_motor(world, joint, "angle", {.speed = 3});
+    add_friction(world, joint, "angle", {.max_force = 0.7});
+    run(world, 0.5, 0.01);
+    const bool at_once = row.order > 2;  // the others start within a step
+    EXPECT_NEAR(world.coordinate(joint, "angle"), 1.5, at_once ? 1e-9 : 0.031) << row.name;
+    EXPECT_NEAR(world.coordinate_rate(joint, "angle"), 3, 1e-9) << row.name;
+    double sum = 0;
+    for (const WorkOfSource& source : world.work_by_source()) sum += std::abs(source.work);
+    EXPECT_NEAR(sum, 9 + 2 * 0.7 * 1.5, at_once ? 1e-9 : 0.05) << row.name;
+  }
+}
+
 // The limit wins against any force: the rod stands, and reports no speed.
 TEST(Motor, StandsStillAtTheLimitThatItRunsInto) {
   for (const auto& [name, integrator] : integrators) {

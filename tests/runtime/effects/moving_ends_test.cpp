@@ -221,6 +221,27 @@ TEST(MovingEnds, AMotorThatTurnsBackLeavesItsEnd) {
   }
 }
 
+// The same with friction, whose side turns round with the motor: it slips, and the motor has its speed at all times.
+TEST(MovingEnds, AMotorTurnsBackAgainstFriction) {
+  for (const IntegratorRow& row : integrator_rows)
+    for (const double most : {100.0, unlimited}) {
+      Track<Planar<double>> track(row.integrator, 3);
+      const int rail = track.rail();
+      track.world.set_velocity(track.body, {2, 0, 0});
+      SpecEffect motor{"motor", {in_time("speed", {cosine(0, 2, pi)})}};
+      if (most < unlimited) motor.parameters.push_back({"max", {most}});
+      add_effect(track.world, rail, "slide", motor);
+      add_effect(track.world, rail, "slide", DryFriction{4});
+      const double start = track.world.coordinate(rail, "slide");
+      for (const double t : {0.4, 0.8, 1.2, 1.6}) {
+        track.run(0.4, 0.01);
+        EXPECT_NEAR(track.world.coordinate(rail, "slide"), start + 2 / pi * std::sin(pi * t),
+                    row.order > 2 ? 1e-7 : 0.03)
+            << row.name << " at " << t << " s, at most " << most << " N";
+      }
+    }
+}
+
 // A racket that moves at v meets a block at rest without a bounce: the block leaves with v, which the racket puts in.
 TEST(MovingEnds, ARacketHitsABlock) {
   constexpr double m = 2, v = 3, way = 0.3, t = 0.5;

@@ -89,5 +89,84 @@ TEST(EventsBetween, OfEndsThatAreMetInTurnsEnd) {
   }
 }
 
+// b + a sin(w t)
+Profile sine(double b, double a, double w) {
+  return Profile::function([=](double t) -> ProfileValue {
+    return {b + a * std::sin(w * t), a * w * std::cos(w * t), -a * w * w * std::sin(w * t)};
+  });
+}
+
+constexpr Method of_every_order[] = {{"dop853", Integrator::dop853, 12, 1e-4, 0},
+                                     {"dop853", Integrator::dop853, 12, 1e-10, 0},
+                                     {"radau5", Integrator::radau5, 0, 1e-8, 0},
+                                     {"rk4", Integrator::rk4, 4, 1e-6, 0}};
+
+// A rod at rest under functions of time asks for no short steps: the error is none. It must move when they move it.
+struct Rest {
+  World<double> world;
+  int joint;
+  explicit Rest(const Method& method, double gravity) : world(of(method, gravity)) {
+    joint = revolute(world, world.ground(), world.add_body(rod(0.5, 0, 0)), 0, 0, -0.5, 0);
+  }
+  static Settings of(const Method& method, double gravity) {
+    Settings s = settings(Solver::direct, Drift::projection, gravity);
+    s.integrator = method.integrator, s.local_error = method.local_error;
+    return s;
+  }
+  double angle() const { return world.coordinate(joint, "angle"); }
+};
+
+// A motor with at most 1 N m stands against a spring. Its speed turns round at 0.3 pi and 0.5 pi s: between them it
+// pushes to the other side.
+TEST(EventsBetween, AStandingMotorTurnsBackWithItsSpeed) {
+  for (const Method& method : of_every_order) {
+    Rest rest(method, 0);
+    add_effect(rest.world, rest.joint, "angle",
+               SpecEffect{"motor", {in_time("speed", {sine(0, -1.7, 5)}), {"max", {1}}}});
+    add_effect(rest.world, rest.joint, "angle",
+               CoordinateSpring{{.by_frequency = false, .stiffness = 50, .damping = 5}, 0});
+    const auto at = [&](double t) {
+      while (rest.world.time() < t - 1e-9) EXPECT_TRUE(rest.world.step(0.05));
+      return rest.angle();
+    };
+    EXPECT_NEAR(at(0.6), -1. / 50, 5e-4) << method.name << ' ' << method.local_error;
+    EXPECT_NEAR(at(1.25), 1. / 50, 5e-4) << method.name << ' ' << method.local_error;
+    EXPECT_NEAR(at(1.85), -1. / 50, 5e-4) << method.name << ' ' << method.local_error;
+  }
+}
+
+// A load lifts a rod off its end for 0.07 s in a second and a half: sin(7 t) > 0.966.
+TEST(EventsBetween, AnEndLetsGoForAShortTime) {
+  for (const Method& method : of_every_order) {
+    Rest rest(method, -9.81);
+    add_limit(rest.world, rest.joint, "angle", {.lower = 0, .upper = 2});
+    add_effect(rest.world, rest.joint, "angle", SpecEffect{"load", {in_time("push", {sine(0, 5.08, 7)})}});
+    double highest = 0;
+    for (int k = 0; k < 30; ++k) {
+      ASSERT_TRUE(rest.world.step(0.05));
+      if (rest.world.time() > 0.9) highest = std::max(highest, rest.angle());
+    }
+    EXPECT_GT(highest, 1e-4) << method.name << ' ' << method.local_error;
+    EXPECT_NEAR(rest.angle(), 0, 1e-7) << method.name << ' ' << method.local_error;
+  }
+}
+
+// A block moves at 0.1 m/s, also in its last step, and an end comes to meet it between 0.9 and 1.4 s, and goes away.
+TEST(EventsBetween, AnEndThatComesAndGoesIsMet) {
+  const auto place = [](const Method& method, double h) {
+    World<double> world(Rest::of(method, 0));
+    const int block = world.add_body({.vx = 0.1, .mass = 1, .inertia = 1});
+    const int rail =
+        world.add_joint({"prismatic", {block, world.ground()}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0, 1}}}, {}});
+    add_effect(world, rail, "slide", SpecEffect{"limit", {in_time("upper", {sine(0.2, 0.15, 4)})}});
+    while (world.time() < 1.5 - 1e-9) EXPECT_TRUE(world.step(h));
+    return world.coordinate(rail, "slide");
+  };
+  const double at_short_steps = place({"rk4", Integrator::rk4, 4, 0, 0}, 0.001);
+  EXPECT_LT(at_short_steps, 0.06);
+  for (const Method& method : of_every_order)
+    EXPECT_NEAR(place(method, 0.5), at_short_steps, std::max(1e-5, method.local_error)) << method.name;
+}
+
 }  // namespace
 }  // namespace cdot::test::between_test

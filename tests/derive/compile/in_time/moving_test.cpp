@@ -1,6 +1,8 @@
 // Ends, lengths, places and rates that follow functions of time: compiled scenes move as the World does, to round-off.
 #include <gtest/gtest.h>
 
+#include "clutches_euler.hpp"
+#include "clutches_rk4.hpp"
 #include "crossing_euler.hpp"
 #include "crossing_rk4.hpp"
 #include "drives_euler.hpp"
@@ -73,6 +75,23 @@ TEST(CompiledMoving, AMotorThatTurnsBackLeavesItsEnd) {
   EXPECT_NEAR(state.q[turning_implicit<double>::rod].angle, 0.3 - 2 / M_PI * (1 - std::sin(0.7 * M_PI)), 1e-4);
 }
 
+// tests/derive/compile/in_time/clutches.py: the angles by backward Euler at 2e-6 s, with the torques as sets.
+template <class Clutches>
+void slips_as_by_backward_euler(Integrator integrator, double within) {
+  cdot::runs_as_the_world<Clutches>(room + "clutches.toml", integrator, by_events, 1.5);
+  typename Clutches::State state;
+  Clutches::reset(state);
+  for (const auto& [t, angle] : {std::pair{0.25, 0.20794}, std::pair{0.75, 0.49522}, std::pair{1.0, 0.44142},
+                                 std::pair{1.25, 0.25182}, std::pair{1.5, -0.02717}}) {
+    while (state.time < t - 1e-9) Clutches::step(state, 0.001);
+    EXPECT_NEAR(state.q[Clutches::rod].angle, angle, within) << t << " s";
+  }
+}
+TEST(CompiledMoving, AMotorSlipsBesideFriction) {
+  slips_as_by_backward_euler<clutches_euler<double>>(Integrator::euler, 2e-3);
+  slips_as_by_backward_euler<clutches_rk4<double>>(Integrator::rk4, 1.5e-5);
+}
+
 // Off its ends the rod goes 2/pi sin(pi t) beyond its place at the time when the motor turned round.
 template <class Pressing>
 void leaves_its_ends(Integrator integrator) {
@@ -126,8 +145,8 @@ TEST(CompiledMoving, EqualEndsLead) {
   EXPECT_NEAR(state.q[Ends::wheel].angle, 0.5 * std::sin(1.4) * std::sin(1.4), 1e-12);
 }
 
-// Each row is at a bound at some time, and off it at another: but for the wheel, which is led, and the haul, which
-// pulls.
+// Each row is at a bound at some time, and off it at another: but for the wheel, which is led, the haul, which pulls,
+// and the friction beside an end that moves.
 TEST(CompiledMoving, AreMetInTheTest) {
   const cdot::MetBounds<ends_euler<double>> ends(700, 0.001);
   for (int i = 0; i < ends_euler<double>::bounded; ++i) {
@@ -135,7 +154,8 @@ TEST(CompiledMoving, AreMetInTheTest) {
     EXPECT_TRUE(ends.between[i]) << "end " << i;
   }
   const cdot::MetBounds<ropes_euler<double>> ropes(700, 0.001);
-  for (int i = 0; i < ropes_euler<double>::bounded; ++i) EXPECT_TRUE(ropes.between[i]) << "rope " << i;
+  for (int i = 0; i < ropes_euler<double>::bounded; ++i)
+    EXPECT_TRUE(i == ropes_euler<double>::hinge_angle_friction ? ropes.at_bound[i] : ropes.between[i]) << "rope " << i;
   const cdot::MetBounds<drives_euler<double>> drives(700, 0.001);
   for (int i = 0; i < drives_euler<double>::bounded; ++i)
     EXPECT_TRUE(drives.at_bound[i] && drives.between[i]) << "drive " << i;
