@@ -118,8 +118,7 @@ double threshold(const Flow<S>& flow, size_t k) {
 // Only a way that turns back, or twice, comes back from an end that stands, or from the place of another event.
 template <class S>
 bool may_come_back(const Batch<S>& batch, int i, const Way<typename S::Scalar>& way) {
-  return (batch.mode[i] == Mode::off || batch.law->distance) &&
-         (moves(batch, i) || way.turns_back() || way.may_turn_twice());
+  return (batch.mode[i] == Mode::off || batch.law->distance) && (way.turns_back() || way.may_turn_twice());
 }
 
 template <class S>
@@ -133,10 +132,12 @@ bool may_rest(const Batch<S>& batch, int i, const Way<typename S::Scalar>& way) 
   return slips(batch, i) && way.turn() > 0 && way.turn() < 1;
 }
 
-// A row whose prescribed rate moves reaches it within the step and falls behind again.
+// An end that moves comes to meet a row and goes away within the step; a prescribed rate that moves is reached and runs
+// ahead again. Where the step ends beyond the event, it is found as any other.
 template <class S>
-bool may_catch_up(const Batch<S>& batch, int i) {
-  return slips(batch, i) && moves(batch, i);
+bool may_come_and_go(const Batch<S>& batch, int i, const Flow<S>& flow, size_t k) {
+  const bool meets = batch.mode[i] == Mode::off || batch.law->distance || slips(batch, i);
+  return meets && moves(batch, i) && double(flow.margins[k]) >= threshold(flow, k);
 }
 
 template <class S>
@@ -284,7 +285,7 @@ bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
     any |= leaps_over_bound(batch, i, way, time + h, h);
     const bool bounded = may_have_let_go(batch, i, flow, k);
     any |= bounded && start.least < threshold(flow, k);
-    if (may_come_back(batch, i, way) || may_catch_up(batch, i))
+    if (may_come_back(batch, i, way) || may_come_and_go(batch, i, flow, k))
       look(dip_of_way(batch, i, way, flow.resolution[k], time + h, h));
     else if (may_rest(batch, i, way)) look(dip_of_rate(batch, i, way, flow.resolution[k], h));
     near |= start.near;
