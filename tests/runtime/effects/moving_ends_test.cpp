@@ -242,6 +242,29 @@ TEST(MovingEnds, AMotorTurnsBackAgainstFriction) {
     }
 }
 
+// A motor of unlimited force presses a rod on its end. A second rod falls on the end between both, whose blow would
+// turn back a rod that is only held.
+TEST(MovingEnds, AMotorThatPressesYieldsToNoBlow) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::dop853, Integrator::radau5}) {
+    Settings s = with(integrator);
+    s.gravity_y = -9.81;
+    World<double> world(s);
+    const int first = world.add_body({.x = 0.5, .mass = 1, .inertia = 1. / 12});
+    const int second = world.add_body({.x = 1.5, .mass = 2, .inertia = 2. / 12});
+    const int hinge = revolute(world, world.ground(), first, 0, 0, -0.5, 0);
+    const int elbow = revolute(world, first, second, 0.5, 0, -0.5, 0);
+    add_motor(world, hinge, "angle", {.speed = 1.8});
+    add_limit(world, hinge, "angle", {.lower = -0.5, .upper = 0.5});
+    add_limit(world, elbow, "angle", {.lower = -0.6, .upper = 0.6});
+    for (int k = 0; k < 150; ++k) {
+      ASSERT_TRUE(world.step(0.01));
+      if (k <= 40) continue;
+      EXPECT_NEAR(world.coordinate(hinge, "angle"), 0.5, 1e-8) << name_of(integrators, integrator);
+    }
+    EXPECT_NEAR(world.coordinate(elbow, "angle"), -0.6, 1e-8) << name_of(integrators, integrator);
+  }
+}
+
 // A racket that moves at v meets a block at rest without a bounce: the block leaves with v, which the racket puts in.
 TEST(MovingEnds, ARacketHitsABlock) {
   constexpr double m = 2, v = 3, way = 0.3, t = 0.5;
