@@ -28,6 +28,11 @@ struct Way {
     return rest * rest * (from + share * (T(2) * from + rate_from)) +
            share * share * (to + rest * (T(2) * to - rate_to));
   }
+  // Where values known to `noise` do not tell how the way bends, as in short steps: the parabola of the rates.
+  Way known_to(T noise) const {
+    const T mean = T(0.5) * (rate_from + rate_to);
+    return std::abs(bend()) < noise ? Way{from, from + mean, rate_from, rate_to} : *this;
+  }
   T bend() const { return rate_from + rate_to - T(2) * (to - from); }
   T rate_at(T share) const { return rate_from + share * (rate_to - rate_from - T(3) * bend() * (T(1) - share)); }
   // Where that rate turns back.
@@ -277,7 +282,7 @@ bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
   bool any = false, near = false, held = false;
   each_single_row(island, [&](Batch<S>& batch, int i, size_t k) {
     auto& start = flow.ways[k];
-    const Way<T> way{start.C, batch.C[i], h * start.rate, h * flow.row_rates[k]};
+    const auto way = Way<T>{start.C, batch.C[i], h * start.rate, h * flow.row_rates[k]}.known_to(flow.resolution[k].C);
     start.near = false;
     const auto look = [&](const Dip& dip) {
       any |= dip.leaps(threshold(flow, k)), start.near |= dip.comes_near(threshold(flow, k));

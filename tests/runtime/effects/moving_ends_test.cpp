@@ -262,6 +262,8 @@ TEST(MovingEnds, AMotorThatPressesYieldsToNoBlow) {
       EXPECT_NEAR(world.coordinate(hinge, "angle"), 0.5, 1e-8) << name_of(integrators, integrator);
     }
     EXPECT_NEAR(world.coordinate(elbow, "angle"), -0.6, 1e-8) << name_of(integrators, integrator);
+    EXPECT_LE(world.step_counts().events, 4) << name_of(integrators, integrator);
+    fmt::print("  {} events\n", world.step_counts().events);
   }
 }
 
