@@ -1,6 +1,7 @@
 // Ends, lengths, places and rates that follow functions of time: compiled scenes move as the World does, to round-off.
 #include <gtest/gtest.h>
 
+#include "braked_rk4.hpp"
 #include "clutches_euler.hpp"
 #include "clutches_rk4.hpp"
 #include "crossing_euler.hpp"
@@ -90,6 +91,19 @@ void slips_as_by_backward_euler(Integrator integrator, double within) {
 TEST(CompiledMoving, AMotorSlipsBesideFriction) {
   slips_as_by_backward_euler<clutches_euler<double>>(Integrator::euler, 2e-3);
   slips_as_by_backward_euler<clutches_rk4<double>>(Integrator::rk4, 1.5e-5);
+}
+
+// Friction holds the rod neither at its start nor as a program turns the motor round.
+TEST(CompiledMoving, AMotorStartsAgainstFriction) {
+  using Braked = braked_rk4<double>;
+  Braked::State state;
+  Braked::reset(state);
+  for (int k = 0; k < 50; ++k) Braked::step(state, 0.01);
+  EXPECT_NEAR(state.q[Braked::rod].angle, 1, 1e-9);
+  state.p.hinge_angle_motor_speed = -1;
+  for (int k = 0; k < 50; ++k) Braked::step(state, 0.01);
+  EXPECT_NEAR(state.q[Braked::rod].angle, 0.5, 1e-9);
+  EXPECT_NEAR(state.v[Braked::rod].w, -1, 1e-9);
 }
 
 // Off its ends the rod goes 2/pi sin(pi t) beyond its place at the time when the motor turned round.
