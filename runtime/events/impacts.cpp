@@ -116,17 +116,24 @@ bool lacks_motors(Island<S>& island) {
   return any;
 }
 
-// True if an end is met beside a motor of unlimited force. Rows that have struck stay `held`, others have no mode yet.
+// True if an end is met beside a motor of unlimited force.
 template <class S>
 bool may_press(Island<S>& island) {
   using T = typename S::Scalar;
   bool met = false, motor = false;
-  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
-    if (batch.mode[i] != Mode::held) batch.mode[i] = Mode::bounded;
+  each_guarded_row(island, [&](Batch<S>&, int, const Guard<T>& guard, const Resolution<T>& resolution) {
     met |= guard.one_sided() && guard.gap() <= resolution.C;
     motor |= guard.bilateral() && guard.of_rate;
   });
   return met && motor;
+}
+
+// Rows that have struck stay `held`; others have no mode yet.
+template <class S>
+void forget_pressed_ends(Island<S>& island) {
+  each_row(island, [](Batch<S>& batch, int i) {
+    if (batch.law && batch.law->guard && batch.mode[i] != Mode::held) batch.mode[i] = Mode::bounded;
+  });
 }
 
 // The impulses that rows need for their rates, which change the velocities.
@@ -279,6 +286,7 @@ template <class S>
 void find_pressed_ends(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   constexpr double nearly_rigid = 1e-4;
+  forget_pressed_ends(island);
   if (!may_press(island)) return;
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.displacement[i] = all.velocity[i];
