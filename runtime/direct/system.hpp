@@ -103,9 +103,10 @@ class System {
       for (int r = 0; r < block.rows; ++r) f(block.first + r, *block.batch, block.slot * block.rows + r);
   }
 
-  // Of motors that others hold, as a share of their diagonals. With 1 they push with what would bring the bodies to
-  // their speeds.
-  double softness_of_motors = 1;
+  // Of motors that others hold, as a share of their diagonals. With 1 they would push with what brings the bodies to
+  // their speeds, and a blow would throw the bodies back off the ends on which they press.
+  static constexpr double usual_softness = 0.1;
+  double softness_of_motors = usual_softness;
 
   // Vectors over all rows, in the order of the blocks; the caller's to fill between the calls.
   std::vector<Real> b, lambda;

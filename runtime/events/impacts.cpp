@@ -292,7 +292,7 @@ void find_pressed_ends(WorldData<S>& world, Island<S>& island) {
   for (int i : island.bodies) all.displacement[i] = all.velocity[i];
   island.system.softness_of_motors = nearly_rigid;
   strike(world, island);
-  island.system.softness_of_motors = 1;
+  island.system.softness_of_motors = System<S>::usual_softness;
   find_rates(world, island);
   if (lacks_motors(island)) note_pressed_ends(island, T(std::sqrt(nearly_rigid)));
   for (int i : island.bodies) all.velocity[i] = all.displacement[i];

@@ -72,7 +72,7 @@ constexpr const char* starts_motors = R"(
     Mask now = T(1) < T(0);
     for (int e = 0; e < bounded; ++e) now = now || (lacks(G, s.modes, e) && !stands[e]);
     if (!any(now)) return;
-    find_blow(s, G, pressed, stands, B, mu, T(1));
+    find_blow(s, G, pressed, stands, B, mu, T(0.1));
     for (int e = 0; e < bounded; ++e) {
       for (int i = 0; i < bodies; ++i) s.v[i] = choose(now, s.v[i] + mu[e] * B.g[e][i], s.v[i]);
     }
@@ -172,7 +172,7 @@ std::string stops_of(const Contents& has) {
                      has.events ? " || closes" : "", may_end ? "Mask" : "void",
                      may_end ? "\n  // Returns the lanes in which it ends a row or a joint by its load." : "",
                      may_end ? "const T& h, " : "", may_end ? " hits" : "", if_strong(pressed_and_standing),
-                     if_strong("pressed, stands, "), if_strong(", T(1)"));
+                     if_strong("pressed, stands, "), if_strong(", T(0.1)"));
 }
 
 }  // namespace cdot::compile
