@@ -144,22 +144,25 @@ void strike(WorldData<S>& world, Island<S>& island) {
   take_back_rates(island);
 }
 
-// Ends are `pressed` that have an impulse of more than the share `few` of the largest, and motors that stand `pushed`
-// or `pulled`. Beside what others lack, a motor that turns back lacks round-off. None if no end has an impulse.
+// Ends are `pressed` whose impulse has grown from that in Batch::impulse, by more than the share `few` of the largest
+// growth, and motors that stand `pushed` or `pulled`. Beside what others lack, a motor that turns back lacks round-off.
+// None if no impulse has grown.
 template <class S>
-void note_pressed_ends(Island<S>& island, typename S::Scalar few) {
+void note_pressed_ends(Island<S>& island) {
   using T = typename S::Scalar;
+  constexpr T few = T(1e-3), round_off = T(1e-6);
+  const auto growth = [](const Batch<S>& batch, int i) { return std::abs(batch.lambda[i] - batch.impulse[i]); };
   T largest = 0, lacked = 0;
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
     const T missing = missing_of(batch, i, guard);
-    if (guard.one_sided()) largest = std::max(largest, std::abs(batch.lambda[i]));
+    if (guard.one_sided()) largest = std::max(largest, growth(batch, i));
     if (is_stopped(guard, resolution, missing)) lacked = std::max(lacked, std::abs(missing));
   });
   if (largest == T(0)) return;
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
     const T missing = missing_of(batch, i, guard);
-    if (guard.one_sided() && std::abs(batch.lambda[i]) > few * largest) batch.mode[i] = Mode::pressed;
-    if (is_stopped(guard, resolution, missing) && std::abs(missing) > few * few * few * lacked)
+    if (guard.one_sided() && growth(batch, i) > few * largest) batch.mode[i] = Mode::pressed;
+    if (is_stopped(guard, resolution, missing) && std::abs(missing) > round_off * lacked)
       batch.mode[i] = missing > T(0) ? Mode::pushed : Mode::pulled;
   });
 }
@@ -281,20 +284,24 @@ bool stop_what_hits(WorldData<S>& world, Island<S>& island, typename S::Scalar t
   return latched || broken;
 }
 
-// Motors push ten thousand times as hard as the bodies are heavy: whatever else has an impulse is slight beside them.
+// Motors push ten thousand times as hard as the bodies are heavy, and half of that: with them grow the impulses of the
+// ends on which they press, and no others.
 template <class S>
 void find_pressed_ends(WorldData<S>& world, Island<S>& island) {
-  using T = typename S::Scalar;
   constexpr double nearly_rigid = 1e-4;
   forget_pressed_ends(island);
   if (!may_press(island)) return;
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.displacement[i] = all.velocity[i];
-  island.system.softness_of_motors = nearly_rigid;
-  strike(world, island);
+  for (const double softness : {2 * nearly_rigid, nearly_rigid}) {
+    each_row(island, [](Batch<S>& batch, int i) { batch.impulse[i] = batch.lambda[i]; });
+    for (int i : island.bodies) all.velocity[i] = all.displacement[i];
+    island.system.softness_of_motors = softness;
+    strike(world, island);
+  }
   island.system.softness_of_motors = System<S>::usual_softness;
   find_rates(world, island);
-  if (lacks_motors(island)) note_pressed_ends(island, T(std::sqrt(nearly_rigid)));
+  if (lacks_motors(island)) note_pressed_ends(island);
   for (int i : island.bodies) all.velocity[i] = all.displacement[i];
 }
 

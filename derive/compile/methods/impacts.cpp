@@ -40,17 +40,19 @@ constexpr const char* starts_motors = R"(
   }
 
   // Ends that are met and stop such motors are pressed, whatever moves and whatever the forces are, and these motors
-  // stand. Motors push ten thousand times as hard as the bodies are heavy: any other impulse is slight beside them.
+  // stand. Motors push ten thousand times as hard as the bodies are heavy, and half of that: with them grow the impulses
+  // of the ends on which they press, and no others.
   static void find_pressed_ends(State s, Mask (&pressed)[bounded], Mask (&stands)[bounded]) {
     Guards G;
     Bounded B;
-    T mu[bounded], lacked = T(0);
+    T half[bounded], mu[bounded], lacked = T(0);
     for (int e = 0; e < bounded; ++e) pressed[e] = stands[e] = T(1) < T(0);
     guard($ss.q, s.time, s.v, G);
+    find_blow(s, G, pressed, stands, B, half, T(2e-4));
     find_blow(s, G, pressed, stands, B, mu, T(1e-4));
     for (int e = 0; e < bounded; ++e) {
       for (int i = 0; i < bodies; ++i) s.v[i] = s.v[i] + mu[e] * B.g[e][i];
-      mu[e] = select(has_one_end(G, e), mu[e], T(0));
+      mu[e] = select(has_one_end(G, e), mu[e] - half[e], T(0));
     }
     guard($ss.q, s.time, s.v, G);
     for (int e = 0; e < bounded; ++e)
@@ -58,7 +60,7 @@ constexpr const char* starts_motors = R"(
     const T most = largest(mu);
     const Mask some = lacked > T(0) && most > T(0);
     for (int e = 0; e < bounded; ++e) {
-      pressed[e] = some && magnitude(mu[e]) > T(1e-2) * most;
+      pressed[e] = some && magnitude(mu[e]) > T(1e-3) * most;
       stands[e] = some && lacks(G, s.modes, e) && magnitude(G.missing[e]) > T(1e-6) * lacked;
     }
   }
