@@ -56,7 +56,7 @@ bool offer_bounds(WorldData<S>& world, Island<S>& island) {
   each_guarded_row(
       island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
         if (batch.law->cone_rows > 0) return;
-        const T missing = guard.rate - (batch.rate[i] + batch.bias[i]);
+        const T missing = missing_of(batch, i, guard);
         const bool hops = guard.one_sided() && missing * missing <= resolution.hop;
         const Mode noted = std::exchange(batch.mode[i], Mode::held);  // held: it has struck
         const bool slow = std::abs(missing) <= T(4) * resolution.rate || hops || noted == Mode::held;

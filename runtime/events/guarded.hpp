@@ -56,6 +56,12 @@ void find_rates(WorldData<S>& world, Island<S>& island) {
   }
 }
 
+// The rest of its prescribed rate that a row lacks, after find_rates().
+template <class S>
+typename S::Scalar missing_of(const Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard) {
+  return guard.rate - (batch.rate[i] + batch.bias[i]);
+}
+
 // No bounds, no softness, no load: before new ones are offered.
 template <class S>
 void clear_laws(Island<S>& island) {

@@ -48,12 +48,6 @@ bool may_strike(const Batch<S>& batch, int i, const Guard<typename S::Scalar>& g
   return guard.bilateral() || (guard.of_rate && (std::isinf(guard.lower) || std::isinf(guard.upper)));
 }
 
-// What a row lacks to its rate.
-template <class S>
-typename S::Scalar missing_of(const Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard) {
-  return guard.rate - (batch.rate[i] + batch.bias[i]);
-}
-
 // The row that strikes hardest, in units of its resolution.
 template <class S>
 Blow what_hits(Island<S>& island) {

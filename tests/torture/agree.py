@@ -89,7 +89,7 @@ def farthest(some, others):
 
 
 def judge(run, seed, folder):
-    """What differs, in words; and how many runs told that they are not to be trusted."""
+    """The differences, in words; and how many runs told that they are not to be trusted."""
     (folder / "scene.toml").write_text(scene(seed), encoding="utf-8")
     motions = {name: places(run, options, folder) for name, options in METHODS.items()}
     sound = {name: motion for name, motion in motions.items() if motion is not None}

@@ -162,7 +162,8 @@ constexpr const char* solves_bounded = R"(
     return eased;
   }
 
-  static void settle(Bounded& B, T (&hold)[bounded], T (&mu)[bounded], const T& softness = T(0.1)) {
+  static constexpr double usual_softness = 0.1;  // of motors that others hold
+  static void settle(Bounded& B, T (&hold)[bounded], T (&mu)[bounded], const T& softness = T(usual_softness)) {
     T rigid[bounded];
     for (int i = 0; i < bounded; ++i) {
       const auto endless = (hold[i] < T(-0.5) && B.low[i] < T(-1e20)) || (hold[i] > T(0.5) && B.high[i] > T(1e20));

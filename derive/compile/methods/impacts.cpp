@@ -74,7 +74,7 @@ constexpr const char* starts_motors = R"(
     Mask now = T(1) < T(0);
     for (int e = 0; e < bounded; ++e) now = now || (lacks(G, s.modes, e) && !stands[e]);
     if (!any(now)) return;
-    find_blow(s, G, pressed, stands, B, mu, T(0.1));
+    find_blow(s, G, pressed, stands, B, mu);
     for (int e = 0; e < bounded; ++e) {
       for (int i = 0; i < bodies; ++i) s.v[i] = choose(now, s.v[i] + mu[e] * B.g[e][i], s.v[i]);
     }
@@ -97,7 +97,7 @@ constexpr const char* stops = R"(
     }}
     if (!any(hits)) return{7};
     T mu[bounded];
-    find_blow(s, G, {9}B, mu{10});
+    find_blow(s, G, {9}B, mu);
     for (int e = 0; e < bounded; ++e) {{
       stopped[e] = hits && magnitude(mu[e]) > T(0){0};
       for (int i = 0; i < bodies; ++i) s.v[i] = choose(hits, s.v[i] + mu[e] * B.g[e][i], s.v[i]);
@@ -168,13 +168,13 @@ std::string stops_of(const Contents& has) {
                      if_strong("\n  // Pressed ends hold on both sides, and rows that are out have none."),
                      if_strong("const Mask (&pressed)[bounded], const Mask (&out)[bounded], "),
                      if_strong("!out[i] && ("), if_strong(")"), has.strong ? bounds_beside_motors : bounds_of_blow,
-                     if_strong(", const T& softness"), if_strong(", softness")) +
+                     if_strong(", const T& softness = T(usual_softness)"), if_strong(", softness")) +
          if_strong(starts_motors) +
          fmt::format(stops, has.loads ? unless_it_slips : "", yields_of(has), has.events ? latches_close : "",
                      has.events ? " || closes" : "", may_end ? "Mask" : "void",
                      may_end ? "\n  // Returns the lanes in which it ends a row or a joint by its load." : "",
                      may_end ? "const T& h, " : "", may_end ? " hits" : "", if_strong(pressed_and_standing),
-                     if_strong("pressed, stands, "), if_strong(", T(0.1)"));
+                     if_strong("pressed, stands, "));
 }
 
 }  // namespace cdot::compile

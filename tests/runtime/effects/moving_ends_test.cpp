@@ -242,21 +242,34 @@ TEST(MovingEnds, AMotorTurnsBackAgainstFriction) {
     }
 }
 
+// Two rods in a row under gravity. A motor of unlimited force turns the first against its end.
+struct PressedArm {
+  World<double> world;
+  int hinge, elbow;
+  explicit PressedArm(Integrator integrator) : world(under_gravity(integrator)) {
+    const int first = world.add_body({.x = 0.5, .mass = 1, .inertia = 1. / 12});
+    const int second = world.add_body({.x = 1.5, .mass = 2, .inertia = 2. / 12});
+    hinge = revolute(world, world.ground(), first, 0, 0, -0.5, 0);
+    elbow = revolute(world, first, second, 0.5, 0, -0.5, 0);
+    add_motor(world, hinge, "angle", {.speed = 1.8});
+    add_limit(world, hinge, "angle", {.lower = -0.5, .upper = 0.5});
+    add_limit(world, elbow, "angle", {.lower = -0.6, .upper = 0.6});
+  }
+  static Settings under_gravity(Integrator integrator) {
+    Settings s = with(integrator);
+    s.gravity_y = -9.81;
+    return s;
+  }
+};
+
 // A motor of unlimited force presses a rod on its end, whatever a load does. A second rod falls on the end between both
 // and stays there: its blow would turn back a rod that is only held.
 TEST(MovingEnds, AMotorThatPressesYieldsToNoBlow) {
   for (const Integrator integrator : {Integrator::rk4, Integrator::dop853, Integrator::radau5}) {
-    Settings s = with(integrator);
-    s.gravity_y = -9.81;
-    World<double> world(s);
-    const int first = world.add_body({.x = 0.5, .mass = 1, .inertia = 1. / 12});
-    const int second = world.add_body({.x = 1.5, .mass = 2, .inertia = 2. / 12});
-    const int hinge = revolute(world, world.ground(), first, 0, 0, -0.5, 0);
-    const int elbow = revolute(world, first, second, 0.5, 0, -0.5, 0);
-    add_motor(world, hinge, "angle", {.speed = 1.8});
-    add_limit(world, hinge, "angle", {.lower = -0.5, .upper = 0.5});
+    PressedArm arm(integrator);
+    World<double>& world = arm.world;
+    const int hinge = arm.hinge, elbow = arm.elbow;
     add_effect(world, hinge, "angle", SpecEffect{"load", {in_time("push", {sine(0, 30, 20)})}});
-    add_limit(world, elbow, "angle", {.lower = -0.6, .upper = 0.6});
     bool met = false;
     for (int k = 0; k < 150; ++k) {
       ASSERT_TRUE(world.step(0.01));
@@ -275,19 +288,12 @@ TEST(MovingEnds, AMotorThatPressesYieldsToNoBlow) {
 // next one: slowly, or it would throw the second rod back.
 TEST(MovingEnds, AMotorThatPressesThrowsNothingBack) {
   for (const IntegratorRow& row : integrator_rows) {
-    Track<Planar<double>> track(row.integrator, 1);  // a slide, which carries the arm
-    World<double>& world = track.world;
-    const int first = world.add_body({.x = 0.5, .mass = 1, .inertia = 1. / 12});
-    const int second = world.add_body({.x = 1.5, .mass = 2, .inertia = 2. / 12, .force_y = -30});
-    const int hinge = revolute(world, world.ground(), first, 0, 0, -0.5, 0);
-    const int elbow = revolute(world, first, second, 0.5, 0, -0.5, 0);
-    add_motor(world, hinge, "angle", {.speed = 1.8});
-    add_limit(world, hinge, "angle", {.lower = -0.5, .upper = 0.5});
-    add_limit(world, elbow, "angle", {.lower = -0.6, .upper = 0.6});
-    for (int k = 0; k < 1500; ++k) ASSERT_TRUE(world.step(0.001)) << row.name;
-    fmt::print("  {}: {:.4f} {:.4f}\n", row.name, world.coordinate(hinge, "angle"), world.coordinate(elbow, "angle"));
-    EXPECT_NEAR(world.coordinate(hinge, "angle"), 0.5, 1e-3) << row.name;
-    EXPECT_NEAR(world.coordinate(elbow, "angle"), -0.6, 1e-3) << row.name;
+    PressedArm arm(row.integrator);
+    for (int k = 0; k < 1500; ++k) ASSERT_TRUE(arm.world.step(0.001)) << row.name;
+    const double shoulder = arm.world.coordinate(arm.hinge, "angle"), bend = arm.world.coordinate(arm.elbow, "angle");
+    fmt::print("  {}: {:.4f} {:.4f}\n", row.name, shoulder, bend);
+    EXPECT_NEAR(shoulder, 0.5, 1e-3) << row.name;
+    EXPECT_NEAR(bend, -0.6, 1e-3) << row.name;
   }
 }
 
