@@ -13,6 +13,7 @@
 #include "runtime/events/impacts.hpp"
 #include "runtime/events/latch.hpp"
 #include "runtime/events/resolution.hpp"
+#include "runtime/events/slackening.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/cones.hpp"
 #include "runtime/solve/projection.hpp"
@@ -86,6 +87,10 @@ void decide_by_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar
   using T = typename S::Scalar;
   ask_for_gamma(world, island, time);
   solve(world, island, world.bodies.velocity_rate.data());
+  if (let_go_of_slackening_ends(world, island, time)) {
+    ask_for_gamma(world, island, time);
+    solve(world, island, world.bodies.velocity_rate.data());
+  }
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>&) {
     if (batch.mode[i] != Mode::held || batch.law->cone_rows > 0) return;
     const T force = batch.lambda[i];

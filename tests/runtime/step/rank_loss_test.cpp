@@ -256,5 +256,24 @@ TEST(RankLoss, APlateThatRollsOnABallPassesIt) {
   }
 }
 
+// Two rods in line, pulled along themselves, with a rope across their pin. In line the rope repeats the rows of the pin
+// and is as long as it ever gets: it must not hinder the rods from bending.
+TEST(RankLoss, OfARopeInLineWithItsJointsLeavesThemFree) {
+  const auto bent = [](const Settings& s, bool roped) {
+    World<double> world(s);
+    const auto rods = add_chain(world, 2, 0);
+    if (roped)
+      world.add_joint({"max_distance", {rods[0], rods[1]}, {{"pa", {-0.3, 0}}, {"pb", {-0.2, 0}}, {"l", {1.1}}}, {}});
+    run(world, 0.5, 0.01);
+    return world.pose(rods[1]).angle;
+  };
+  for (Settings s : {runge_kutta(Integrator::dop853, 1e-9), runge_kutta(Integrator::dop853, 1e-4),
+                     runge_kutta(Integrator::radau5, 1e-8), runge_kutta(Integrator::rk4)}) {
+    s.gravity_x = 10;
+    EXPECT_NEAR(bent(s, true), bent(s, false), std::max(1e-7, s.local_error))
+        << name_of(integrators, s.integrator) << ' ' << s.local_error;
+  }
+}
+
 }  // namespace
 }  // namespace cdot::test

@@ -1,0 +1,110 @@
+#include "runtime/events/slackening.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/events/guarded.hpp"
+#include "runtime/solve/solver.hpp"
+
+namespace cdot {
+namespace {
+
+// Of the largest second derivative of C: less is round-off, as of a rope beside a rod.
+template <class T>
+constexpr T noticed = T(by_precision<T>(1e-3, 1e-6));
+
+// f(row, batch, i) for the ends that the last solution held.
+template <class S, class F>
+void each_held_end(System<S>& system, F f) {
+  system.each_row([&](int row, Batch<S>& batch, int i) {
+    const bool end = batch.law && batch.law->error && batch.law->guard;
+    if (end && batch.mode[i] == Mode::held && !system.broken[row] && std::isinf(batch.upper[i] - batch.lower[i]))
+      f(row, batch, i);
+  });
+}
+
+template <class S>
+int redundant_rows(const System<S>& system) {
+  int count = 0;
+  for (int r = 0; r < system.rows(); ++r) count += system.dependent(r);
+  return count;
+}
+
+// b += weight gamma, at the velocities `direction` dv/dt.
+template <class S>
+void add_gamma(WorldData<S>& world, Island<S>& island, typename S::Scalar time, double direction, double weight) {
+  auto& all = world.bodies;
+  System<S>& system = island.at_work();
+  for (int i : island.bodies) {
+    all.increment[i] = all.velocity[i];
+    all.velocity[i] = S::sum({}, all.velocity_rate[i], typename S::Scalar(direction));
+  }
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    batch->ops->gamma(*batch, begin, end, all, time, batch->bias.data());
+  system.each_row([&](int row, const Batch<S>& batch, int i) { system.b[row] += weight * batch.bias[i]; });
+  for (int i : island.bodies) all.velocity[i] = std::exchange(all.increment[i], {});
+}
+
+// b = d2C/dt2 by a motion with v = dv/dt, apart from what joints do against it. gamma is quadratic in v; the parts of
+// time and of the first power of v fall out of (gamma(v) + gamma(-v)) / 2 - gamma(0).
+template <class S>
+double find_bends(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
+  System<S>& system = island.at_work();
+  std::fill(system.b.begin(), system.b.end(), 0);
+  add_gamma(world, island, time, 1, 0.5);
+  add_gamma(world, island, time, -1, 0.5);
+  add_gamma(world, island, time, 0, -1);
+  double largest = 0;
+  for (int r = 0; r < system.rows(); ++r)
+    if (!system.fixed[r] && !system.broken[r]) largest = std::max(largest, std::abs(double(system.b[r])));
+  return largest;
+}
+
+// d2C/dt2 of a row that is left out, beside the others: these keep theirs at 0.
+template <class S>
+double bend_beside_others(System<S>& system, int row) {
+  for (int r = 0; r < system.rows(); ++r) system.lambda[r] = system.fixed[r] || system.broken[r] ? 0 : system.b[r];
+  system.solve_factored(system.lambda.data());
+  system.find_excess();
+  return double(system.excess(row));
+}
+
+}  // namespace
+
+template <class S>
+bool let_go_of_slackening_ends(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
+  using T = typename S::Scalar;
+  System<S>& system = island.at_work();
+  if (!island.solver->exact || redundant_rows(system) == 0) return false;
+  int ends = 0;
+  each_held_end(system, [&](int, const Batch<S>&, int) { ++ends; });
+  if (ends == 0) return false;
+  const double largest = find_bends(world, island, time);
+  each_held_end(system, [&](int row, const Batch<S>&, int) { system.fixed[row] = System<S>::at_lower; });
+  const int redundant = system.factor();
+  bool any = false;
+  Guard<T> guards[most_rows];
+  each_held_end(system, [&](int row, Batch<S>& batch, int i) {
+    system.fixed[row] = System<S>::free;
+    const bool repeats = system.factor() > redundant;
+    system.fixed[row] = System<S>::at_lower;
+    if (!repeats) return;
+    system.factor();
+    batch.law->guard(batch, i / batch.ops->rows, guards);
+    const double bend = bend_beside_others(system, row);
+    if (!((guards[i % batch.ops->rows].lower == T(0) ? bend : -bend) > double(noticed<T>) * largest)) return;
+    batch.mode[i] = Mode::off;
+    batch.lower[i] = batch.upper[i] = 0;
+    any = true;
+  });
+  return any;
+}
+
+#define CDOT_INSTANTIATE(S) template bool let_go_of_slackening_ends(WorldData<S>&, Island<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot
