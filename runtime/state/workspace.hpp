@@ -39,6 +39,7 @@ struct StartOfWay {
   T C = T(0), rate = T(0);
   bool near = false;                                  // the way comes near an event
   double least = std::numeric_limits<double>::max();  // margin of a held row's force at the stages
+  double past = 1;  // share of the step, at the earliest stage whose force is beyond the event
 };
 
 template <class S>
@@ -54,6 +55,7 @@ struct FlowWorkspace {
   std::vector<T> now;               // numbers of a stage, laid out like FlowState::start
   std::vector<T> low, high;         // margins at the start of a step, then on both sides of an event
   std::vector<StartOfWay<T>> ways;  // [guarded]
+  std::vector<T> stage_forces;      // of held rows, [guarded][stage]
   std::vector<double> first_kick;   // of rows with bounds: [J] in the first of two kicks
   int guarded = 0;                  // number of guarded rows
   T fixed_step = 0;                 // its length; 0: the error chooses the steps

@@ -10,6 +10,7 @@
 #include "runtime/events/events.hpp"
 #include "runtime/events/guarded.hpp"
 #include "runtime/solve/projection.hpp"
+#include "runtime/step/leaps.hpp"
 
 namespace cdot {
 namespace {
@@ -217,6 +218,21 @@ bool go_to_ends(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
   return go_to(world, island, method, time, h);
 }
 
+// A force that passes its bound, comes back and passes it again has its first event before the one that was found in a
+// step of h. The stages of that step may tell: then goes there. Returns the length of the step.
+template <class S>
+typename S::Scalar go_to_earlier_event(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
+                                       typename S::Scalar time, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  const T before = h * T(earliest_passed_stage(island.flow));
+  if (!(before < h)) return h;
+  island.flow.length = before;
+  if (go_to_ends(world, island, method, time, before) && passed_event(island.flow))
+    return go_to_event(world, island, method, time, before);
+  island.flow.length = h;
+  return go_to(world, island, method, time, h) ? h : T(0);  // stages are less exact than the end
+}
+
 }  // namespace
 
 template <class S>
@@ -230,7 +246,7 @@ typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const Run
   using T = typename S::Scalar;
   if (world.settings.local_error > 0) {
     const T at = go_to_sighted_event(world, island, method, time, h);
-    if (at > T(0)) return at;
+    if (at > T(0)) return go_to_earlier_event(world, island, method, time, at);
     if (!go_to_ends(world, island, method, time, h)) return T(0);
   }
   return search_event(island.flow, h, [&](T at) { return go_to(world, island, method, time, at); }).at;

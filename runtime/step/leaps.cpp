@@ -22,18 +22,14 @@ constexpr double slow = 0.25;
 // The way of a row's C within a step, as the cubic with its values and rates at both ends.
 template <class T>
 struct Way {
-  T from, to, rate_from, rate_to;  // rates times the length of the step
-  T at(T share) const {
-    const T rest = T(1) - share;
-    return rest * rest * (from + share * (T(2) * from + rate_from)) +
-           share * share * (to + rest * (T(2) * to - rate_to));
-  }
+  T from, change, rate_from, rate_to;  // rates times the length of the step
+  T at(T share) const { return from + share * (rate_from + share * (change - rate_from - (T(1) - share) * bend())); }
   // Where values known to `noise` do not tell how the way bends, as in short steps: the parabola of the rates.
   Way known_to(T noise) const {
     const T mean = T(0.5) * (rate_from + rate_to);
-    return std::abs(bend()) < noise ? Way{from, from + mean, rate_from, rate_to} : *this;
+    return std::abs(bend()) < noise ? Way{from, mean, rate_from, rate_to} : *this;
   }
-  T bend() const { return rate_from + rate_to - T(2) * (to - from); }
+  T bend() const { return rate_from + rate_to - T(2) * change; }
   T rate_at(T share) const { return rate_from + share * (rate_to - rate_from - T(3) * bend() * (T(1) - share)); }
   // Where that rate turns back.
   T turn() const { return T(0.5) + (rate_from - rate_to) / (T(6) * bend()); }
@@ -173,7 +169,7 @@ constexpr double resolved_events = 0.013, resolved_work = 0.2;
 bool is_unresolved(const Drive& drive, const ProfileSpan& span, double time, double h, double resolved) {
   constexpr int points = 16;
   const ProfileValue start = drive.profile.at(time, span), end = drive.profile.at(time + h, span);
-  const Way<double> way{start.value, end.value, h * start.rate, h * end.rate};
+  const Way<double> way{start.value, end.value - start.value, h * start.rate, h * end.rate};
   double differs = 0, most = std::max(std::abs(start.value), std::abs(end.value));
   for (int point = 1; point < points; ++point) {
     const double share = double(point) / points, value = drive.profile.at(time + share * h, span).value;
@@ -213,6 +209,43 @@ bool may_have_let_go(const Batch<S>& batch, int i, const Flow<S>& flow, size_t k
   return may_let_go(batch, i) && margin >= threshold(flow, k) && std::isfinite(margin);
 }
 
+// The stage nearest to this share of a step.
+template <class Real>
+int stage_near(const RungeKutta<Real>& method, double share) {
+  int nearest = 0;
+  for (int stage = 1; stage < method.stages; ++stage)
+    if (std::abs(double(method.c[stage]) - share) < std::abs(double(method.c[nearest]) - share)) nearest = stage;
+  return nearest;
+}
+
+// The force of a held row is known at the stages. It differs from the cubic through four of them by `differs` at most
+// at the others, and between them by no more than a few times that.
+constexpr double times_between = 3;
+constexpr int least_stages = 8;  // that leave some to compare with
+
+// True if that may be more than what is left of its bounds.
+template <class S>
+bool is_unresolved(const Flow<S>& flow, const RungeKuttaOf<S>& method, size_t k) {
+  using T = typename S::Scalar;
+  if (method.implicit || method.stages < least_stages) return false;
+  const T* const force = flow.stage_forces.data() + k * most_stages;
+  const int nodes[] = {0, stage_near(method, 1.0 / 3), stage_near(method, 2.0 / 3), stage_near(method, 1)};
+  double differs = 0, most = 0;
+  for (int stage = 0; stage < method.stages; ++stage) {
+    double cubic = 0;
+    for (const int node : nodes) {
+      double weight = double(force[node]);
+      for (const int other : nodes)
+        if (other != node)
+          weight *= double(method.c[stage] - method.c[other]) / double(method.c[node] - method.c[other]);
+      cubic += weight;
+    }
+    differs = std::max(differs, std::abs(double(force[stage]) - cubic));
+    most = std::max(most, std::abs(double(force[stage])));
+  }
+  return flow.ways[k].least * (double(flow.resolution[k].force) + double(slight<T>) * most) < times_between * differs;
+}
+
 // True if a row has passed its event at one of the looks 1, 2, ... before the last, at a time of at(look) after the
 // start: by its force a row that is held, otherwise one that comes near. Leaves the end as it was.
 template <class S, class F>
@@ -236,7 +269,7 @@ bool passes_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S
     each_single_row(island, [&](Batch<S>& batch, int i, size_t k) {
       if (by_force ? !may_have_let_go(batch, i, flow, k) : !flow.ways[k].near) return;
       const T C = batch.C[i];
-      batch.ops->position(batch, i, i + 1, world.bodies, time + at(look));
+      batch.ops->evaluate(batch, i, i + 1, world.bodies, time + at(look));  // dC/dt, which gamma has replaced
       batch.ops->velocity(batch, i, i + 1, world.bodies.velocity.data(), batch.rate.data());
       any |= double(margin_of_row(batch, i, flow.resolution[k], batch.rate[i] + batch.bias[i])) < threshold(flow, k);
       batch.C[i] = C;
@@ -259,19 +292,33 @@ void note_ways(const WorldData<S>& world, Island<S>& island, typename S::Scalar 
     T C[most_rows];
     std::copy_n(first, batch.ops->rows, C);
     batch.ops->position(batch, slot, slot + 1, world.bodies, time);
-    for (int r = 0; r < batch.ops->rows; ++r, ++k) island.flow.ways[k] = {first[r], island.flow.row_rates[k]};
+    for (int r = 0; r < batch.ops->rows; ++r, ++k) {
+      island.flow.ways[k] = {first[r], island.flow.row_rates[k]};
+      island.flow.stage_forces[k * most_stages] = batch.lambda[slot * batch.ops->rows + r];
+    }
     std::copy_n(C, batch.ops->rows, first);
   });
 }
 
 template <class S>
-void note_forces(Island<S>& island, bool first) {
+void note_forces(Island<S>& island, int stage, double share) {
   Flow<S>& flow = island.flow;
   each_single_row(island, [&](Batch<S>& batch, int i, size_t k) {
+    auto& way = flow.ways[k];
+    if (stage == 1) way.past = 1;
     if (!may_let_go(batch, i)) return;
     const double margin = double(margin_of_row(batch, i, flow.resolution[k], typename S::Scalar(0)));
-    flow.ways[k].least = first ? margin : std::min(flow.ways[k].least, margin);
+    way.least = stage == 1 ? margin : std::min(way.least, margin);
+    flow.stage_forces[k * most_stages + static_cast<size_t>(stage)] = batch.lambda[i];
+    if (margin < threshold(flow, k)) way.past = std::min(way.past, share);
   });
+}
+
+template <class S>
+double earliest_passed_stage(const Flow<S>& flow) {
+  double earliest = 1;
+  for (const auto& way : flow.ways) earliest = std::min(earliest, way.past);
+  return earliest;
 }
 
 template <class S>
@@ -282,14 +329,15 @@ bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
   bool any = false, near = false, held = false;
   each_single_row(island, [&](Batch<S>& batch, int i, size_t k) {
     auto& start = flow.ways[k];
-    const auto way = Way<T>{start.C, batch.C[i], h * start.rate, h * flow.row_rates[k]}.known_to(flow.resolution[k].C);
+    const Way<T> cubic{start.C, batch.C[i] - start.C, h * start.rate, h * flow.row_rates[k]};
+    const Way<T> way = cubic.known_to(flow.resolution[k].C);
     start.near = false;
     const auto look = [&](const Dip& dip) {
       any |= dip.leaps(threshold(flow, k)), start.near |= dip.comes_near(threshold(flow, k));
     };
     any |= leaps_over_bound(batch, i, way, time + h, h);
     const bool bounded = may_have_let_go(batch, i, flow, k);
-    any |= bounded && start.least < threshold(flow, k);
+    any |= bounded && (start.least < threshold(flow, k) || is_unresolved(flow, method, k));
     if (may_come_back(batch, i, way) || may_come_and_go(batch, i, flow, k))
       look(dip_of_way(batch, i, way, flow.resolution[k], time + h, h));
     else if (may_rest(batch, i, way)) look(dip_of_rate(batch, i, way, flow.resolution[k], h));
@@ -307,7 +355,8 @@ bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
 }
 
 #define CDOT_INSTANTIATE(S)                                            \
-  template void note_forces(Island<S>&, bool);                         \
+  template void note_forces(Island<S>&, int, double);                  \
+  template double earliest_passed_stage(const Flow<S>&);               \
   template void note_ways(const WorldData<S>&, Island<S>&, S::Scalar); \
   template bool leaps(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)

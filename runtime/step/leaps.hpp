@@ -9,10 +9,14 @@ namespace cdot {
 template <class S>
 void note_ways(const WorldData<S>& world, Island<S>& island, typename S::Scalar time);
 
-// Call after each stage of an explicit step: of rows that are held, how near their forces come to a bound. Newton needs
-// no such forces at the stages of an implicit step: leaps() finds them there.
+// Call after each stage of an explicit step, which is at `share` of it: of rows that are held, how near their forces
+// come to a bound. Newton needs no such forces at the stages of an implicit step: leaps() finds them there.
 template <class S>
-void note_forces(Island<S>& island, bool first);
+void note_forces(Island<S>& island, int stage, double share);
+
+// The share of the step at its earliest stage that has passed an event, by these forces; 1: none within the step.
+template <class S>
+double earliest_passed_stage(const Flow<S>& flow);
 
 // True if the step of h from `time` on, whose end is the present state, leapt over an event: a row met its end and came
 // back, or came to rest and slipped on, or let go and held again, or the bound of a force rose and fell, as over the

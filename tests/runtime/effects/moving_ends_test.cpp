@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "tests/runtime/effects/spatial_effects.hpp"
+#include "tests/runtime/sines.hpp"
 
 namespace cdot::test {
 namespace {
@@ -11,23 +12,10 @@ namespace {
 using effects::expect_orders;
 using effects::with;
 
-// a + b sin(w t)
-Profile sine(double a, double b, double w) {
-  return Profile::function([=](double t) -> ProfileValue {
-    return {a + b * std::sin(w * t), b * w * std::cos(w * t), -b * w * w * std::sin(w * t)};
-  });
-}
 // b (1 - cos(w t))
 Profile rise(double b, double w) {
   return Profile::function([=](double t) -> ProfileValue {
     return {b * (1 - std::cos(w * t)), b * w * std::sin(w * t), b * w * w * std::cos(w * t)};
-  });
-}
-
-// a + b cos(w t)
-Profile cosine(double a, double b, double w) {
-  return Profile::function([=](double t) -> ProfileValue {
-    return {a + b * std::cos(w * t), -b * w * std::sin(w * t), -b * w * w * std::cos(w * t)};
   });
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <fmt/core.h>
 
+#include "tests/runtime/sines.hpp"
 #include "tests/runtime/support.hpp"
 
 namespace cdot::test::between_test {
@@ -87,13 +88,6 @@ TEST(EventsBetween, OfEndsThatAreMetInTurnsEnd) {
                     1e-8);
     }
   }
-}
-
-// b + a sin(w t)
-Profile sine(double b, double a, double w) {
-  return Profile::function([=](double t) -> ProfileValue {
-    return {b + a * std::sin(w * t), a * w * std::cos(w * t), -a * w * w * std::sin(w * t)};
-  });
 }
 
 constexpr Method of_every_order[] = {{"dop853", Integrator::dop853, 12, 1e-4, 0},
