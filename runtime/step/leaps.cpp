@@ -246,6 +246,15 @@ bool is_unresolved(const Flow<S>& flow, const RungeKuttaOf<S>& method, size_t k)
   return flow.ways[k].least * (double(flow.resolution[k].force) + double(slight<T>) * most) < times_between * differs;
 }
 
+// Round-off decides how redundant rows share a load.
+template <class S>
+bool shares_loads(const Island<S>& island) {
+  const System<S>& system = island.at_work();
+  for (int r = 0; r < system.rows(); ++r)
+    if (system.dependent(r)) return true;
+  return false;
+}
+
 // True if a row has passed its event at one of the looks 1, 2, ... before the last, at a time of at(look) after the
 // start: by its force a row that is held, otherwise one that comes near. Leaves the end as it was.
 template <class S, class F>
@@ -327,6 +336,7 @@ bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
   bool any = false, near = false, held = false;
+  const bool shares = shares_loads(island);
   each_single_row(island, [&](Batch<S>& batch, int i, size_t k) {
     auto& start = flow.ways[k];
     const Way<T> cubic{start.C, batch.C[i] - start.C, h * start.rate, h * flow.row_rates[k]};
@@ -337,7 +347,7 @@ bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
     };
     any |= leaps_over_bound(batch, i, way, time + h, h);
     const bool bounded = may_have_let_go(batch, i, flow, k);
-    any |= bounded && (start.least < threshold(flow, k) || is_unresolved(flow, method, k));
+    any |= bounded && (start.least < threshold(flow, k) || (!shares && is_unresolved(flow, method, k)));
     if (may_come_back(batch, i, way) || may_come_and_go(batch, i, flow, k))
       look(dip_of_way(batch, i, way, flow.resolution[k], time + h, h));
     else if (may_rest(batch, i, way)) look(dip_of_rate(batch, i, way, flow.resolution[k], h));

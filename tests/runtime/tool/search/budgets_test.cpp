@@ -171,5 +171,32 @@ TEST(Budgets, LeaveNoTrialsAfterASearchThatTookItsOwn) {
   EXPECT_FALSE(find_advice(scene, {}, result));
 }
 
+// Rods stand still. Pins, brakes and a rope share loads by round-off: nothing that shorter steps would resolve.
+TEST(Budgets, OfWhatStandsStillAreSmall) {
+  std::string text = "gravity = [0, 0]\nduration = 1.5\n";
+  const auto add_rod = [&](int k, double mass, const char* effects) {
+    text += fmt::format(
+        "[[body]]\nname = \"rod{0}\"\nmass = {1}\nshape = {{ rod = 1 }}\nposition = [{0}.5, 0]\n"
+        "[[joint]]\ntype = \"revolute\"\nbodies = [\"{2}\", \"rod{0}\"]\nat = [{0}, 0]\n{3}\n",
+        k, mass, k == 0 ? "world" : fmt::format("rod{}", k - 1), effects);
+  };
+  add_rod(0, 2, "angle.shear_pin = { strength = 0.5 }");
+  add_rod(1, 5,
+          "angle.shear_pin = { strength = 2 }\nangle.bearing_friction = { most = 0.5, creep = 0.5 }\n"
+          "angle.freewheel = {}\nangle.spring = { stiffness = 50, damping = 0 }");
+  add_rod(2, 2,
+          "angle.shear_pin = { strength = 20 }\nangle.air_brake = { torque = 0.5, rise = 0.5 }\n"
+          "angle.spindle = { speed = 2.75, ramp = 0.1, most = 1 }");
+  text +=
+      "[[joint]]\ntype = \"tearing_rope\"\nbodies = [\"rod0\", \"rod1\"]\npa = [0.1, 0]\npb = [0.5, 0]\n"
+      "strength = 60\n";
+  std::string warnings;
+  const RunResult result = simulate(read_scene(text, "at_rest.toml"), {}, warnings);
+  ASSERT_TRUE(result.choice.value().reached);
+  const auto evaluations = result.choice->evaluations + result.choice->evaluations_before;
+  fmt::print("  {} evaluations\n", evaluations);
+  EXPECT_LT(evaluations, 1e4);
+}
+
 }  // namespace
 }  // namespace cdot::test::budgets_test
