@@ -16,6 +16,7 @@
 #include "runtime/events/slackening.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/cones.hpp"
+#include "runtime/solve/loads.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
@@ -88,6 +89,7 @@ void decide_by_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar
   ask_for_gamma(world, island, time);
   solve(world, island, world.bodies.velocity_rate.data());
   if (let_go_of_slackening_ends(world, island, time)) {
+    unload(island);
     ask_for_gamma(world, island, time);
     solve(world, island, world.bodies.velocity_rate.data());
   }

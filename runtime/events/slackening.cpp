@@ -7,6 +7,7 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/events/guarded.hpp"
+#include "runtime/solve/direct.hpp"
 #include "runtime/solve/solver.hpp"
 
 namespace cdot {
@@ -15,6 +16,7 @@ namespace {
 // Of the largest second derivative of C: less is round-off, as of a rope beside a rod.
 template <class T>
 constexpr T noticed = T(by_precision<T>(1e-3, 1e-6));
+constexpr double golden = 0.6180339887498949;  // its multiples spread evenly
 
 // f(row, batch, i) for the ends that the last solution held.
 template <class S, class F>
@@ -49,7 +51,7 @@ void add_gamma(WorldData<S>& world, Island<S>& island, typename S::Scalar time, 
 }
 
 // b = d2C/dt2 by a motion with v = dv/dt, apart from what joints do against it. gamma is quadratic in v; the parts of
-// time and of the first power of v fall out of (gamma(v) + gamma(-v)) / 2 - gamma(0).
+// time and of the first power of v fall out of (gamma(v) + gamma(-v)) / 2 - gamma(0). Returns the largest.
 template <class S>
 double find_bends(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   System<S>& system = island.at_work();
@@ -59,7 +61,7 @@ double find_bends(WorldData<S>& world, Island<S>& island, typename S::Scalar tim
   add_gamma(world, island, time, 0, -1);
   double largest = 0;
   for (int r = 0; r < system.rows(); ++r)
-    if (!system.fixed[r] && !system.broken[r]) largest = std::max(largest, std::abs(double(system.b[r])));
+    if (!system.broken[r]) largest = std::max(largest, std::abs(double(system.b[r])));
   return largest;
 }
 
@@ -72,6 +74,71 @@ double bend_beside_others(System<S>& system, int row) {
   return double(system.excess(row));
 }
 
+// By a motion, about an end that was held; kept in Batch::impulse.
+enum Tells : int { nothing = 0, closes = 1, opens = 2 };
+
+// Asks the motion with v = dv/dt about the ends of which nothing is told.
+template <class S>
+void look_along(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
+  using T = typename S::Scalar;
+  System<S>& system = island.at_work();
+  const double least = double(noticed<T>) * find_bends(world, island, time);
+  Guard<T> guards[most_rows];
+  each_held_end(system, [&](int row, Batch<S>& batch, int i) {
+    if (batch.impulse[i] != T(nothing)) return;
+    batch.law->guard(batch, i / batch.ops->rows, guards);
+    const double bend = bend_beside_others(system, row);
+    if (std::abs(bend) > least)
+      batch.impulse[i] = T((bend > 0) == (guards[i % batch.ops->rows].lower == T(0)) ? opens : closes);
+  });
+}
+
+// dv/dt = any motion that the joints allow.
+template <class S>
+void wander(WorldData<S>& world, Island<S>& island) {
+  using T = typename S::Scalar;
+  System<S>& system = island.at_work();
+  auto& motion = world.bodies.velocity_rate;
+  int count = 0;
+  for (int body : island.bodies) {
+    T number[S::freedom];
+    for (T& one : number) one = T(std::fmod(golden * ++count, 1.0) - 0.5);
+    motion[body] = world.bodies.immovable(body) ? typename S::Velocity{} : S::read_velocity(number);
+  }
+  system.choose([](const Batch<S>& batch, int) { return !batch.law; });
+  system.factor();
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    batch->ops->velocity(*batch, begin, end, motion.data(), batch->rate.data());
+  system.each_row([&](int row, const Batch<S>& batch, int i) { system.lambda[row] = batch.law ? 0 : -batch.rate[i]; });
+  system.solve_factored(system.lambda.data());
+  system.each_row([&](int row, Batch<S>& batch, int i) { batch.error[i] = batch.law ? T(0) : T(system.lambda[row]); });
+  exert(world, island, system, &BatchWorkspace<S>::error, motion.data());
+}
+
+// Of ends that are left out and of which nothing is told: those that do not repeat the rows that are selected tell
+// nothing by their bends. True if some do. Leaves the factor of the selection.
+template <class S>
+bool some_repeat_others(System<S>& system) {
+  using T = typename S::Scalar;
+  const int redundant = system.factor();
+  bool any = false;
+  each_held_end(system, [&](int row, Batch<S>& batch, int i) {
+    if (batch.impulse[i] != T(nothing)) return;
+    system.fixed[row] = System<S>::free;
+    const bool repeats = system.factor() > redundant;
+    system.fixed[row] = System<S>::at_lower;
+    if (!repeats) batch.impulse[i] = T(closes);
+    any |= repeats;
+  });
+  if (any) system.factor();
+  return any;
+}
+
+template <class S>
+void swap_rates(WorldData<S>& world, const Island<S>& island) {
+  for (int i : island.bodies) std::swap(world.bodies.velocity[i], world.bodies.velocity_rate[i]);
+}
+
 }  // namespace
 
 template <class S>
@@ -80,27 +147,21 @@ bool let_go_of_slackening_ends(WorldData<S>& world, Island<S>& island, typename 
   System<S>& system = island.at_work();
   if (!island.solver->exact || redundant_rows(system) == 0) return false;
   int ends = 0;
-  each_held_end(system, [&](int, const Batch<S>&, int) { ++ends; });
-  if (ends == 0) return false;
-  const double largest = find_bends(world, island, time);
-  each_held_end(system, [&](int row, const Batch<S>&, int) { system.fixed[row] = System<S>::at_lower; });
-  const int redundant = system.factor();
-  bool any = false;
-  Guard<T> guards[most_rows];
   each_held_end(system, [&](int row, Batch<S>& batch, int i) {
-    system.fixed[row] = System<S>::free;
-    const bool repeats = system.factor() > redundant;
-    system.fixed[row] = System<S>::at_lower;
-    if (!repeats) return;
-    system.factor();
-    batch.law->guard(batch, i / batch.ops->rows, guards);
-    const double bend = bend_beside_others(system, row);
-    if (!((guards[i % batch.ops->rows].lower == T(0) ? bend : -bend) > double(noticed<T>) * largest)) return;
-    batch.mode[i] = Mode::off;
-    batch.lower[i] = batch.upper[i] = 0;
-    any = true;
+    system.fixed[row] = System<S>::at_lower, batch.impulse[i] = T(nothing);
+    ++ends;
   });
-  return any;
+  if (ends == 0) return false;
+  if (some_repeat_others(system)) {
+    swap_rates(world, island), look_along(world, island, time), swap_rates(world, island);
+    look_along(world, island, time);
+    wander(world, island);
+    if (some_repeat_others(system)) look_along(world, island, time);
+    each_held_end(system, [&](int, Batch<S>& batch, int i) {
+      if (batch.impulse[i] == T(opens)) batch.mode[i] = Mode::off, batch.lower[i] = batch.upper[i] = 0;
+    });
+  }
+  return true;
 }
 
 #define CDOT_INSTANTIATE(S) template bool let_go_of_slackening_ends(WorldData<S>&, Island<S>&, S::Scalar);
