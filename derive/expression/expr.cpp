@@ -11,19 +11,6 @@
 namespace cdot::derive {
 namespace {
 
-std::string key_of(const Node& n) {
-  std::string key = std::to_string(static_cast<int>(n.kind)) + (n.vector ? "v" : "s");
-  if (n.kind == Kind::number) key += n.value.text();
-  if (n.kind == Kind::symbol) key += n.symbol;
-  if (n.kind == Kind::function) key += std::string(name_of(n.fn));
-  for (std::size_t i = 0; i < n.args.size(); ++i) {
-    key += ',' + std::to_string(n.args[i]->id);
-    if (n.kind == Kind::sum) key += '*' + n.coefs[i].text();
-    if (n.kind == Kind::product) key += '^' + std::to_string(n.exponents[i]);
-  }
-  return key;
-}
-
 // The order of leaves. Differences of positions come first, since they cancel large common parts; then vectors that
 // turn with a body. Masses precede inertias. Names order the rest.
 int rank(const Node& n) {
@@ -72,14 +59,34 @@ std::strong_ordering compare(Expr a, Expr b) {
   return a->args.size() <=> b->args.size();
 }
 
+std::size_t Pool::HashOfContent::operator()(const Node* node) const {
+  std::uint64_t hash = static_cast<std::uint64_t>(node->kind) * 2 + node->vector;
+  const auto add = [&](auto number) {
+    hash = (hash ^ static_cast<std::uint64_t>(number)) * 0x9e3779b97f4a7c15u;  // by the golden ratio
+    hash ^= hash >> 32;
+  };
+  add(std::hash<std::string>()(node->symbol));
+  add(node->fn);
+  add(node->value.num());
+  add(node->value.den());
+  for (const Expr arg : node->args) add(arg->id);
+  for (const Rational& coef : node->coefs) add(coef.num()), add(coef.den());
+  for (const int exponent : node->exponents) add(exponent);
+  return static_cast<std::size_t>(hash);
+}
+
+bool Pool::SameContent::operator()(const Node* a, const Node* b) const {
+  return a->kind == b->kind && a->vector == b->vector && a->fn == b->fn && a->value == b->value && a->args == b->args &&
+         a->coefs == b->coefs && a->exponents == b->exponents && a->symbol == b->symbol;
+}
+
 Expr Pool::intern(Node node) {
-  const std::string key = key_of(node);
-  if (const auto found = by_key_.find(key); found != by_key_.end()) return Expr(found->second);
+  if (const auto found = by_content_.find(&node); found != by_content_.end()) return Expr(*found);
   node.pool = this;
   node.id = static_cast<int>(nodes_.size());
   nodes_.push_back(std::move(node));
   const Node* stored = &nodes_.back();
-  by_key_.emplace(key, stored);
+  by_content_.insert(stored);
   if (stored->kind == Kind::symbol) symbols_.emplace(stored->symbol, stored);
   return Expr(stored);
 }

@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <vector>
 
 #include "derive/expression/rational.hpp"
@@ -123,8 +124,15 @@ class Pool {
  private:
   Expr leaf(std::string_view name, Role role, int body, bool vector, bool unit_length);
 
+  struct HashOfContent {
+    std::size_t operator()(const Node* node) const;
+  };
+  struct SameContent {
+    bool operator()(const Node* a, const Node* b) const;
+  };
+
   std::deque<Node> nodes_;
-  std::map<std::string, const Node*, std::less<>> by_key_;
+  std::unordered_set<const Node*, HashOfContent, SameContent> by_content_;
   std::map<std::string, const Node*, std::less<>> symbols_;
   std::map<std::string, Triad, std::less<>> triads_;
   std::map<const Node*, Axis> axes_;
