@@ -10,12 +10,6 @@ namespace cdot::compile {
 
 using derive::element;
 
-namespace {
-
-constexpr double boundless = 1e30;  // in float, too
-
-}  // namespace
-
 BoundWriter::BoundWriter(const RowBlocks& blocks, Algebra& algebra, std::size_t bounded)
     : blocks_(blocks),
       algebra_(algebra),
@@ -42,9 +36,7 @@ int BoundWriter::along(const Values& velocities) const {
 
 Values BoundWriter::bounds() const {
   const auto number = [&](std::size_t k, const char* name) {
-    const std::string full = block_.name + "_" + name;
-    return effect_.in_time.contains(k) ? blocks_.number(algebra_, effect_, k, full)
-                                       : algebra_.value(std::clamp(effect_.numbers[k], -boundless, boundless), full);
+    return blocks_.number(algebra_, effect_, k, block_.name + "_" + name);
   };
   switch (effect_.law) {
     case Effect::motor:

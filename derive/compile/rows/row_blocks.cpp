@@ -144,8 +144,8 @@ bool RowBlocks::move_in_time(const Effect& effect, const RowBlock& block) {
 
 int RowBlocks::number(Algebra& algebra, const Effect& effect, std::size_t k, const std::string& name) const {
   const auto function = effect.in_time.find(k);
-  return function == effect.in_time.end() ? algebra.value(effect.numbers[k], name)
-                                          : in_time(algebra, function->second, "value", name);
+  if (function != effect.in_time.end()) return in_time(algebra, function->second, "value", name);
+  return algebra.value(std::clamp(effect.numbers[k], -boundless, boundless), name);
 }
 
 int RowBlocks::in_time(Algebra& algebra, const InTime& function, const std::string& derivative,

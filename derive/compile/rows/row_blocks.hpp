@@ -43,6 +43,8 @@ struct Unwound {
 // Forces by body and column.
 using Forces = std::map<std::pair<int, std::size_t>, Summands>;
 
+constexpr double boundless = 1e30;  // in float, too
+
 // Of a parameter of a kernel, "p.pa_x" or "phi", in the header.
 std::string constant_name(const RowBlock& block, const std::string& parameter);
 // Of a number of an effect's law.
@@ -64,7 +66,7 @@ class RowBlocks {
   const SpecPrograms& law(const Effect& effect) const;
   const std::string& body_name(int index) const { return names_.bodies[static_cast<std::size_t>(index)]; }
 
-  // A number of an effect's law, which may follow a function of time.
+  // A number of an effect's law, which may follow a function of time. An infinite one is boundless.
   int number(Algebra& algebra, const Effect& effect, std::size_t k, const std::string& name) const;
   // A function of time: "value", "rate" or "acceleration".
   int in_time(Algebra& algebra, const InTime& function, const std::string& derivative, const std::string& name) const;
