@@ -145,7 +145,7 @@ constexpr const char* judges_end = R"(    T loss = T(0);
 constexpr const char* forgives_hits = R"(    for (int i = 0; i < bounded; ++i)
       if (!is_rate[i]) loss = select(magnitude(mu[i]) > T(0), T(0), loss);
 )";
-constexpr const char* stores_end = R"(    found = found && (last || !(loss > slight * energy) || stands);
+constexpr const char* stores_end = R"(    found = found && (last || !(loss > slight * energy) || hardly_moves(s.v, h));
     for (int i = 0; i < rows; ++i) s.lambda[i] = (lambda[i] + y[i]) / h;
 )";
 
@@ -262,7 +262,7 @@ std::string ending(const Contents& has) {
   if (has.rows)
     text +=
         "    T rate[rows];\n    rates(s.J, s.v, rate);\n"
-        "    const T energy = moved_energy(s.q, s.v, before);\n    const auto stands = hardly_moves(s.v, h);\n";
+        "    const T energy = moved_energy(s.q, s.v, before);\n";
   if (has.finishes)
     text += fmt::format(
         finishes, has.rows ? "s.J, " : "", has.looks ? "given, at_end, " : "", has.rows ? ", y" : "",

@@ -14,8 +14,8 @@
 #include "runtime/own/own.hpp"
 #include "runtime/solve/misfits.hpp"
 #include "runtime/state/world_data.hpp"
-#include "runtime/tool/scene/extent.hpp"
 #include "runtime/tool/scene/scene.hpp"
+#include "runtime/world/islands.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -163,14 +163,15 @@ void add_joint(const Scene& scene, BasicWorld<S>& world, int index, Mechanism& m
   mechanism.joints.push_back(std::move(joint));
 }
 
-// World stops Newton at this error, in units of a size of the island that it takes from the rows (Island::scale).
-double tolerance_of(double size) { return converged<double> * std::min(1.0, 10 * size); }
-
-double size_of(const Scene& scene) {
-  double size = std::numeric_limits<double>::infinity();
-  for (const double extent : extents_of(scene).of_body)
-    if (extent > 0) size = std::min(size, extent);
-  return std::isinf(size) ? 1 : size;
+// Of the World's smallest mechanism, and the error at which the World stops Newton.
+template <class S>
+void measure(BasicWorld<S>& world, Mechanism& mechanism) {
+  prepare_topology(world.data());
+  double size = std::numeric_limits<double>::infinity(), scale = 1;
+  for (const Island<S>& island : world.data().islands)
+    size = std::min(size, double(island.size)), scale = std::min(scale, double(island.scale));
+  mechanism.size = std::isinf(size) ? 1 : size;
+  mechanism.tolerance = converged<double> * scale;
 }
 
 template <class S>
@@ -253,6 +254,7 @@ void add_parts(const Scene& scene, Mechanism& mechanism) {
   BasicWorld<S> world = build_world_in<S>(scene);
   refuse_counters(scene, world);
   if (scene.project) world.project(1e-12);
+  measure(world, mechanism);
   for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) mechanism.bodies.push_back(body_of(scene, world, i));
   mechanism.bodies.emplace_back();
   Body& ground = mechanism.bodies.back();
@@ -283,8 +285,6 @@ Mechanism read_mechanism(const std::string& file, const Wishes& wishes) {
   mechanism.method_name = row_of(scene.settings.integrator).name;
   mechanism.method = scene.settings.integrator;
   mechanism.step = scene.step;
-  mechanism.size = size_of(scene);
-  mechanism.tolerance = tolerance_of(mechanism.size);
   if (scene.settings.sleep_after > 0)
     mechanism.notes.emplace_back("Compiled bodies do not sleep: sleep_after is left out.");
   mechanism.inputs = scene.inputs;
