@@ -29,11 +29,13 @@ bool is_held(const Batch<S>& batch, int i) {
   return !batch.law || holds(batch.mode[i]);
 }
 
-// True if the row has an error to correct, or is an end that has an impulse already.
+// True if the row has an error to correct, or is an end that has an impulse already. A step brings rows to their ends
+// to round-off only.
 template <class S>
 bool has_error(const Batch<S>& batch, int i) {
+  constexpr auto round_off = 8 * std::numeric_limits<typename S::Scalar>::epsilon();
   const bool acts = !is_held(batch, i) && batch.law->error && batch.correction[i] != 0;
-  return is_held(batch, i) || (batch.mode[i] == Mode::bounded && (batch.error[i] != 0 || acts));
+  return is_held(batch, i) || (batch.mode[i] == Mode::bounded && (std::abs(batch.error[i]) > round_off || acts));
 }
 
 template <class S>

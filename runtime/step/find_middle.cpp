@@ -55,7 +55,10 @@ void look_at_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h
   drift(world, island, h / 2);
   for (const auto& [segment, begin, end, whole] : island.segments) {
     Batch<S>& batch = *segment;
-    if (round >= rounds_with_new_directions && is_bounded(batch) && !batch.law->error) continue;
+    if (round >= rounds_with_new_directions && is_bounded(batch) && !batch.law->error) {
+      batch.ops->position(batch, begin, end, world.bodies, T(world.time) + h / 2);  // C says how large forces may be
+      continue;
+    }
     batch.ops->evaluate(batch, begin, end, world.bodies, T(world.time) + h / 2);
     if (!is_force(batch)) continue;
     find_forces_at_rest(batch, begin, end, batch.impulse.data());
