@@ -115,7 +115,7 @@ constexpr const char* moves_of_ends = R"(      T mu[bounded] = {{}};
         T along_ends[bounded], c[bounded];
         along($sat.q, at.time, d, along_ends);
         for (int i = 0; i < bounded; ++i) c[i] = -over[i] - along_ends[i];
-        divide(B.S, active, c, mu);
+        divide(B, active, c, mu);
 {1}      }}
 {2})";
 
@@ -183,7 +183,7 @@ constexpr const char* projects_held_rows = R"(    Mask held[bounded], some = T(1
     reach($ss.q, s.time, {}B);
     guard($ss.q, s.time, s.v, G);
     for (T& of_row : mu) of_row = T(0);
-    divide(B.S, held, G.missing, mu);
+    divide(B, held, G.missing, mu);
     for (int e = 0; e < bounded; ++e) {{
       for (int i = 0; i < bodies; ++i) s.v[i] = choose(some, s.v[i] + mu[e] * B.g[e][i], s.v[i]);
     }}

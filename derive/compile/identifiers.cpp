@@ -28,7 +28,7 @@ std::set<std::string> taken_names() {
       "advance pass tension stiffened inverse_of positive_part effect_rows Inertia W power before middle mean "
       "mean_of find_mean_spins missed side given end guess load from bonds Bonds snap strain struck Search RootSearch "
       "choose_once find_blow find_pressed_ends start_motors lacks pressed stands growth meets softness half "
-      "usual_softness "
+      "usual_softness is_free taken "
       "latches "
       "Bits WordOf Exponential Logarithm Complex Differences Newton LU freedom unknowns place_of reciprocal set_zero "
       "factor turn_back turn_on numbers_of "

@@ -36,15 +36,20 @@ constexpr const char* solves_bounded = R"(
     return i >= j ? S[i * (i + 1) / 2 + j] : S[j * (j + 1) / 2 + i];
   }
 
-  // S mu = c in the free rows, with mu of the others given. S = L D L^T; a row that depends on others gets 0.
-  static void divide(const T (&S)[bounded * (bounded + 1) / 2], const Mask (&free)[bounded], const T (&c)[bounded],
-                     T (&mu)[bounded]) {
-    T U[bounded][bounded], L[bounded][bounded], inv_D[bounded], x[bounded];
+  // S mu = c in the free rows, with mu of the others given. S = L D L^T; a row that depends on others gets 0: what is
+  // left of it is the round-off of what joints and other rows took from K.
+  static void divide(const Bounded& B, const Mask (&free)[bounded], const T (&c)[bounded], T (&mu)[bounded]) {
+    const auto& S = B.S;
+    T U[bounded][bounded], L[bounded][bounded], inv_D[bounded], x[bounded], taken[bounded];
     for (int j = 0; j < bounded; ++j)
       for (int i = j; i < bounded; ++i) {
         T u = entry(S, i, j);
-        for (int k = 0; k < j; ++k) u = u - U[i][k] * L[j][k];
-        if (i == j) inv_D[j] = select(free[j], pivot(u, entry(S, j, j)), T(0));
+        if (i == j) taken[j] = larger(B.K[j], u);
+        for (int k = 0; k < j; ++k) {
+          if (i == j) taken[j] = taken[j] + L[j][k] * L[j][k] * taken[k];
+          u = u - U[i][k] * L[j][k];
+        }
+        if (i == j) inv_D[j] = select(free[j], pivot(u, taken[j]), T(0));
         U[i][j] = u;
         L[i][j] = u * inv_D[j];
       }
@@ -61,6 +66,11 @@ constexpr const char* solves_bounded = R"(
     for (int i = 0; i < bounded; ++i) mu[i] = select(free[i], x[i], mu[i]);
   }
 
+  // A row whose bounds are equal has no choice.
+  static Mask is_free(const Bounded& B, const T (&hold)[bounded], int i) {
+    return magnitude(hold[i]) < T(0.5) && B.low[i] < B.high[i];
+  }
+
   // Rows beyond a bound take it; rows at a bound that they would leave are free again. First all at once, then one by
   // one (Murty). `hold`: -1 at the lower bound, 1 at the upper one, 0 free; it begins as it was in the last step. A
   // lane that is done waits for the others unchanged. True in lanes where a row reached or left a bound.
@@ -71,8 +81,8 @@ constexpr const char* solves_bounded = R"(
     for (int round = 0; round < fast + slow && any(busy); ++round) {
       Mask free[bounded];
       T now[bounded];
-      for (int i = 0; i < bounded; ++i) free[i] = magnitude(hold[i]) < T(0.5), now[i] = mu[i];
-      divide(B.S, free, B.c, now);
+      for (int i = 0; i < bounded; ++i) free[i] = is_free(B, hold, i), now[i] = mu[i];
+      divide(B, free, B.c, now);
       for (int i = 0; i < bounded; ++i) mu[i] = select(busy, now[i], mu[i]);
       for (int i = 0; i < bounded; ++i) {
         missed[i] = -B.c[i];
@@ -105,7 +115,7 @@ constexpr const char* solves_bounded = R"(
       others[i] = i == d ? T(1) < T(0) : free[i];
       c[i] = entry(B.S, i, d), x[i] = T(0);
     }
-    divide(B.S, others, c, x);
+    divide(B, others, c, x);
     for (int i = 0; i < bounded; ++i) {
       rows_of_it[i] = i == d ? free[d] : free[i] && x[i] * x[i] * B.K[i] > T(single ? 1e-6 : 1e-12) * B.K[d];
       growth[i] = i == d ? T(1) : -x[i];
@@ -121,7 +131,7 @@ constexpr const char* solves_bounded = R"(
     Mask free[bounded], now[bounded], meets[bounded], rows_of_it[bounded];
     T growth[bounded];
     Mask some = T(1) < T(0), contradicts = some;
-    for (int i = 0; i < bounded; ++i) free[i] = magnitude(hold[i]) < T(0.5), now[i] = meets[i] = some;
+    for (int i = 0; i < bounded; ++i) free[i] = is_free(B, hold, i), now[i] = meets[i] = some;
     for (int d = 0; d < bounded; ++d) {
       const Mask unmet = busy && free[d] && magnitude(missed[d]) > slight && !yields[d];
       if (!any(unmet)) continue;
@@ -169,6 +179,7 @@ constexpr const char* solves_bounded = R"(
       const auto endless = (hold[i] < T(-0.5) && B.low[i] < T(-1e20)) || (hold[i] > T(0.5) && B.high[i] > T(1e20));
       hold[i] = select(endless, T(0), hold[i]);
       mu[i] = select(hold[i] < T(-0.5), B.low[i], select(hold[i] > T(0.5), B.high[i], T(0)));
+      mu[i] = select(B.low[i] < B.high[i], mu[i], B.low[i]);
       rigid[i] = entry(B.S, i, i);
     }
     // A motor that yielded to a row now at its bound need not yield any more.

@@ -18,7 +18,7 @@ constexpr const char* finds_blow = R"(
       const Mask both = low && high, some = is_rate[i] ? low || high : both;
       const Mask may = {6}(one && gap(G, i) <= s.modes.of_value[i]) || (!one && some){7};
 {8}
-      B.c[i] = G.missing[i], B.K[i] = entry(B.S, i, i);
+      B.c[i] = G.missing[i];
 {1}    }}
     const auto solve = [&](T (&now)[bounded]) {{
       for (T& of_row : hold) of_row = T(0);

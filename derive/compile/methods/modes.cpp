@@ -20,7 +20,7 @@ constexpr const char* pulls = R"(
     for (int e = 0; e < bounded; ++e) held[e] = magnitude(hold[e]) < T(0.5);
     const auto solve = [&](T (&now)[bounded]) {{
       for (int e = 0; e < bounded; ++e) now[e] = is_rate[e] ? {14} : T(0);
-      divide(B.S, held, B.c, now);
+      divide(B, held, B.c, now);
     }};
     {8}
     for (int e = 0; e < bounded; ++e) {{
@@ -77,10 +77,10 @@ constexpr const char* resolutions = R"(
 
 constexpr const char* decides = R"(
   // Forces and accelerations are complementary: a row stays held if its force lies within its bounds.
-  static void decide(State& s, {10}const Mask (&stopped)[bounded]) {{
+  static void decide(State& s, {8}const Mask (&stopped)[bounded]) {{
     Guards G;
     Bounded B;
-{5}    guard($ss.q, s.time, s.v, G);
+    guard($ss.q, s.time, s.v, G);
     accelerate($ss.q, s.time, s.v, {0}s.a, B);
     T hold[bounded], force[bounded];
     for (int i = 0; i < bounded; ++i) {{
@@ -93,19 +93,19 @@ constexpr const char* decides = R"(
       B.high[i] = select(off, T(0), select(down, G.low[i], G.high[i]));
       const T end = select(magnitude(G.low[i]) > T(0), T(1), T(-1));
       s.hold[i] = select(off, end, select(up, T(1), select(down, T(-1), T(0))));
-{8}{1}    }}
+{7}{1}    }}
     const auto solve = [&](T (&now)[bounded]) {{
-      {9}
+      for (T& of_row : hold) of_row = T(0);
       settle(B, hold, now);
     }};
-{6}    {2}
+{5}    {2}
     for (int i = 0; i < bounded; ++i) {{
       const Mask up = force[i] >= B.high[i], down = force[i] <= B.low[i];
       const Mask leaves = !is_equation(G, i) && magnitude(s.hold[i]) < T(0.5) && (up || down){4};
       const T end = select(magnitude(G.low[i]) > T(0), T(1), T(-1));
       s.hold[i] = select(leaves, select(has_one_end(G, i), end, select(up, T(1), T(-1))), s.hold[i]);
 {3}    }}
-{7}  }}
+{6}  }}
 )";
 
 // An end that began to hold where it is passed holds its bodies there: the step's end does not close it, and the next
@@ -262,7 +262,6 @@ constexpr const char* offers_by_motors =
       B.high[i] = select(pressed[i], T(1e30), select(stands[i], T(0), B.high[i]));
       s.hold[i] = select(pressed[i], T(-0.1), s.hold[i]);
       s.hold[i] = select(stands[i], select(G.missing[i] > T(0), T(1), T(-1)), s.hold[i]);
-      first[i] = select(one && !pressed[i], end, T(0));  // an end without a force, if motors drive away from it
 )";
 constexpr const char* finds_pressed = R"(    Mask pressed[bounded], stands[bounded];
     find_pressed_ends(s, pressed, stands);
@@ -314,12 +313,9 @@ std::string decides_of(const Contents& has, const std::string& late, double tole
       has.loads ? fmt::format("const Mask jams = settle_loads($ss.q, s.time, {}{}B, force, s.modes.load, solve);", J,
                               corners(has))
                 : "solve(force);",
-      has.loads ? stops_jammed : "", has.loads ? " && !jams" : "", has.strong ? "    T first[bounded];\n" : "",
-      has.cones ? offers_cones : "",
+      has.loads ? stops_jammed : "", has.loads ? " && !jams" : "", has.cones ? offers_cones : "",
       (has.cones ? decides_cones : "") + (has.late_ends ? fmt::format(holds_beyond, late, tolerance) : ""),
-      has.strong ? offers_by_motors : "",
-      has.strong ? "for (int i = 0; i < bounded; ++i) hold[i] = first[i];" : "for (T& of_row : hold) of_row = T(0);",
-      has.strong ? pressed_and_standing : "");
+      has.strong ? offers_by_motors : "", has.strong ? pressed_and_standing : "");
 }
 
 }  // namespace

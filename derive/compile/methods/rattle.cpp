@@ -192,7 +192,7 @@ constexpr const char* end_changes = R"(      Mask passed[bounded];
         T along_ends[bounded], c[bounded], mu[bounded];
         along($sat.q, at.time, d, along_ends);
         for (int i = 0; i < bounded; ++i) c[i] = -over[i] / h - along_ends[i], mu[i] = T(0);
-        push(reached.S, passed, c, side, total, mu);
+        push(reached, passed, c, side, total, mu);
         for (int e = 0; e < bounded; ++e) {{
           for (int i = 0; i < bodies; ++i) d[i] = d[i] + mu[e] * reached.g[e][i];
 {1}        }}
@@ -252,10 +252,10 @@ constexpr const char* looks = R"(    T C_now[damped], rate_now[damped], K_now[tr
 // Ends that would pull give back what they gave.
 constexpr const char* pushes = R"(
   // S mu = c in the rows of `acts`; those that would pull in the whole give back their totals.
-  static void push(const T (&S)[bounded * (bounded + 1) / 2], Mask (&acts)[bounded], const T (&c)[bounded],
-                   const T (&side)[bounded], T (&total)[bounded], T (&mu)[bounded]) {
+  static void push(const Bounded& B, Mask (&acts)[bounded], const T (&c)[bounded], const T (&side)[bounded],
+                   T (&total)[bounded], T (&mu)[bounded]) {
     for (bool more = true; more;) {
-      divide(S, acts, c, mu);
+      divide(B, acts, c, mu);
       more = false;
       for (int i = 0; i < bounded; ++i) {
         const auto pulls = acts[i] && side[i] * (total[i] + mu[i]) < T(0);

@@ -70,12 +70,14 @@ void BoundedSystem::answer(const Answers& answers, std::size_t joint_rows,
 }
 
 void BoundedSystem::output_S(const std::vector<int>& softness) {
-  for (std::size_t a = 0; a < rows_.size(); ++a)
+  for (std::size_t a = 0; a < rows_.size(); ++a) {
+    algebra_.output("B." + element("K", a), K_[a]);
     for (std::size_t b = 0; b <= a; ++b) {
       const bool softened = a == b && !softness.empty();
       const int entry = softened ? algebra_.sum({{S_.at({a, b}), softness[a]}, {1, 1}}) : S_.at({a, b});
       algebra_.output("B." + triangle_element("S", a, b), entry);
     }
+  }
 }
 
 void BoundedSystem::output_bounds(const Values& next, int h, bool halved) {
@@ -145,7 +147,6 @@ void BoundedSystem::output_row(std::size_t b, int c, const BoundWriter::Kick& ki
   algebra_.output("B." + element("c", b), c);
   algebra_.output("B." + element("low", b), kick.low);
   algebra_.output("B." + element("high", b), kick.high);
-  algebra_.output("B." + element("K", b), K_[b]);
 }
 
 void BoundedSystem::output_pulls(std::size_t b, const Values& unit, const Values& by_joints) {
