@@ -32,7 +32,7 @@ TEST(CompiledRandom, AStepThatEndsAtRestIsTakenWhole) {
   cdot::runs_as_the_world<slipping_implicit<double>>(room + "slipping.toml", Integrator::implicit, 1e-11, 0.7, 0.005);
 }
 
-// What counts as rest depends on the size of the mechanism, in which the world's end of a bungee takes no part.
+// A step counts as rest by the size of the mechanism. The end of a bungee in the world takes no part in that.
 TEST(CompiledRandom, AMechanismHasTheSizeThatItHasInTheWorld) {
   cdot::runs_as_the_world<slow_turn_implicit<double>>(room + "slow_turn.toml", Integrator::implicit, 1e-11, 1);
 }
