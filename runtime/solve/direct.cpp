@@ -79,6 +79,41 @@ void solve_loaded(WorldData<S>& world, Island<S>& island, System<S>& system) {
   else island.trouble = StepProblem::jams;
 }
 
+// An end that is not met yet stops its bodies by what C does at first order. Beside joints that nearly imply its row,
+// as those of an arm with a rope across it, C bends away as quickly: whether the end is met at all is of the step's
+// error. That begins so far from the loss of rank, in rad or arms.
+constexpr double in_line = 0.05;
+
+// True if the row is an end with an impulse, though its gap is open.
+template <class S>
+bool acts_before_it_is_met(const Island<S>& island, const Batch<S>& batch, int i) {
+  using T = typename S::Scalar;
+  if (batch.lambda[i] == 0) return false;
+  Guard<T> guards[most_rows];
+  batch.law->guard(batch, i / batch.ops->rows, guards);
+  const Guard<T>& guard = guards[i % batch.ops->rows];
+  return guard.one_sided() && guard.gap() > foreign<T> * island.scale;
+}
+
+template <class S>
+void count_undecided_ends(WorldData<S>& world, const Island<S>& island, System<S>& system) {
+  bool any = false;
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    if (batch->law && batch->law->error && batch->law->guard)
+      for (int i = begin * batch->ops->rows; i < end * batch->ops->rows; ++i)
+        any |= acts_before_it_is_met(island, *batch, i);
+  if (!any) return;
+  system.each_row([&](int row, const Batch<S>& batch, int i) {
+    const bool is_end = batch.law && batch.law->error && batch.law->guard;
+    if (!is_end || system.fixed[row] || !acts_before_it_is_met(island, batch, i)) return;
+    std::fill(system.b.begin(), system.b.end(), 0);
+    system.b[row] = 1;
+    system.solve_factored(system.b.data());  // b[row]: 1 / K_rr of the row beside all others
+    if (!(double(system.diagonal(row) * system.b[row]) > 1 / (in_line * in_line))) return;
+    if (world.counts->undecided++ == 0) world.counts->undecided_joint = batch.joint[i / batch.ops->rows];
+  });
+}
+
 // K lambda = -(J v + bias), lambda within its bounds.
 template <class S>
 void solve_velocities(WorldData<S>& world, Island<S>& island, typename S::Velocity* v, typename S::Scalar) {
@@ -97,6 +132,7 @@ void solve_velocities(WorldData<S>& world, Island<S>& island, typename S::Veloci
     system.solve();
   }
   exert_solution(world, island, system, v);
+  if (system.lawful() && !island.acceleration_level && !world.at_once) count_undecided_ends(world, island, system);
 }
 
 // System::share_loads() is set where joints may break.

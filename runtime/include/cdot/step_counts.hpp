@@ -13,8 +13,8 @@ struct StepCounts {
   // error estimate above the motion itself even in the smallest parts. It is the midpoint rule, or linearly implicit
   // Euler: with sweeps, where a joint's direction reverses, and for radau5 with more than 20 bodies.
   long long rescued = 0;
-  // Blows that an error as small as that of the steps changes much: friction jams there, or does not. And the joint of
-  // the first one; -1: none.
+  // Blows that an error as small as that of the steps changes much: friction jams there, or a rope across an arm that
+  // is nearly straight is met, or not. And the joint of the first one; -1: none.
   long long undecided = 0, undecided_joint = -1;
   long long steered = 0;  // steps near a loss of rank of K, with projected stages
   long long retried = 0;  // failed steps that succeeded in parts

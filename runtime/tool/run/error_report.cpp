@@ -45,9 +45,8 @@ std::string decision_warning(const Scene& scene, const RunResult& result) {
         joint_name(scene, near.joint), 100 * near.distance, near.time, 100 * near.error);
   if (count == 0) return {};
   return fmt::format(
-      "{} blow{} undecided, first by t = {:.6g} s at joint \"{}\": an error as small as that of the steps makes "
-      "friction "
-      "jam there, or not, so the error of the motion after it is not sure",
+      "{} blow{} undecided, first by t = {:.6g} s at joint \"{}\": an error as small as that of the steps decides "
+      "whether it stops the bodies there, so the error of the motion after it is not sure",
       count, count == 1 ? " is" : "s are", result.first_undecided,
       name_in(scene.joints, static_cast<int>(result.counts.undecided_joint)));
 }
