@@ -22,8 +22,8 @@ constexpr double golden = 0.6180339887498949;  // its multiples spread evenly
 template <class S, class F>
 void each_held_end(System<S>& system, F f) {
   system.each_row([&](int row, Batch<S>& batch, int i) {
-    const bool end = batch.law && batch.law->error && batch.law->guard;
-    if (end && batch.mode[i] == Mode::held && !system.broken[row] && std::isinf(batch.upper[i] - batch.lower[i]))
+    if (has_ends(batch) && batch.mode[i] == Mode::held && !system.broken[row] &&
+        std::isinf(batch.upper[i] - batch.lower[i]))
       f(row, batch, i);
   });
 }

@@ -99,13 +99,12 @@ template <class S>
 void count_undecided_ends(WorldData<S>& world, const Island<S>& island, System<S>& system) {
   bool any = false;
   for (const auto& [batch, begin, end, whole] : island.segments)
-    if (batch->law && batch->law->error && batch->law->guard)
+    if (has_ends(*batch))
       for (int i = begin * batch->ops->rows; i < end * batch->ops->rows; ++i)
         any |= acts_before_it_is_met(island, *batch, i);
   if (!any) return;
   system.each_row([&](int row, const Batch<S>& batch, int i) {
-    const bool is_end = batch.law && batch.law->error && batch.law->guard;
-    if (!is_end || system.fixed[row] || !acts_before_it_is_met(island, batch, i)) return;
+    if (!has_ends(batch) || system.fixed[row] || !acts_before_it_is_met(island, batch, i)) return;
     std::fill(system.b.begin(), system.b.end(), 0);
     system.b[row] = 1;
     system.solve_factored(system.b.data());  // b[row]: 1 / K_rr of the row beside all others

@@ -18,6 +18,12 @@ template <class S>
   system.load([](const Batch<S>& batch, int i) { return -(batch.rate[i] + batch.bias[i]); });
 }
 
+// True if rows of the batch act from ends on: limits, ropes and other bounds of C.
+template <class S>
+bool has_ends(const Batch<S>& batch) {
+  return batch.law && batch.law->error && batch.law->guard;
+}
+
 // b = share * the errors from find_errors().
 template <class S>
 [[gnu::always_inline]] inline void load_errors(System<S>& system, typename S::Scalar share) {

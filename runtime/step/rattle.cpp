@@ -77,8 +77,7 @@ void guess_impulses(WorldData<S>& world, Island<S>& island, typename S::Scalar s
 // would decide how far inside a body stops.
 template <class S>
 bool end_acts(const Batch<S>& batch, int i) {
-  return batch.law && batch.law->error && batch.law->guard && batch.mode[i] == Mode::bounded &&
-         (batch.error[i] != 0 || batch.correction[i] != 0);
+  return has_ends(batch) && batch.mode[i] == Mode::bounded && (batch.error[i] != 0 || batch.correction[i] != 0);
 }
 template <class S>
 Guard<typename S::Scalar> guard_of(const Batch<S>& batch, int i) {
@@ -295,7 +294,7 @@ template <class S, class F>
 void each_end(const Island<S>& island, F f) {
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
-    if (!batch.law || !batch.law->error || !batch.law->guard) continue;
+    if (!has_ends(batch)) continue;
     each_row(batch, segment.begin, segment.end, [&](int i) {
       const auto guard = guard_of(batch, i);
       if (guard.one_sided()) f(batch, i, guard);
