@@ -142,9 +142,9 @@ constexpr double slight_softness = std::max(1e-8, 10 * Ldlt::pivot_share<T>);
 template <class S, class Real>
 bool hold_motors(System<S>& system, Real slight) {
   bool held = false;
+  system.find_rivals(slight);
   system.each_row([&](int r, const Batch<S>& batch, int) {
-    const bool motor = batch.law && !batch.law->error && !batch.law->spring;
-    if (!motor || system.fixed[r] || system.broken[r] || system.softness[r] != 0) return;
+    if (!is_motor(batch) || system.fixed[r] || system.broken[r] || system.softness[r] != 0) return;
     if (!(std::abs(system.unmet(r)) > slight)) return;
     system.softness[r] = system.softness_of_motors * system.diagonal(r);
     held = true;
@@ -157,6 +157,7 @@ bool hold_motors(System<S>& system, Real slight) {
 // Where a motor contradicts joints, it alone misses its rate: a joint that shared the error would open.
 template <class S>
 void System<S>::solve() {
+  rivals_ = {};
   solve_rows();
   share_contradictions();
   if (lawful_ && contradicted_ && hold_motors(*this, slight(largest_b(Of::free_rows)))) {
@@ -274,7 +275,7 @@ int System<S>::solve_bounded() {
     if (fixed[r]) lambda[r] = fixed[r] == at_lower ? lower[r] : upper[r];
     if (!std::isfinite(lambda[r])) fixed[r] = free;
   }
-  rounds_ = 0;
+  rounds_ = 0, rivals_ = {};
   int dependent = part_and_settle();
   // A motor that yielded to a row now at its bound need not yield any more: it pulls a slipping brake with all it has.
   if (eased_) {

@@ -14,6 +14,12 @@
 
 namespace cdot {
 
+// Rows that ask for a rate and have no place to keep, as a motor or a clutch.
+template <class S>
+bool is_motor(const Batch<S>& batch) {
+  return batch.law && !batch.law->error && !batch.law->spring;
+}
+
 template <class S>
 class System {
  public:
@@ -125,6 +131,14 @@ class System {
   void solve();
   // The error of a row after the last solve(); 0 unless rows contradict each other.
   Real unmet(int row) const { return contradicted_ ? unmet_[static_cast<size_t>(row)] : Real(0); }
+  // Of the last solve() or solve_bounded(): a motor of unlimited force without its rate, since another one has a
+  // different rate, or, if there is no other, since joints hold it; -1: none.
+  struct Rivals {
+    int row = -1, other = -1;
+  };
+  Rivals rivals() const;
+  // Looks for them: call where a row misses more than `slight`, and before motors yield.
+  void find_rivals(Real slight);
   // K_rr = J M^-1 J^T of the row alone.
   Real diagonal(int row) const { return ldlt_.diagonal(row); }
   // Treats the nearly redundant row that moves the bodies most in the last solve() as redundant, until it becomes
@@ -208,6 +222,7 @@ class System {
   void solve_kept_rows();
   static Real slight(Real scale);
   bool misses_rows(std::vector<Real>& missed);
+  bool misses_rate(int row) const;
   void share_contradictions();
   enum class Bounds : char { unknown, known };
   void share_redundant_loads(Bounds bounds);
@@ -234,6 +249,7 @@ class System {
   std::vector<Real> right_side_, product_;
   std::array<std::vector<Real>, 4> shared_;  // by row, scratch of least_squares.cpp and regularise.cpp
   std::vector<Real> unmet_;                  // by row
+  Rivals rivals_;                            // before they are known to miss their rates
   std::vector<int> tension_of_;              // index into `blocks`
   std::vector<char> out_, passing_;          // passing_: rows under a law, which may leave
   Circle circle_;                            // of active sets, within find_active_set()

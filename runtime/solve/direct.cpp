@@ -10,6 +10,7 @@
 #include "runtime/solve/longest_move.hpp"
 #include "runtime/solve/misfits.hpp"
 #include "runtime/solve/projection.hpp"
+#include "runtime/solve/rivals.hpp"
 #include "runtime/solve/solver.hpp"
 
 namespace cdot {
@@ -131,7 +132,9 @@ void solve_velocities(WorldData<S>& world, Island<S>& island, typename S::Veloci
     system.solve();
   }
   exert_solution(world, island, system, v);
-  if (system.lawful() && !island.acceleration_level && !world.at_once) count_undecided_ends(world, island, system);
+  if (!system.lawful() || island.acceleration_level) return;
+  if (!world.at_once) count_undecided_ends(world, island, system);
+  count_rivals(world, system);
 }
 
 // System::share_loads() is set where joints may break.
@@ -329,6 +332,7 @@ void project(WorldData<S>& world, Island<S>& island) {
   system.assemble(world.bodies);
   island.redundant_rows = system.factor();
   system.solve();
+  count_rivals(world, system);
   exert_correction(world, island, system, world.bodies.velocity.data());
   island.factored = true;
 }

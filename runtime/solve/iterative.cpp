@@ -7,6 +7,7 @@
 
 #include "runtime/solve/loads.hpp"
 #include "runtime/solve/projection.hpp"
+#include "runtime/solve/rivals.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
 
@@ -105,6 +106,7 @@ void sweep_velocities(WorldData<S>& world, Island<S>& island, typename S::Veloci
       else batch->ops->iterate(*batch, begin, end, world.bodies, v, batch->lambda.data());
     }
   }
+  if (!island.acceleration_level) count_rivals(world, island);
 }
 
 template <class S>
@@ -119,6 +121,7 @@ void sweep_softly(WorldData<S>& world, Island<S>& island, SoftSweep<typename S::
       else if (springs || !batch->law->force) iterate_bounded(*batch, begin, end, world.bodies, v);
     }
   }
+  count_rivals(world, island);
 }
 
 template <class S>

@@ -93,6 +93,13 @@ struct LoadedRow {
   int place() const { return batch->slot_of[static_cast<size_t>(home)]; }
 };
 
+// Two rows over the same bodies that may ask for different rates (solve/rivals.hpp).
+template <class S>
+struct RivalRows {
+  Batch<S>*one, *other;
+  int home, other_home;  // Batch::slot_of[home]
+};
+
 template <class S>
 struct IslandWorkspace {
   std::vector<Segment<S>> segments;
@@ -105,6 +112,7 @@ struct IslandWorkspace {
   std::vector<LoadedRow<S>> loads;
   std::vector<typename S::Scalar> load_changes;
   Broyden<typename S::Scalar> load_search;
+  std::vector<RivalRows<S>> rivals;
   // Shares: of the impulses in Batch::correction that loads count, and of a load in the bounds of a kick.
   typename S::Scalar corrections_in_loads = 0, loads_in_kick = 1;
   // Share of the impulses in Batch::correction that belong to the present force of a cone and to its load.

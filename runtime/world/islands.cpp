@@ -13,11 +13,12 @@
 #include "runtime/events/latch.hpp"
 #include "runtime/solve/loads.hpp"
 #include "runtime/solve/misfits.hpp"
+#include "runtime/solve/rivals.hpp"
 #include "runtime/solve/solver.hpp"
-#include "runtime/solve/sweep_order.hpp"
 #include "runtime/solve/tension.hpp"
 #include "runtime/state/state_list.hpp"
 #include "runtime/step/integrators.hpp"
+#include "runtime/world/sweep_order.hpp"
 
 namespace cdot {
 namespace {
@@ -229,6 +230,7 @@ void prepare_topology(WorldData<S>& world) {
       for (System<S>* system : {&island.system, &island.rescue}) system->share_loads();
     if (world.needs_systems() && world.settings.drift == Drift::projection) reserve_errors(island);
     list_loads(world, island);
+    if (sweeps(world.settings.solver)) list_rivals(island);
     stepper_of<S>(world.settings.integrator).prepare(island);
     world.awake.push_back(i);
   }

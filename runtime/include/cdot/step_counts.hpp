@@ -16,6 +16,9 @@ struct StepCounts {
   // Blows that an error as small as that of the steps changes much: friction jams there, or a rope across an arm that
   // is nearly straight is met, or not. And the joint of the first one; -1: none.
   long long undecided = 0, undecided_joint = -1;
+  // Solutions in which a motor of unlimited force has not its rate, since another one or joints contradict it. And the
+  // joints of the first motor and of its rival; -1: none.
+  long long contradicted = 0, contradicted_joint = -1, contradicting_joint = -1;
   long long steered = 0;  // steps near a loss of rank of K, with projected stages
   long long retried = 0;  // failed steps that succeeded in parts
   long long direct = 0;   // of these: steps that needed the direct solver in place of the iterative one

@@ -51,6 +51,26 @@ std::string decision_warning(const Scene& scene, const RunResult& result) {
       name_in(scene.joints, static_cast<int>(result.counts.undecided_joint)));
 }
 
+std::string contradiction(const Scene& scene, const RunResult& result) {
+  const StepCounts& counts = result.counts;
+  if (counts.contradicted == 0) return {};
+  const std::string joint = joint_name(scene, static_cast<int>(counts.contradicted_joint)),
+                    rival = joint_name(scene, static_cast<int>(counts.contradicting_joint));
+  const double time = result.first_contradicted;
+  if (counts.contradicting_joint < 0)
+    return fmt::format(
+        "a motor of joint {} has unlimited force, but other joints hold it by t = {:.6g} s: no motion has its rate. "
+        "Likely fix: leave out the motor or a joint that holds it",
+        joint, time);
+  return fmt::format(
+      "{} contradict each other by t = {:.6g} s: both have unlimited force, and no motion has the rates of both. "
+      "Likely "
+      "fix: a largest force or torque for one of them, such as `max` of a motor or `most` of a freewheel",
+      joint == rival ? fmt::format("two motors of joint {}", joint)
+                     : fmt::format("motors of the joints {} and {}", joint, rival),
+      time);
+}
+
 std::string error_text(const Scene& scene, const TrajectoryError& error) {
   return fmt::format(
       "  trajectory      off by about {:.1g} m and {:.1g} rad ({}, t = {:.6g} s), estimated at {} places\n",

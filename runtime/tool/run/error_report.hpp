@@ -19,6 +19,9 @@ std::string trajectory_warning(const Scene& scene, const RunResult& result);
 // fix.
 std::string decision_warning(const Scene& scene, const RunResult& result);
 
+// Of motors that no motion obeys; empty if there are none.
+std::string contradiction(const Scene& scene, const RunResult& result);
+
 std::string error_text(const Scene& scene, const TrajectoryError& error);
 text::Json error_json(const Scene& scene, const TrajectoryError& error);
 

@@ -88,6 +88,7 @@ std::string energy_without_value(const RunResult& result) {
 std::string failure(const Scene& scene, const RunResult& result) {
   if (result.failed_step) return failed_step_text(scene, result, *result.failed_step);
   if (std::isnan(result.energy_end)) return energy_without_value(result);
+  if (const std::string motors = contradiction(scene, result); !motors.empty()) return motors;
   if (!result.finite)
     return fmt::format("unstable: the state is not finite at t = {:.6g} s. {}", result.time,
                        fix_of(result, "a shorter step"));
@@ -283,6 +284,7 @@ std::string summary_json(const Scene& asked, const RunResult& result) {
                          {"rejected", result.counts.rejected},       {"events", result.counts.events},
                          {"rescued", result.counts.rescued},         {"steered", result.counts.steered},
                          {"undecided", result.counts.undecided}};
+  if (result.counts.contradicted > 0) json["contradiction"] = contradiction(scene, result);
   for (std::size_t k = 0; k < result.sensors.size(); ++k)
     json["sensors"].push_back({{"name", scene.sensors[k].name},
                                {"unit", scene.sensors[k].unit},

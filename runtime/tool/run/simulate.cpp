@@ -155,10 +155,11 @@ double evaluations_of(const RunResult& result) {
 // what fails it, from this share of the time on: a tenth of that is no cure, and energies hardly grow tenfold then.
 constexpr double surely_beyond = 3, foreseen_from = 0.1, lost_from = 0.1;
 
-// Errors of joints, undecided blows and the trajectory's estimate never shrink.
+// Errors of joints, contradictions, undecided blows and the trajectory's estimate never shrink.
 bool in_vain(const Scene& scene, const RunOptions& options, const RunResult& so_far, const TrajectoryError& error) {
   if (so_far.worst_error > scene.tolerance || so_far.worst_end.by > scene.tolerance) return true;
-  if (so_far.counts.undecided > 0 || error.share > warned_trajectory_share(scene)) return true;
+  if (so_far.counts.undecided > 0 || so_far.counts.contradicted > 0 || error.share > warned_trajectory_share(scene))
+    return true;
   const double passed = (so_far.time - so_far.start) / (scene.duration - so_far.start);
   if (passed > lost_from && worst_share(so_far.balance) > scene.energy_tolerance) return true;
   const double spent = evaluations_of(so_far), most = options.most_evaluations;
@@ -207,6 +208,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     if (result.first_rescue < 0 && world.step_counts().rescued > 0)
       result.first_rescue = after.time, result.at_rescue = largest_force(world);
     if (result.first_undecided < 0 && world.step_counts().undecided > 0) result.first_undecided = after.time;
+    if (result.first_contradicted < 0 && world.step_counts().contradicted > 0) result.first_contradicted = after.time;
     if (every_step) options.row(after);
     requested.after_step(before, after);
     if (k > 0 && options.estimates_error) error.after_step(world, before, after, k);

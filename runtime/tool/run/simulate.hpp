@@ -94,8 +94,9 @@ struct RunResult {
   double first_rescue = -1;  // [s] end of the step that an implicit method first had to finish; below 0: none
   LargestForce at_rescue;    // of a joint, there
   NearBreak near_break;
-  bool may_break = false;       // joints may, by their loads
-  double first_undecided = -1;  // [s] end of the step in which a blow was first undecided; below 0: none
+  bool may_break = false;          // joints may, by their loads
+  double first_undecided = -1;     // [s] end of the step in which a blow was first undecided; below 0: none
+  double first_contradicted = -1;  // [s] the same of motors that contradict each other
   bool finite = true, interrupted = false;
   bool stopped = false;                   // by RunOptions::look or most_evaluations
   std::optional<StepResult> failed_step;  // the run ended before it

@@ -110,6 +110,7 @@ std::vector<Candidate> finer_accuracies(const Scene& scene, bool reached, bool p
 }  // namespace
 
 bool needs_advice(const Scene& scene, const RunResult& result) {
+  if (result.counts.contradicted > 0) return false;  // no method cures it
   return !failure(scene, result).empty() || !balance_warning(scene, result).empty() ||
          !trajectory_warning(scene, result).empty() || !decision_warning(scene, result).empty();
 }

@@ -128,6 +128,33 @@ TEST(FailedStep, IsTheOnlyStepOfTheDirectSolver) {
   EXPECT_EQ(world.snapshot().differences(other.snapshot()), std::vector<std::string>{});
 }
 
+// A motor of unlimited force that turns back against a one-way clutch: every method tells, and at once the cause. With
+// a largest torque the clutch holds, and all agree.
+TEST(FailedRun, IsOneWhoseMotorsContradictEachOther) {
+  const TemporaryFolder folder;
+  const auto ran = [&](const std::string& most, const std::string& options) {
+    const auto file = folder / "clutch.toml";
+    std::ofstream(file)
+        << "duration = 1\n[[body]]\nname = \"rod\"\nmass = 0.5\nshape = { rod = 1 }\nposition = [0.5, 0]\n"
+           "[[joint]]\nname = \"pivot\"\ntype = \"revolute\"\nbodies = [\"world\", \"rod\"]\n"
+           "at = [0, 0]\nangle.freewheel = {}\n"
+           "angle.motor = { speed = \"2 [rad/s] * cos(3 [rad/s] * time)\""
+        << most << " }\n";
+    return cdot_run(fmt::format("simulate '{}' --json {}", file.string(), options));
+  };
+  for (const char* options :
+       {"", "--integrator implicit --step 0.002", "--integrator rattle --step 0.002", "--integrator euler --step 0.002",
+        "--integrator rk4 --step 0.002", "--integrator dop853 --local-error 1e-8",
+        "--integrator radau5 --local-error 1e-8", "--integrator euler --solver iterative --step 0.002"}) {
+    const CommandResult contradicted = ran("", options), limited = ran(", max = 20", options);
+    const std::string told = nlohmann::json::parse(contradicted.out)["contradiction"];
+    EXPECT_EQ(contradicted.status, 1) << options;
+    EXPECT_NE(told.find("two motors of joint \"pivot\" contradict each other by t = 0.5"), std::string::npos) << told;
+    EXPECT_FALSE(nlohmann::json::parse(contradicted.out).contains("advice")) << options;
+    EXPECT_FALSE(nlohmann::json::parse(limited.out).contains("contradiction")) << options;
+  }
+}
+
 // The largest change of the energy is positive where the energy falls.
 TEST(Report, ALossOfEnergyIsAChange) {
   Scene scene = read_scene(std::string_view("duration = 1\nstep = 0.01\ngravity = [0, 0]\n[[body]]\nname = \"b\"\n"

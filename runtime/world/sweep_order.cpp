@@ -1,4 +1,4 @@
-#include "runtime/solve/sweep_order.hpp"
+#include "runtime/world/sweep_order.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,5 +1,5 @@
 // The iterative solver sweeps along chains from the tips to the roots, for every order of add_joint().
-#include "runtime/solve/sweep_order.hpp"
+#include "runtime/world/sweep_order.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

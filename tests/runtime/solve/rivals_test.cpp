@@ -1,0 +1,142 @@
+// Motors of unlimited force whose rates no motion has, by other motors or by joints: a World counts that. A motor that
+// is limited yields, and one that an end stops is stopped as meant.
+#include <cdot/effects.hpp>
+#include <cdot/methods.hpp>
+#include <cdot/world.hpp>
+
+#include "tests/runtime/support.hpp"
+
+namespace cdot::test {
+namespace {
+
+// Two wheels, joints 0 and 1, which a gear turns alike, joint 2.
+struct Wheels {
+  explicit Wheels(Settings s) : world(s) {
+    for (int k = 0; k < 2; ++k) {
+      wheel[k] = world.add_body({.x = 3. * k, .mass = 1, .inertia = 0.5});
+      revolute(world, world.ground(), wheel[k], 3. * k, 0, 0, 0);
+    }
+    world.add_joint({"gear", {wheel[0], wheel[1]}, {{"ratio", {-1}}, {"phi", {0}}}, {}});
+  }
+  void motor(int joint, double speed, double most = unlimited) {
+    add_motor(world, joint, "angle", {.speed = speed, .max_force = most});
+  }
+  const StepCounts& counts() {
+    for (int n = 0; n < 10; ++n) world.step(0.01);
+    return world.step_counts();
+  }
+  World<double> world;
+  int wheel[2];
+};
+
+struct Way {
+  Integrator integrator;
+  Solver solver;
+};
+
+std::vector<Way> all_ways() {
+  std::vector<Way> ways{{Integrator::euler, Solver::iterative}};
+  for (const auto& row : integrator_rows) ways.push_back({row.integrator, Solver::direct});
+  return ways;
+}
+
+Settings with(const Way& way) {
+  Settings s = settings(way.solver);
+  s.integrator = way.integrator;
+  return s;
+}
+
+std::string name_of(const Way& way) {
+  return std::string(cdot::name_of(integrators, way.integrator)) + ", " +
+         std::string(cdot::name_of(solvers, way.solver));
+}
+
+TEST(Rivals, OnOneCoordinateAreTold) {
+  for (const Way& way : all_ways()) {
+    for (const double other : {2.0, 1.0}) {
+      Wheels wheels(with(way));
+      wheels.motor(0, 2);
+      wheels.motor(0, other);
+      const StepCounts& counts = wheels.counts();
+      EXPECT_EQ(counts.contradicted > 0, other != 2) << name_of(way) << ", " << other << " rad/s beside 2";
+      EXPECT_EQ(counts.contradicted_joint, other != 2 ? 0 : -1) << name_of(way);
+      EXPECT_EQ(counts.contradicting_joint, other != 2 ? 0 : -1) << name_of(way);
+    }
+  }
+}
+
+// Sweeps see rows of the same bodies alone.
+TEST(Rivals, ThatJointsConnectAreTold) {
+  for (const Way& way : all_ways()) {
+    if (way.solver == Solver::iterative) continue;
+    for (const double other : {-2.0, 2.0}) {
+      Wheels wheels(with(way));
+      wheels.motor(0, 2);
+      wheels.motor(1, other);
+      const StepCounts& counts = wheels.counts();
+      EXPECT_EQ(counts.contradicted > 0, other < 0) << name_of(way) << ", " << other << " rad/s";
+      EXPECT_EQ(counts.contradicted_joint + counts.contradicting_joint, other < 0 ? 1 : -2) << name_of(way);
+    }
+  }
+}
+
+// Without a rival; sweeps leave the weld open, which is told otherwise.
+TEST(Rivals, AreJointsThatHoldAMotor) {
+  for (const Way& way : all_ways()) {
+    if (way.solver == Solver::iterative) continue;
+    for (const double speed : {2.0, 0.0}) {
+      Wheels wheels(with(way));
+      wheels.motor(1, speed);
+      wheels.world.add_joint(
+          {"weld", {wheels.world.ground(), wheels.wheel[0]}, {{"pa", {0.1, 0}}, {"pb", {0.1, 0}}}, {}});
+      const StepCounts& counts = wheels.counts();
+      EXPECT_EQ(counts.contradicted > 0, speed != 0) << name_of(way) << ", " << speed << " rad/s";
+      EXPECT_EQ(counts.contradicted_joint, speed != 0 ? 1 : -1) << name_of(way);
+      EXPECT_EQ(counts.contradicting_joint, -1) << name_of(way);
+    }
+  }
+}
+
+TEST(Rivals, ThatAreLimitedYield) {
+  for (const Way& way : all_ways()) {
+    Wheels wheels(with(way));
+    wheels.motor(0, 2, 1000);
+    wheels.motor(0, 1);
+    wheels.motor(1, 5, 3);
+    add_effect(wheels.world, 1, "angle", SpecEffect{"pin_friction", {{"mu", {0.3}}, {"radius", {0.05}}}});
+    EXPECT_EQ(wheels.counts().contradicted, 0) << name_of(way);
+  }
+}
+
+// A clutch lets its first body turn ahead of the second one, and keeps it from turning back, however fast a motor turns
+// it. So a wheel may not turn back, or not ahead, if the ground comes first.
+TEST(Rivals, AreAClutchAndAMotorThatTurnsAgainstIt) {
+  for (const Way& way : all_ways()) {
+    for (const double most : {unlimited, 50.0}) {
+      for (const double speed : {1.0, -1.0}) {
+        for (const bool wheel_first : {true, false}) {
+          Wheels wheels(with(way));
+          wheels.motor(0, speed);
+          const int wheel = wheels.wheel[0], ground = wheels.world.ground();
+          const int first = wheel_first ? wheel : ground, second = wheel_first ? ground : wheel;
+          wheels.world.add_joint({"freewheel", {first, second}, {{"most", {most}}}, {}});
+          EXPECT_EQ(wheels.counts().contradicted > 0, (speed < 0) == wheel_first && most == unlimited)
+              << name_of(way) << ", " << speed << " rad/s, up to " << most << " N m" << (wheel_first ? "" : ", turned");
+        }
+      }
+    }
+  }
+}
+
+TEST(Rivals, AreNoneAtAnEnd) {
+  for (const Way& way : all_ways()) {
+    Wheels wheels(with(way));
+    wheels.motor(0, 2);
+    wheels.motor(1, 2);
+    add_limit(wheels.world, 0, "angle", {.lower = -1, .upper = 0.05});
+    EXPECT_EQ(wheels.counts().contradicted, 0) << name_of(way);
+  }
+}
+
+}  // namespace
+}  // namespace cdot::test
