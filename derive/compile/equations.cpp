@@ -113,7 +113,7 @@ class EquationWriter {
     }
     if (out_.finishes) out_.finish = dampers.finish(joints_);
     for (std::size_t b = 0; b < mechanism_.bounded.size() && mechanism_.method == Method::rattle; ++b)
-      out_.exerts |= prescribes_rate(blocks_, b);
+      out_.exerts |= prescribes_rate(blocks_, b), out_.has_clutches |= drives_one_way(blocks_, b, out_.constants);
     out_.exerts |= mechanism_.method == Method::rattle && mechanism_.has_rates();
     if (out_.exerts) out_.exert = exert_of(blocks_, joints_, out_.constants);
     if (mechanism_.method == Method::rattle) list_freed();

@@ -54,7 +54,7 @@ struct Equations {
   // Of rows with bounds:
   std::string is_rate;  // "true, false", by row
   std::string cones;    // "-1, 1, 1", by row: the first row of its cone
-  bool has_ends = false, has_events = false, has_late_ends = false;
+  bool has_ends = false, has_events = false, has_late_ends = false, has_clutches = false;
   std::string waits;      // "true, false", by row: it waits for an event
   std::string late;       // and is an end
   Program reach;          // q, time, J -> B: their part in a projection

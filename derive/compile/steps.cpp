@@ -196,6 +196,7 @@ Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
           .bears_end = !equations.bear_end.outputs.empty(),
           .shares = !equations.share.outputs.empty(),
           .weighs = mechanism.weighs(),
+          .clutches = equations.has_clutches,
           .drags = std::ranges::any_of(mechanism.bodies, &Body::drags),
           .foresees = !equations.apply.outputs.empty(),
           .one_freedom = equations.freedom.exists(),
@@ -374,7 +375,6 @@ std::string begin_of(Method method, const Contents& has) {
 }
 
 namespace {
-
 std::string text_of_step(const Mechanism& mechanism, const Contents& has) {
   if (mechanism.method == Method::euler) return euler(mechanism, has);
   if (mechanism.method == Method::rattle) return rattle(mechanism.tolerance, has);

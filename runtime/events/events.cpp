@@ -125,6 +125,7 @@ typename S::Scalar margin_within(const Batch<S>& batch, int i, const Guard<typen
       if (guard.lower == guard.upper) return infinite<T>;
       return (batch.mode[i] == Mode::pushed ? guard.rate - rate : rate - guard.rate) / resolution.rate;
     case Mode::pressed:
+    case Mode::gripped:
     case Mode::bounded: break;
   }
   return infinite<T>;

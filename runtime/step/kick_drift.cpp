@@ -28,6 +28,11 @@ bool has_rows(const Island<S>& island, bool (*are)(const Batch<S>&)) {
                      [&](const Segment<S>& s) { return s.begin < s.end && are(*s.batch); });
 }
 
+template <class S>
+bool drives_one_way(const Batch<S>& batch, int i) {
+  return acts_by_force(batch) && !batch.law->by_load && (batch.lower[i] == 0 || batch.upper[i] == 0);
+}
+
 // Limits that are met carry the load of friction. Their own impulses are dropped afterwards.
 template <class S>
 void offer_load(const Island<S>& island, Batch<S>& batch, int begin, int end) {
@@ -93,6 +98,13 @@ void exert_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h
     for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i)
       batch.lambda[i] *= acts ? h / 2 : T(0);
   }
+  System<S>& system = island.at_work();
+  if (island.solver->exact)
+    system.each_row([&](int row, Batch<S>& batch, int i) {
+      const bool holds = drives_one_way(batch, i) && batch.lambda[i] != 0 && system.fixed[row] == System<S>::free;
+      if (batch.mode[i] == Mode::bounded || batch.mode[i] == Mode::gripped)
+        batch.mode[i] = holds ? Mode::gripped : Mode::bounded;
+    });
   evaluate_anew(world, island, time);  // restores dC/dt, which gamma replaced
 }
 
@@ -111,7 +123,7 @@ void bound_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     }
     batch.law->fill(batch, segment.begin, segment.end, h, world.settings);
     for (int i = begin; i < end; ++i) {
-      if (!acts_at_start(batch, i)) continue;
+      if (!acts_at_start(island, batch, i)) continue;
       batch.lower[i] *= T(0.5);  // the other half acts at the start of the next step
       batch.upper[i] *= T(0.5);
     }
@@ -208,7 +220,29 @@ void calm_sticking_rows(Island<S>& island) {
   unload(island);
 }
 
+template <class S>
+bool settle_clutches(Island<S>& island) {
+  using T = typename S::Scalar;
+  bool anew = false;
+  System<S>& system = island.at_work();
+  system.find_excess();
+  system.each_row([&](int row, Batch<S>& batch, int i) {
+    if (!drives_one_way(batch, i) || system.broken[row]) return;
+    T &end = batch.lambda[i], &start = batch.correction[i];
+    const T whole = start + end;
+    const bool acts = end != 0, slips = acts && system.fixed[row] != System<S>::free;
+    anew |= acts && (start == 0 || (!slips && batch.mode[i] != Mode::gripped));
+    batch.mode[i] = acts && !slips ? Mode::gripped : Mode::bounded;
+    const T stops = T(std::abs(system.excess(row)) / system.diagonal(row));
+    if (slips) end = std::copysign(std::min(std::abs(end), stops), end);
+    else if (acts) end = whole / 2;
+    start = whole - end;
+  });
+  return anew;
+}
+
 #define CDOT_INSTANTIATE(S)                                                  \
+  template bool settle_clutches(Island<S>&);                                 \
   template bool repeats_impulses(const Island<S>&);                          \
   template S::Scalar begin_kick_drift(WorldData<S>&, Island<S>&, S::Scalar); \
   template void note_start(const WorldData<S>&, Island<S>&);                 \

@@ -42,12 +42,18 @@ void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h, boo
 template <class S>
 void calm_sticking_rows(Island<S>& island);
 
-// True if the row repeats its impulse at the start of the next step. A clutch that drives one way does not: it could
-// not take back what was too much.
+// A clutch that drives one way cannot take back an impulse that it repeats. So one that holds repeats half of its
+// impulse over the last step, if it held before; one that slips repeats its bound, but at most the impulse that stops
+// the slip. Where one has just met or stopped, the next step finds the forces at its start anew: settle_clutches() is
+// true then. Call it after a direct solver. Batch::mode keeps which ones hold.
 template <class S>
-bool acts_at_start(const Batch<S>& batch, int i) {
-  if (!batch.law || batch.law->error) return true;
-  return batch.law->by_load || (batch.lower[i] != 0 && batch.upper[i] != 0);
+bool settle_clutches(Island<S>& island);
+
+// True if the row repeats its impulse at the start of the next step. By sweeps a clutch that drives one way does not.
+template <class S>
+bool acts_at_start(const Island<S>& island, const Batch<S>& batch, int i) {
+  if (island.solver->exact || !batch.law || batch.law->error || batch.law->by_load) return true;
+  return batch.lower[i] != 0 && batch.upper[i] != 0;
 }
 
 }  // namespace cdot

@@ -67,7 +67,7 @@ void guess_impulses(WorldData<S>& world, Island<S>& island, typename S::Scalar s
     const int rows = batch.ops->rows;
     const T repeated = batch.law && (batch.law->error || is_force(batch)) ? T(0) : share;
     for (int i = segment.begin * rows; i < segment.end * rows; ++i)
-      batch.correction[i] = batch.impulse[i] = acts_at_start(batch, i) ? repeated * batch.lambda[i] : T(0);
+      batch.correction[i] = batch.impulse[i] = acts_at_start(island, batch, i) ? repeated * batch.lambda[i] : T(0);
     batch.ops->apply(batch, segment.begin, segment.end, world.bodies, batch.impulse.data(),
                      world.bodies.velocity.data());
   }
@@ -378,7 +378,8 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   solve_end(world, island, h, struck);
   book_kick(world, island, Impulses::rattle_end, h / 2);  // the mirror image of the start
   if (!island.loads.empty()) calm_sticking_rows(island);
-  island.evaluated = !struck;  // the next step does not repeat friction's share of an impact
+  const bool anew = repeats && !by_sweeps && settle_clutches(island);
+  island.evaluated = !struck && !anew;  // the next step does not repeat friction's share of an impact
 }
 
 template <class S>

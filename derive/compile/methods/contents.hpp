@@ -32,6 +32,7 @@ struct Contents {
   bool bears_end = false;      // whose forces act at the end of a step, too
   bool shares = false;         // loads of these are shared among redundant rows
   bool weighs = false;         // by Euler's steps or RATTLE: the impulses of corrections count as loads
+  bool clutches = false;       // by RATTLE: rows with bounds among which some drive one way
   bool drags = false;          // some body has drag
   bool foresees = false;       // the multipliers of the next projection, by those of the last steps
   bool one_freedom = false;    // by Euler's steps: they go in a few angles
@@ -41,12 +42,12 @@ struct Contents {
   bool taut = false;           // by the midpoint rule: tension has rows between bodies
   bool apart = false;          // by explicit Runge-Kutta methods: stages read no centre of mass and no velocity of one
   std::size_t collocated = 0;  // by Radau IIA: components of velocities
-  bool strides() const { return modes || snaps; }                        // steps end strides at events
-  bool projects() const { return (rows || modes) && !open; }             // velocities
-  bool strikes() const { return exerts && ends; }                        // impacts end what the next step repeats
-  bool repeats() const { return weighs && exerts && bounded; }           // forces of rows that prescribe a rate
-  bool corrects_loads() const { return loads && (weighs || midpoint); }  // by impulses beside those found
-  bool carries_over() const { return loads && weighs && !rattle; }       // impulses of the last corrections
+  bool strides() const { return modes || snaps; }                             // steps end strides at events
+  bool projects() const { return (rows || modes) && !open; }                  // velocities
+  bool strikes() const { return exerts && ends; }                             // impacts end what the next step repeats
+  bool repeats() const { return (weighs || clutches) && exerts && bounded; }  // forces of rows that prescribe a rate
+  bool corrects_loads() const { return loads && (weighs || midpoint); }       // by impulses beside those found
+  bool carries_over() const { return loads && weighs && !rattle; }            // impulses of the last corrections
   bool weighs_joints() const { return weighs && (bonds || loads) && rows; }
   bool shares_impulses() const { return shares && weighs_joints(); }
   bool closes() const { return (rows || ends) && !open; }

@@ -274,8 +274,6 @@ constexpr const char* sums_pulls = R"(    for (int e = 0; e < bounded; ++e) {{
 constexpr const char* sums_lambda =
     "      for (int i = 0; i < rows; ++i) {0}lambda[i] = {0}lambda[i] + mu[e] * B.l[e][i];\n";
 
-constexpr const char* repeats_all = "select(magnitude(B.low[e] * B.high[e]) > T(0), mu[e], T(0))";
-
 // The first step does not repeat what ended another one.
 constexpr const char* start_begins = R"(
   // Forces of joints and motors at the start of a run, of mechanisms and in lanes that begin.
@@ -340,11 +338,12 @@ std::string finishing(const Contents& has) {
                       has.looks ? "given, end, " : "", has.rows ? "s.lambda, " : "", has.pulls() ? "s.pull" : "pull",
                       has.bounded ? ", B" : "");
   if (has.bounded) {
+    text += notes_holds(has);
     text += has.loads ? settles_end_with_loads(has) : "    settle(B, s.hold, mu);\n";
     text += weighs_bounds(has);
-    text +=
-        fmt::format(sums_pulls, "next[i] = next[i] + mu[e] * B.g[e][i], ",
-                    has.rows ? fmt::format(sums_lambda, "s.") : "", "s.", has.repeats() ? "repeated[e]" : repeats_all);
+    text += fmt::format(sums_pulls, "next[i] = next[i] + mu[e] * B.g[e][i], ",
+                        has.rows ? fmt::format(sums_lambda, "s.") : "", "s.",
+                        has.repeats() ? "repeated[e]" : repeats_of_start(has));
   }
   if (has.rows) text += "    for (T& of_row : s.lambda) of_row = of_row / half;\n";
   text += "    for (int i = 0; i < bodies; ++i) s.v[i] = next[i]";
@@ -365,7 +364,8 @@ std::string start_of(const Contents& has) {
     text +=
         fmt::format(start_with_bounds, has.rows ? "    T lambda[rows];\n" : "", has.rows ? "s.J, h, lambda, " : "h, ",
                     has.loads ? settles_start_with_loads(has) : "    settle(B, hold, mu);\n") +
-        fmt::format(sums_pulls, "", has.rows ? fmt::format(sums_lambda, "") : "", "", repeats_all) + start_holds;
+        fmt::format(sums_pulls, "", has.rows ? fmt::format(sums_lambda, "") : "", "", repeats_of_start(has)) +
+        start_holds;
   else text += start_by_joints;
   text += shares(has, "lambda");
   return text + fmt::format(start_ends, has.rows ? start_lambda : "", repeats_at_start(has));

@@ -58,6 +58,24 @@ constexpr const char* notes_repeats = R"(    T repeated[bounded];
 {}      s.repeats[e] = is_rate[e] ? repeated[e] / half : T(0);
     }}
 )";
+constexpr const char* holds_before = R"(    T held_before[bounded];
+    for (int i = 0; i < bounded; ++i) held_before[i] = s.hold[i];
+)";
+// As the World does it: settle_clutches() in runtime/step/kick_drift.cpp.
+constexpr const char* settles_clutches = R"(      if (is_rate[e]) {{
+        const Mask acts = {}!(magnitude(B.low[e] * B.high[e]) > T(0)) && magnitude(mu[e]) > T(0);
+        const Mask slips = acts && magnitude(s.hold[e]) > T(0), began = magnitude(s.repeats[e]) > T(0);
+        const Mask goes_on = began && (slips || !(magnitude(held_before[e]) > T(0)));
+        T excess = -B.c[e];
+        for (int i = 0; i < bounded; ++i) excess = excess + entry(B.S, e, i) * mu[i];
+        const T stops = magnitude(excess) * inverse(B.K[e]);
+        const T least = select(stops < magnitude(mu[e]), stops, magnitude(mu[e]));
+        repeated[e] = select(acts, T(0.5) * (half * s.repeats[e] + mu[e]), repeated[e]);
+        repeated[e] = select(slips, select(mu[e] < T(0), -least, least), repeated[e]);
+        T& begins = s.begins[group_of_bound[e]];
+        begins = select(acts && !goes_on, T(1), begins);
+      }}
+)";
 // Else round-off alternates, and may grow: calm_sticking_rows() in runtime/step/kick_drift.hpp.
 constexpr const char* calms_repeats =
     R"(      const T few = T(1e-3) * (B.high[e] - B.low[e]), first = half * s.repeats[e], change = mu[e] - first;
@@ -73,10 +91,10 @@ constexpr const char* carries_rows = R"(    T carried[rows];
 constexpr const char* end_changes_of_rows =
     "          for (int i = 0; i < rows; ++i) found[i] = found[i] + (T(1) / half) * mu[e] * reached.l[e][i];\n";
 
-constexpr const char* start_repeats = R"(    for (int e = 0; e < bounded; ++e) {
-      const T again = is_rate[e] ? select(magnitude(B.low[e] * B.high[e]) > T(0), mu[e], T(0)) : T(0);
+constexpr const char* start_repeats = R"(    for (int e = 0; e < bounded; ++e) {{
+      const T again = is_rate[e] ? {} : T(0);
       s.repeats[e] = select(begins[group_of_bound[e]], again, s.repeats[e]);
-    }
+    }}
 )";
 
 // Corrections turn the velocities, so they count in the loads of the next step.
@@ -177,14 +195,17 @@ std::string weighs_failures(const Contents& has) {
   return std::string(has.weighs_joints() ? found_by_moves : "") + (has.ends ? ends_by_moves : "");
 }
 
+std::string notes_holds(const Contents& has) { return has.clutches ? holds_before : ""; }
+
 std::string weighs_bounds(const Contents& has) {
-  if (!has.weighs) return {};
-  const std::string calms =
+  std::string calms =
       has.loads ? fmt::format(calms_repeats, has.cones ? "(cone_of[e] < 0 ? is_loaded(B, e) : T(1) < T(0)) && "
                                                        : "is_loaded(B, e) && ")
                 : "";
-  return fmt::format(sums_bounds, has.repeats() ? "half * s.repeats[e] + " : "", has.ends ? "total[e] + " : "") +
-         (has.repeats() ? fmt::format(notes_repeats, calms) : "");
+  if (has.clutches) calms += fmt::format(settles_clutches, has.loads ? "!is_loaded(B, e) && " : "");
+  const std::string sums =
+      fmt::format(sums_bounds, has.repeats() ? "half * s.repeats[e] + " : "", has.ends ? "total[e] + " : "");
+  return (has.weighs ? sums : "") + (has.repeats() ? fmt::format(notes_repeats, calms) : "");
 }
 
 std::string rattle_weighs(const Contents& has) {
@@ -202,6 +223,12 @@ std::string settles_start_with_loads(const Contents& has) {
                      has.rows ? "s.J, lambda, drawn, " : "", turns_alone(has), corners(has));
 }
 
-std::string repeats_at_start(const Contents& has) { return has.repeats() ? start_repeats : ""; }
+std::string repeats_at_start(const Contents& has) {
+  return has.repeats() ? fmt::format(start_repeats, repeats_of_start(has)) : "";
+}
+
+std::string repeats_of_start(const Contents& has) {
+  return has.clutches ? "mu[e]" : "select(magnitude(B.low[e] * B.high[e]) > T(0), mu[e], T(0))";
+}
 
 }  // namespace cdot::compile

@@ -22,14 +22,17 @@ std::string project_with_impulses();
 std::string settles_impulses(const Contents& has);
 std::string euler_weighs(const Contents& has);
 
-// By RATTLE: the first half, its ends, those of a half that fails, rows with bounds at the end, the end of a step, and
-// the start of a run.
+// By RATTLE: the first half, its ends, those of a half that fails, rows with bounds before their solution at the end
+// and after it, the end of a step, and the start of a run.
 std::string weighs_first_half(const Contents& has);
 std::string weighs_end_changes(const Contents& has);
 std::string weighs_failures(const Contents& has);
+std::string notes_holds(const Contents& has);
 std::string weighs_bounds(const Contents& has);
 std::string rattle_weighs(const Contents& has);
 std::string repeats_at_start(const Contents& has);
+// Impulses of rows with bounds at the start of a run that act in its first half step.
+std::string repeats_of_start(const Contents& has);
 // Rows whose bounds grow with loads: at the end, and at the start of a run.
 std::string settles_end_with_loads(const Contents& has);
 std::string settles_start_with_loads(const Contents& has);

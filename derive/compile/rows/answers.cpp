@@ -156,10 +156,11 @@ void BoundedSystem::output_pulls(std::size_t b, const Values& unit, const Values
   });
 }
 
-// A clutch that drives one way does not repeat its impulse: it could not take back what was too much.
+// A force that may have either sign now and then has one of them is whole.
 BoundWriter::Kick BoundedSystem::half_of(BoundWriter::Kick kick) {
-  const int both = algebra_.function(Fn::abs, {algebra_.times(kick.low, kick.high)});
-  const int share = algebra_.function(Fn::select, {both, algebra_.value(0.5), algebra_.value(1)});
+  const bool one_way = algebra_.is_zero(kick.low) || algebra_.is_zero(kick.high);
+  const int both = algebra_.function(Fn::abs, {algebra_.times(kick.low, kick.high)}), half = algebra_.value(0.5);
+  const int share = one_way ? half : algebra_.function(Fn::select, {both, half, algebra_.value(1)});
   kick.low = algebra_.times(share, kick.low), kick.high = algebra_.times(share, kick.high);
   return kick;
 }

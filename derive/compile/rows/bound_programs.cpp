@@ -129,6 +129,13 @@ bool has_ends(const RowBlocks& blocks, std::size_t bounded) {
   return !prescribes_rate(blocks, bounded) && !blocks.mechanism().bounded[bounded].acts_by_force();
 }
 
+bool drives_one_way(const RowBlocks& blocks, std::size_t bounded, Constants& constants) {
+  if (!prescribes_rate(blocks, bounded)) return false;
+  Algebra algebra(constants);
+  const BoundWriter::Kick kick = BoundWriter(blocks, algebra, bounded).kick(algebra.value(1));
+  return algebra.is_zero(kick.low) || algebra.is_zero(kick.high);
+}
+
 bool is_late_end(const RowBlocks& blocks, std::size_t bounded, Constants& constants) {
   if (!has_ends(blocks, bounded) || !waits(blocks, bounded)) return false;
   Algebra algebra(constants);

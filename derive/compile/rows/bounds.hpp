@@ -105,6 +105,8 @@ class BoundWriter {
 
 // True for a row that prescribes a rate: others hold it where they contradict it.
 bool prescribes_rate(const RowBlocks& blocks, std::size_t bounded);
+// True if its force has one sign in all states.
+bool drives_one_way(const RowBlocks& blocks, std::size_t bounded, Constants& constants);
 // True for a row that begins or ends to act at an event. The input events.acts tells whether it acts.
 bool has_events(const RowBlocks& blocks, std::size_t bounded);
 bool waits(const RowBlocks& blocks, std::size_t bounded);

@@ -108,6 +108,25 @@ TEST(FreeEffects, AFreewheelWithoutALimitDrivesAtOnce) {
   }
 }
 
+// A clutch holds a wheel against a torque that changes: the wheel stays, and where the torque is constant it rests.
+TEST(FreeEffects, AFreewheelHoldsALoadThatChanges) {
+  for (const IntegratorRow& row : integrator_rows) {
+    World<double> world(with(row.integrator));
+    const int wheel = effects::wheel(world, 0.4);
+    world.add_joint({"freewheel", {wheel, world.ground()}, {{"most", {10}}}, {}});
+    for (int n = 0; n < 200; ++n) {
+      world.set_force(wheel, {0, 0, -3 - 2 * std::sin(0.1 * n)});
+      ASSERT_TRUE(world.step(0.01));
+    }
+    EXPECT_NEAR(world.pose(wheel).angle, 0, row.integrator == Integrator::euler ? 1e-9 : 1e-3) << row.name;
+    EXPECT_NEAR(world.velocity(wheel).w, 0, 1e-9) << row.name;
+    for (int n = 0; n < 10; ++n) ASSERT_TRUE(world.step(0.01));
+    const double angle = world.pose(wheel).angle;
+    ASSERT_TRUE(world.step(0.01));
+    EXPECT_NEAR(world.pose(wheel).angle, angle, 1e-14) << row.name;
+  }
+}
+
 // A driven hub drags a wheel along for as long as the hub is faster; a brake stops the hub, and the wheel runs on.
 TEST(FreeEffects, AFreewheelLetsGoWhenItsDriveSlows) {
   constexpr double hub_inertia = 0.3, wheel_inertia = 0.9, torque = 2.4;

@@ -4,8 +4,10 @@
 #include "hauled_off_rk4.hpp"
 #include "one_way_euler.hpp"
 #include "one_way_implicit.hpp"
+#include "one_way_rattle.hpp"
 #include "one_way_rk4.hpp"
 #include "ratchet_implicit.hpp"
+#include "ratchet_rattle.hpp"
 #include "slipping_implicit.hpp"
 #include "slow_turn_implicit.hpp"
 #include "stopped_flight_euler.hpp"
@@ -25,6 +27,12 @@ TEST(CompiledRandom, ABoundMayBeInfinite) {
   cdot::runs_as_the_world<one_way_euler<double>>(one_way, Integrator::euler, 1e-11);
   cdot::runs_as_the_world<one_way_implicit<double>>(one_way, Integrator::implicit, 1e-11);
   cdot::runs_as_the_world<one_way_rk4<double>>(one_way, Integrator::rk4, 1e-11);
+}
+
+// By RATTLE clutches begin a step with a force that they had in the last one.
+TEST(CompiledRandom, ClutchesActInBothHalvesOfAStep) {
+  cdot::runs_as_the_world<one_way_rattle<double>>(room + "one_way.toml", Integrator::rattle, 1e-11);
+  cdot::runs_as_the_world<ratchet_rattle<double>>(room + "ratchet.toml", Integrator::rattle, 1e-11, 0.9, 0.005);
 }
 
 // Friction that stops a body within a step makes its joints do work, which says nothing about a body at rest.
