@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <cdot/spaces.hpp>
 
@@ -81,6 +82,20 @@ void reach_rates(WorldData<S>& world, Island<S>& island, typename S::Scalar t) {
   island.factored = false;
 }
 
+// True if the clutch pushes, and its force is no bound.
+template <class S>
+bool grips(const System<S>& system, int row, const Batch<S>& batch, int i) {
+  return batch.lambda[i] != 0 && system.fixed[row] == System<S>::free;
+}
+
+template <class S>
+void note_grips(Island<S>& island) {
+  System<S>& system = island.at_work();
+  system.each_row([&](int row, Batch<S>& batch, int i) {
+    if (drives_one_way(batch, i)) batch.mode[i] = grips(system, row, batch, i) ? Mode::gripped : Mode::bounded;
+  });
+}
+
 // Rows without C have none for the first half of a step: velocity rows, motors and friction. They repeat their impulses
 // from the second half of the last step. A start from 0 would alternate between 0 and twice the impulse forever. The
 // start is therefore half of their impulse in h.
@@ -98,13 +113,7 @@ void exert_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h
     for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i)
       batch.lambda[i] *= acts ? h / 2 : T(0);
   }
-  System<S>& system = island.at_work();
-  if (island.solver->exact)
-    system.each_row([&](int row, Batch<S>& batch, int i) {
-      const bool holds = drives_one_way(batch, i) && batch.lambda[i] != 0 && system.fixed[row] == System<S>::free;
-      if (batch.mode[i] == Mode::bounded || batch.mode[i] == Mode::gripped)
-        batch.mode[i] = holds ? Mode::gripped : Mode::bounded;
-    });
+  if (island.solver->exact) note_grips(island);
   evaluate_anew(world, island, time);  // restores dC/dt, which gamma replaced
 }
 
@@ -223,21 +232,24 @@ void calm_sticking_rows(Island<S>& island) {
 template <class S>
 bool settle_clutches(Island<S>& island) {
   using T = typename S::Scalar;
-  bool anew = false;
+  bool anew = false, known = false;
   System<S>& system = island.at_work();
-  system.find_excess();
   system.each_row([&](int row, Batch<S>& batch, int i) {
-    if (!drives_one_way(batch, i) || system.broken[row]) return;
     T &end = batch.lambda[i], &start = batch.correction[i];
+    if (!drives_one_way(batch, i) || system.broken[row] || end == 0) return;
+    const bool holds = grips(system, row, batch, i);
+    anew |= start == 0 || (holds && batch.mode[i] != Mode::gripped);
     const T whole = start + end;
-    const bool acts = end != 0, slips = acts && system.fixed[row] != System<S>::free;
-    anew |= acts && (start == 0 || (!slips && batch.mode[i] != Mode::gripped));
-    batch.mode[i] = acts && !slips ? Mode::gripped : Mode::bounded;
-    const T stops = T(std::abs(system.excess(row)) / system.diagonal(row));
-    if (slips) end = std::copysign(std::min(std::abs(end), stops), end);
-    else if (acts) end = whole / 2;
+    if (holds) {
+      end = whole / 2;
+    } else {
+      if (!std::exchange(known, true)) system.find_excess();
+      const T stops = T(std::abs(system.excess(row)) / system.diagonal(row));
+      end = std::copysign(std::min(std::abs(end), stops), end);
+    }
     start = whole - end;
   });
+  note_grips(island);
   return anew;
 }
 
