@@ -124,15 +124,16 @@ void count_rivals(WorldData<S>& world, System<S>& system) {
 
 template <class S>
 void count_rivals(WorldData<S>& world, const Island<S>& island) {
+  const auto joint = [](const Batch<S>& batch, int home) {
+    return batch.joint[static_cast<size_t>(batch.slot_of[static_cast<size_t>(home)])];
+  };
   for (const RivalRows<S>& rows : island.rivals) {
+    const int one = joint(*rows.one, rows.home), other = joint(*rows.other, rows.other_home);
+    if (world.at_once || world.joints[one].broken || world.joints[other].broken) continue;
     if (!is_unlimited(*rows.one, rows.home) || !is_unlimited(*rows.other, rows.other_home)) continue;
     if (!contradict(row_of(world, rows.one, rows.home), row_of(world, rows.other, rows.other_home))) continue;
     if (world.counts->contradicted++ > 0) continue;
-    const auto joint = [](const Batch<S>& batch, int home) {
-      return batch.joint[static_cast<size_t>(batch.slot_of[static_cast<size_t>(home)])];
-    };
-    world.counts->contradicted_joint = joint(*rows.one, rows.home);
-    world.counts->contradicting_joint = joint(*rows.other, rows.other_home);
+    world.counts->contradicted_joint = one, world.counts->contradicting_joint = other;
   }
 }
 

@@ -1,4 +1,5 @@
-// Counts over all islands. All but `retried` and `direct` count only for integrators that choose their steps.
+// Counts over all islands. Those of evaluations, of steps taken and rejected, of events and of steered steps count only
+// for integrators that choose their steps.
 #pragma once
 
 #include <limits>

@@ -128,6 +128,19 @@ TEST(Rivals, AreAClutchAndAMotorThatTurnsAgainstIt) {
   }
 }
 
+// A second axle breaks in the first step, and its motor goes with it: sweeps compare it no more.
+TEST(Rivals, OfSweepsBreakWithTheirJoints) {
+  Wheels wheels(with({Integrator::euler, Solver::iterative}));
+  const int axle = revolute(wheels.world, wheels.world.ground(), wheels.wheel[0], 0, 0, 0, 0);
+  wheels.motor(0, 2);
+  wheels.motor(axle, 1);
+  set_breaking_load(wheels.world, axle, 1e-3);
+  wheels.world.set_force(wheels.wheel[0], {100, 0, 0});
+  const long long at_first = wheels.counts().contradicted;
+  ASSERT_TRUE(wheels.world.broken(axle));
+  EXPECT_EQ(wheels.counts().contradicted, at_first);
+}
+
 TEST(Rivals, AreNoneAtAnEnd) {
   for (const Way& way : all_ways()) {
     Wheels wheels(with(way));
