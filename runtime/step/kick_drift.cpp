@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <cdot/spaces.hpp>
 
@@ -29,9 +28,13 @@ bool has_rows(const Island<S>& island, bool (*are)(const Batch<S>&)) {
                      [&](const Segment<S>& s) { return s.begin < s.end && are(*s.batch); });
 }
 
+// True for a freewheel, a ratchet or a motor that only pushes or only pulls.
 template <class S>
 bool drives_one_way(const Batch<S>& batch, int i) {
-  return acts_by_force(batch) && !batch.law->by_load && (batch.lower[i] == 0 || batch.upper[i] == 0);
+  if (!acts_by_force(batch) || batch.law->by_load) return false;
+  Guard<typename S::Scalar> guard;
+  batch.law->guard(batch, i, &guard);
+  return (guard.lower == 0) != (guard.upper == 0);
 }
 
 // Limits that are met carry the load of friction. Their own impulses are dropped afterwards.
@@ -135,6 +138,8 @@ void bound_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
       if (!acts_at_start(island, batch, i)) continue;
       batch.lower[i] *= T(0.5);  // the other half acts at the start of the next step
       batch.upper[i] *= T(0.5);
+      if (!island.solver->exact || !drives_one_way(batch, i)) continue;
+      (batch.lower[i] == 0 ? batch.lower[i] : batch.upper[i]) = -batch.correction[i];
     }
   }
 }
@@ -232,21 +237,15 @@ void calm_sticking_rows(Island<S>& island) {
 template <class S>
 bool settle_clutches(Island<S>& island) {
   using T = typename S::Scalar;
-  bool anew = false, known = false;
+  bool anew = false;
   System<S>& system = island.at_work();
   system.each_row([&](int row, Batch<S>& batch, int i) {
     T &end = batch.lambda[i], &start = batch.correction[i];
-    if (!drives_one_way(batch, i) || system.broken[row] || end == 0) return;
+    if (!drives_one_way(batch, i) || system.broken[row]) return;
     const bool holds = grips(system, row, batch, i);
-    anew |= start == 0 || (holds && batch.mode[i] != Mode::gripped);
     const T whole = start + end;
-    if (holds) {
-      end = whole / 2;
-    } else {
-      if (!std::exchange(known, true)) system.find_excess();
-      const T stops = T(std::abs(system.excess(row)) / system.diagonal(row));
-      end = std::copysign(std::min(std::abs(end), stops), end);
-    }
+    anew |= end != 0 && (start == 0 || (holds && batch.mode[i] != Mode::gripped));
+    if (holds || whole == 0) end = whole / 2;
     start = whole - end;
   });
   note_grips(island);

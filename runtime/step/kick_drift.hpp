@@ -42,9 +42,9 @@ void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h, boo
 template <class S>
 void calm_sticking_rows(Island<S>& island);
 
-// A clutch that drives one way cannot take back an impulse that it repeats. So one that holds repeats half of its
-// impulse over the last step, if it held before; one that slips repeats its bound, but at most the impulse that stops
-// the slip. Where one has just met or stopped, the next step finds the forces at its start anew: settle_clutches() is
+// A clutch that drives one way may take back at the end of a step what it gave at the start. One that holds repeats
+// half of its impulse over the last step, if it held before; one that slips repeats its bound; one that lets go repeats
+// nothing. Where one has just met or stopped, the next step finds the forces at its start anew: settle_clutches() is
 // true then. Call it after a direct solver. Batch::mode keeps which ones hold.
 template <class S>
 bool settle_clutches(Island<S>& island);

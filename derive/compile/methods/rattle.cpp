@@ -338,7 +338,7 @@ std::string finishing(const Contents& has) {
                       has.looks ? "given, end, " : "", has.rows ? "s.lambda, " : "", has.pulls() ? "s.pull" : "pull",
                       has.bounded ? ", B" : "");
   if (has.bounded) {
-    text += notes_holds(has);
+    text += bounds_of_clutches(has);
     text += has.loads ? settles_end_with_loads(has) : "    settle(B, s.hold, mu);\n";
     text += weighs_bounds(has);
     text += fmt::format(sums_pulls, "next[i] = next[i] + mu[e] * B.g[e][i], ",

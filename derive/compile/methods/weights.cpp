@@ -58,23 +58,27 @@ constexpr const char* notes_repeats = R"(    T repeated[bounded];
 {}      s.repeats[e] = is_rate[e] ? repeated[e] / half : T(0);
     }}
 )";
-constexpr const char* holds_before = R"(    T held_before[bounded];
-    for (int i = 0; i < bounded; ++i) held_before[i] = s.hold[i];
+// As the World does it: bound_rows() and settle_clutches() in runtime/step/kick_drift.cpp.
+constexpr const char* bounds_clutches = R"(    T held_before[bounded];
+    Mask one_way[bounded];
+    for (int e = 0; e < bounded; ++e) {{
+      one_way[e] = T(1) < T(0), held_before[e] = s.hold[e];
+      if (!is_rate[e]) continue;
+      const Mask pulls = magnitude(B.low[e]) > T(0), pushes = magnitude(B.high[e]) > T(0);
+      const T first = half * s.repeats[e];
+      one_way[e] = {}!(pulls && pushes) && (pulls || pushes);
+      B.low[e] = select(one_way[e] && pushes, -first, B.low[e]);
+      B.high[e] = select(one_way[e] && pulls, -first, B.high[e]);
+    }}
 )";
-// As the World does it: settle_clutches() in runtime/step/kick_drift.cpp.
-constexpr const char* settles_clutches = R"(      if (is_rate[e]) {{
-        const Mask acts = {}!(magnitude(B.low[e] * B.high[e]) > T(0)) && magnitude(mu[e]) > T(0);
-        const Mask slips = acts && magnitude(s.hold[e]) > T(0), began = magnitude(s.repeats[e]) > T(0);
+constexpr const char* settles_clutches = R"(      if (is_rate[e]) {
+        const T whole = half * s.repeats[e] + mu[e];
+        const Mask slips = magnitude(s.hold[e]) > T(0), began = magnitude(s.repeats[e]) > T(0);
         const Mask goes_on = began && (slips || !(magnitude(held_before[e]) > T(0)));
-        T excess = -B.c[e];
-        for (int i = 0; i < bounded; ++i) excess = excess + entry(B.S, e, i) * mu[i];
-        const T stops = magnitude(excess) * inverse(B.K[e]);
-        const T least = select(stops < magnitude(mu[e]), stops, magnitude(mu[e]));
-        repeated[e] = select(acts, T(0.5) * (half * s.repeats[e] + mu[e]), repeated[e]);
-        repeated[e] = select(slips, select(mu[e] < T(0), -least, least), repeated[e]);
+        repeated[e] = select(one_way[e] && (!slips || !(magnitude(whole) > T(0))), T(0.5) * whole, repeated[e]);
         T& begins = s.begins[group_of_bound[e]];
-        begins = select(acts && !goes_on, T(1), begins);
-      }}
+        begins = select(one_way[e] && magnitude(mu[e]) > T(0) && !goes_on, T(1), begins);
+      }
 )";
 // Else round-off alternates, and may grow: calm_sticking_rows() in runtime/step/kick_drift.hpp.
 constexpr const char* calms_repeats =
@@ -195,14 +199,16 @@ std::string weighs_failures(const Contents& has) {
   return std::string(has.weighs_joints() ? found_by_moves : "") + (has.ends ? ends_by_moves : "");
 }
 
-std::string notes_holds(const Contents& has) { return has.clutches ? holds_before : ""; }
+std::string bounds_of_clutches(const Contents& has) {
+  return has.clutches ? fmt::format(bounds_clutches, has.loads ? "!is_loaded(B, e) && " : "") : "";
+}
 
 std::string weighs_bounds(const Contents& has) {
   std::string calms =
       has.loads ? fmt::format(calms_repeats, has.cones ? "(cone_of[e] < 0 ? is_loaded(B, e) : T(1) < T(0)) && "
                                                        : "is_loaded(B, e) && ")
                 : "";
-  if (has.clutches) calms += fmt::format(settles_clutches, has.loads ? "!is_loaded(B, e) && " : "");
+  if (has.clutches) calms += settles_clutches;
   const std::string sums =
       fmt::format(sums_bounds, has.repeats() ? "half * s.repeats[e] + " : "", has.ends ? "total[e] + " : "");
   return (has.weighs ? sums : "") + (has.repeats() ? fmt::format(notes_repeats, calms) : "");

@@ -27,7 +27,7 @@ std::string euler_weighs(const Contents& has);
 std::string weighs_first_half(const Contents& has);
 std::string weighs_end_changes(const Contents& has);
 std::string weighs_failures(const Contents& has);
-std::string notes_holds(const Contents& has);
+std::string bounds_of_clutches(const Contents& has);
 std::string weighs_bounds(const Contents& has);
 std::string rattle_weighs(const Contents& has);
 std::string repeats_at_start(const Contents& has);

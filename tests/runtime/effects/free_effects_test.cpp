@@ -127,6 +127,34 @@ TEST(FreeEffects, AFreewheelHoldsALoadThatChanges) {
   }
 }
 
+// A clutch of 13 N m holds a wheel against 12 N m, slips under 20, stops it again under 6, and lets it go at once where
+// the load turns round: angle = -7 t^2/(2 I), its mirror image, and 5 t^2/(2 I). No part of what it gave stays. Where
+// it begins to slip, RATTLE takes half of 12 N m at the start of the step and half of 13 N m at its end.
+TEST(FreeEffects, AFreewheelSlipsStopsAndLetsGo) {
+  constexpr double h = 0.004, I = 0.4;
+  struct Part {
+    double torque, angle, rate;
+  };
+  constexpr Part parts[] = {{-12, 0, 0}, {-20, -0.35, -3.5}, {-6, -0.7, 0}, {-6, -0.7, 0}, {5, -0.45, 2.5}};
+  for (const IntegratorRow& row : integrator_rows) {
+    const double bound = row.integrator == Integrator::euler ? 0.03 : 3e-3;
+    World<double> world(with(row.integrator));
+    const int wheel = effects::wheel(world, I);
+    world.add_joint({"freewheel", {wheel, world.ground()}, {{"most", {13}}}, {}});
+    for (const Part& part : parts) {
+      world.set_force(wheel, {0, 0, part.torque});
+      for (int n = 0; n < 50; ++n) ASSERT_TRUE(world.step(h));
+      EXPECT_NEAR(world.pose(wheel).angle, part.angle, bound) << row.name << " at " << world.time() << " s";
+      EXPECT_NEAR(world.velocity(wheel).w, part.rate, 1.01 * h / (2 * I)) << row.name << " at " << world.time() << " s";
+    }
+    const double angle = world.pose(wheel).angle, rate = world.velocity(wheel).w;
+    ASSERT_TRUE(world.step(h));
+    const double mean =
+        row.integrator == Integrator::euler ? world.velocity(wheel).w : (rate + world.velocity(wheel).w) / 2;
+    EXPECT_NEAR(world.pose(wheel).angle, angle + h * mean, 1e-12) << row.name;
+  }
+}
+
 // A driven hub drags a wheel along for as long as the hub is faster; a brake stops the hub, and the wheel runs on.
 TEST(FreeEffects, AFreewheelLetsGoWhenItsDriveSlows) {
   constexpr double hub_inertia = 0.3, wheel_inertia = 0.9, torque = 2.4;
