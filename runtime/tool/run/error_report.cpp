@@ -37,18 +37,23 @@ std::string trajectory_warning(const Scene& scene, const RunResult& result) {
 }
 
 std::string decision_warning(const Scene& scene, const RunResult& result) {
-  const long long count = result.counts.undecided;
-  if (const NearBreak& near = result.near_break; count == 0 && near.joint >= 0)
+  if (const long long count = result.counts.undecided; count > 0)
+    return fmt::format(
+        "{} blow{} undecided, first by t = {:.6g} s at joint \"{}\": an error as small as that of the steps decides "
+        "whether it stops the bodies there, so the error of the motion after it is not sure",
+        count, count == 1 ? " is" : "s are", result.first_undecided,
+        name_in(scene.joints, static_cast<int>(result.counts.undecided_joint)));
+  if (const BrokenByBlow& blow = result.broken_by_blow; blow.joint >= 0)
+    return fmt::format(
+        "a blow broke joint {} by t = {:.6g} s, which carried {:.2g} % of its strength a step before: equal steps pass "
+        "the whole blow on before the joint breaks, so the motion after it is not sure",
+        joint_name(scene, blow.joint), blow.time, 100 * blow.share_before);
+  if (const NearBreak& near = result.near_break; near.joint >= 0)
     return fmt::format(
         "joint {} is within {:.2g} % of breaking at t = {:.6g} s, and the error of its load is about {:.2g} %: whether "
         "it holds is not sure",
         joint_name(scene, near.joint), 100 * near.distance, near.time, 100 * near.error);
-  if (count == 0) return {};
-  return fmt::format(
-      "{} blow{} undecided, first by t = {:.6g} s at joint \"{}\": an error as small as that of the steps decides "
-      "whether it stops the bodies there, so the error of the motion after it is not sure",
-      count, count == 1 ? " is" : "s are", result.first_undecided,
-      name_in(scene.joints, static_cast<int>(result.counts.undecided_joint)));
+  return {};
 }
 
 std::string contradiction(const Scene& scene, const RunResult& result) {
@@ -64,8 +69,7 @@ std::string contradiction(const Scene& scene, const RunResult& result) {
         joint, time);
   return fmt::format(
       "{} contradict each other by t = {:.6g} s: both have unlimited force, and no motion has the rates of both. "
-      "Likely "
-      "fix: a largest force or torque for one of them, such as `max` of a motor or `most` of a freewheel",
+      "Likely fix: a largest force or torque for one of them, such as `max` of a motor or `most` of a freewheel",
       joint == rival ? fmt::format("two motors of joint {}", joint)
                      : fmt::format("motors of the joints {} and {}", joint, rival),
       time);

@@ -196,12 +196,13 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   result.may_break = !data.bonds.empty();
   RankWatch rank;
   BreakWatch breaks(scene.settings);
+  BlowWatch blows;
   WorstStepWatch<S> worst_step(told_share(scene), steps.count());
   ErrorEstimate<S> error(scene, steps.count());
   for (long long k = 0;; ++k) {
     judge(scene, after, result);
     if (k > 0) rank.look(after.time, world.weakest_row());
-    if (k > 0) breaks.look(world, after.time);
+    if (k > 0) breaks.look(world, after.time), blows.look(world, after.time);
     if (!result.finite) break;
     if (k == 0) worst_step.begin(world, energy, result.balance);
     else worst_step.look(world, energy, k, bool(options.look), result.balance);
@@ -252,7 +253,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   if (std::isnan(result.energy_end)) result.without_energy = effect_without_energy(data);
   rank.end();
   result.rank_losses = rank.found();
-  result.near_break = breaks.found(world);
+  result.near_break = breaks.found(world), result.broken_by_blow = blows.found();
   result.worst_step = worst_step.found();
   error.finish(after, result.steps);
   result.error = error.error();

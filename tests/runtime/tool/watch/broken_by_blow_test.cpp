@@ -1,0 +1,70 @@
+// Joints and ropes that a blow breaks: by equal steps it acts whole before they break, and the run tells.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "runtime/text/files.hpp"
+#include "tests/runtime/tool/followed_advice.hpp"
+#include "tests/runtime/tool/support.hpp"
+
+namespace cdot::test::broken_by_blow_test {
+namespace {
+
+Ran run(const TemporaryFolder& folder, const std::string& scene, const std::string& options) {
+  const std::string file = (folder / "scene.toml").string();
+  text::write_file(file,
+                   "duration = 0.6\nstep = 0.002\n[[body]]\nname = \"rod\"\nmass = 1\nshape = { rod = 1 }\n" + scene);
+  return simulated(file, options);
+}
+
+// A rod falls from level about its end, onto a stop at -0.5 rad. Its pin carries less than 2 m g before.
+std::string rod_on_a_stop(double strength) {
+  return fmt::format(
+      "position = [0.5, 0]\n[[joint]]\nname = \"pin\"\ntype = \"revolute\"\nbodies = [\"world\", \"rod\"]\n"
+      "at = [0, 0]\nbreaking = {}\nangle.limit = {{ lower = -0.5 }}\n",
+      strength);
+}
+
+// A rod falls freely until a rope is taut.
+const std::string rod_on_a_rope =
+    "position = [0, 0]\n[[joint]]\nname = \"rope\"\ntype = \"tearing_rope\"\nbodies = [\"world\", \"rod\"]\n"
+    "pa = [0, 0]\npb = [0, 0]\nl = 0.5\nstrength = 200\n";
+
+std::string warning_of(const Ran& ran) { return ran.summary["decision_warning"]; }
+
+TEST(BrokenByBlow, IsToldByEqualSteps) {
+  const TemporaryFolder folder;
+  for (const std::string method : {"rattle", "implicit", "euler"}) {
+    const std::string options = "--integrator " + method;
+    const std::string pin = warning_of(run(folder, rod_on_a_stop(25), options));
+    EXPECT_EQ(pin.find("a blow broke joint \"pin\" by t = 0."), 0u) << method << ": " << pin;
+    const std::string rope = warning_of(run(folder, rod_on_a_rope, options));
+    EXPECT_EQ(rope.find("a blow broke joint \"rope\" by t = 0.3"), 0u) << method << ": " << rope;
+    EXPECT_NE(rope.find(" s, which carried 0 % of its strength a step before"), rope.npos) << method << ": " << rope;
+  }
+}
+
+// The pin of 8 N breaks under its growing load, long before the stop, and the others locate the blow.
+TEST(BrokenByBlow, IsToldOfNoOtherBreak) {
+  const TemporaryFolder folder;
+  for (const std::string method : {"rattle", "implicit", "euler"}) {
+    const Ran ran = run(folder, rod_on_a_stop(8), "--integrator " + method);
+    EXPECT_EQ(ran.summary["broken_joints"].size(), 1u) << method;
+    EXPECT_EQ(warning_of(ran), "") << method;
+  }
+  for (const std::string method : {"rk4", "dop853", "radau5"}) {
+    const Ran ran = run(folder, rod_on_a_stop(25), "--integrator " + method);
+    EXPECT_EQ(ran.summary["broken_joints"].size(), 1u) << method;
+    EXPECT_EQ(warning_of(ran), "") << method;
+    EXPECT_EQ(warning_of(run(folder, rod_on_a_rope, "--integrator " + method)), "") << method;
+  }
+}
+
+TEST(BrokenByBlow, ComesWithAFixThatWasTried) {
+  const TemporaryFolder folder;
+  const Ran ran = run(folder, rod_on_a_stop(25), "--integrator rattle");
+  const std::string options = ran.summary["advice"]["options"];
+  EXPECT_TRUE(run(folder, rod_on_a_stop(25), "--integrator rattle " + options).silent()) << options;
+}
+
+}  // namespace
+}  // namespace cdot::test::broken_by_blow_test
