@@ -110,46 +110,75 @@ void System<S>::share_contradictions() {
   }
 }
 
-// The part of the way from lambda to lambda - image on which no row passes its bound.
+// The part of the way from lambda to lambda - image on which no row passes its bound, and the row that would; -1: none.
 template <class S>
-typename System<S>::Real System<S>::part_within_bounds(const std::vector<Real>& image) const {
-  Real part = 1;
+typename System<S>::Part System<S>::part_within_bounds(const std::vector<Real>& image) const {
+  Part part{Real(1), -1};
   for (int r = 0; r < rows_; ++r) {
     if (out_[r] || image[r] == Real(0)) continue;
     const Real left = lambda[r] - (image[r] > Real(0) ? lower[r] : upper[r]);  // as large as image if that passes none
-    part = std::min(part, std::max(left / image[r], Real(0)));
+    if (const Real share = std::max(left / image[r], Real(0)); share < part.share) part = {share, r};
   }
   return part;
 }
 
 // lambda - Z y with Z^T Z y = Z^T lambda: the same motion by the least sum of squares, or on the way to it as far as
 // the bounds allow. Loads are shared where joints may break, and where an end holds: by elimination alone the impulse
-// of a rope along a rigid frame would be infinite in poses where the frame without the dropped row is none.
+// of a rope along a rigid frame would be infinite in poses where the frame without the dropped row is none. Returns the
+// row whose bound is met on the way; -1: none.
 template <class S>
-void System<S>::share_redundant_loads(Bounds bounds) {
-  if (dependent_ == 0 || softened_ != Softened::no) return;
+int System<S>::share_redundant_loads(Bounds bounds) {
+  if (dependent_ == 0 || softened_ != Softened::no) return -1;
   bool under_laws = false, holds_ends = false;
   each_row([&](int row, const Batch<S>& batch, int) {
     if (!batch.law || out_[row]) return;
     under_laws = true, holds_ends |= batch.law->error != nullptr;
   });
-  if (!holds_ends && (!shares_loads_ || (bounds == Bounds::unknown && under_laws))) return;
+  if (!holds_ends && (!shares_loads_ || (bounds == Bounds::unknown && under_laws))) return -1;
   auto &rest = shared_[0], &image = shared_[2], &y = shared_[3];
   for (int r = 0; r < rows_; ++r) rest[r] = out_[r] ? Real(0) : lambda[r];
   contract(rest);
   divide_by_null_space(rest, y);
   expand(y, image);
-  const Real part = bounds == Bounds::known ? part_within_bounds(image) : Real(1);
+  const Part part = bounds == Bounds::known ? part_within_bounds(image) : Part{Real(1), -1};
   for (int r = 0; r < rows_; ++r)
-    if (!out_[r]) lambda[r] -= part * image[r];
+    if (!out_[r]) lambda[r] -= part.share * image[r];
+  return part.row;
 }
 
-#define CDOT_INSTANTIATE(S)                                                               \
-  template System<S>::Real System<S>::slight(Real);                                       \
-  template bool System<S>::misses_rows(std::vector<Real>&);                               \
-  template void System<S>::share_contradictions();                                        \
-  template System<S>::Real System<S>::part_within_bounds(const std::vector<Real>&) const; \
-  template void System<S>::share_redundant_loads(Bounds);
+// Frees rows at a bound whose rate is met: the load of a pin may rest on a brake that has not slipped.
+template <class S>
+void System<S>::free_idle_rows() {
+  bool any = false;
+  find_excess();
+  const Real few = slight(largest_b(Of::all_rows));
+  for (int r = 0; r < rows_; ++r) {
+    if (!fixed[r] || broken[r] || lower[r] == upper[r] || std::abs(excess(r)) > few) continue;
+    fixed[r] = free, any = true;
+  }
+  if (any) factor();
+}
+
+// Where something breaks by its load, that must not depend on the order of elimination: rows at a bound whose rate is
+// met have a share, too, and a row that meets its bound stays there while the others go on.
+template <class S>
+void System<S>::share_within_bounds() {
+  if (!shares_loads_ || softened_ != Softened::no) return void(share_redundant_loads(Bounds::known));
+  free_idle_rows();
+  for (int met = share_redundant_loads(Bounds::known); met >= 0; met = share_redundant_loads(Bounds::known)) {
+    const bool low = lambda[met] - lower[met] < upper[met] - lambda[met];
+    fixed[met] = low ? at_lower : at_upper;
+    lambda[met] = low ? lower[met] : upper[met];
+    factor();
+  }
+}
+
+#define CDOT_INSTANTIATE(S)                                 \
+  template System<S>::Real System<S>::slight(Real);         \
+  template bool System<S>::misses_rows(std::vector<Real>&); \
+  template void System<S>::share_contradictions();          \
+  template int System<S>::share_redundant_loads(Bounds);    \
+  template void System<S>::share_within_bounds();
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -268,7 +268,8 @@ template <class S>
 int System<S>::solve_bounded() {
   std::copy(active_set_.begin(), active_set_.end(), fixed.begin());  // start: the active set of the last step
   each_row([&](int r, const Batch<S>& batch, int) {  // beside a given force that is free, a joint's row is redundant
-    if (batch.law && batch.law->force && lower[r] == upper[r]) fixed[r] = at_lower;
+    const bool given = lower[r] == upper[r] && batch.law && (batch.law->force || shares_loads_);
+    if (given) fixed[r] = at_lower;
   });
   for (int r = 0; r < rows_; ++r) {
     if (broken[r]) fixed[r] = free;
@@ -282,7 +283,7 @@ int System<S>::solve_bounded() {
     load_laws();
     dependent = part_and_settle();
   }
-  share_redundant_loads(Bounds::known);
+  share_within_bounds();
   std::copy(fixed.begin(), fixed.end(), active_set_.begin());
   for (int r = 0; r < rows_; ++r) lambda[r] = std::clamp(lambda[r], lower[r], upper[r]);
   return dependent;

@@ -225,8 +225,14 @@ class System {
   bool misses_rate(int row) const;
   void share_contradictions();
   enum class Bounds : char { unknown, known };
-  void share_redundant_loads(Bounds bounds);
-  Real part_within_bounds(const std::vector<Real>& image) const;
+  int share_redundant_loads(Bounds bounds);
+  void free_idle_rows();
+  void share_within_bounds();
+  struct Part {
+    Real share;
+    int row;
+  };
+  Part part_within_bounds(const std::vector<Real>& image) const;
   void divide_by_null_space(std::vector<Real>& rest, std::vector<Real>& y);
   bool drops_rows_by_round_off();
   void soften(Softened how);

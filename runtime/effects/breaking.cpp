@@ -13,14 +13,15 @@ namespace cdot {
 namespace {
 
 // Where several joints of an island carry too much, only the most overloaded one breaks: without it the others may
-// carry less, as two pins that work against each other. The next substep shows whether they still carry too much.
+// carry less, as two pins that work against each other. The next substep shows whether they still carry too much. So it
+// does where a row has ended by its load, as a shear pin.
 template <class S>
 void break_overloaded(WorldData<S>& world, typename S::Scalar h) {
   const double time = double(world.time) + double(h);
   for (std::size_t k = 0; k < world.bonds.size(); ++k) {
     Island<S>& island = world.islands[world.island_of[movable_body(world, world.joints[world.bonds[k].joint])]];
     if (island.asleep || island.flow.locates || island.bonds.front() != static_cast<int>(k)) continue;  // once each
-    if (overloaded_joint(world, island, time, double(h)) < 0) continue;
+    if (island.latched || overloaded_joint(world, island, time, double(h)) < 0) continue;
     island.solver->share(world, island);
     const int joint = overloaded_joint(world, island, time, double(h));
     if (joint < 0) continue;

@@ -180,7 +180,7 @@ bool choose_modes_once(WorldData<S>& world, Island<S>& island, typename S::Scala
     find_resolution(world, island, h);
     find_pressed_ends(world, island);
     if (stop_what_hits(world, island, time, h, blow)) return false;
-    start_motors(world, island);
+    if (start_motors(world, island, time, h)) return false;
     if (offer_bounds(world, island)) {
       decide_by_forces(world, island, time);
       evaluate_anew(world, island, time);

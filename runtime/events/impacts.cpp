@@ -250,6 +250,17 @@ bool is_undecided(WorldData<S>& world, Island<S>& island) {
   return undecided;
 }
 
+// True if the impulses of a blow, which has acted, end a joint or a row.
+template <class S>
+bool breaks_by_blow(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
+  if (!island.flow.locates) return false;
+  const auto lasts = world.settings.local_error > 0 ? typename S::Scalar(impact_time) : h;
+  find_rates(world, island);
+  const bool latched = latch_by_lambda(island, lasts), broken = break_by_lambda(world, island, time, lasts);
+  if (latched || broken) fill_lambda(island, typename S::Scalar(0));  // no forces
+  return latched || broken;
+}
+
 // Counts a blow that is undecided.
 template <class S>
 void judge_blow(WorldData<S>& world, Island<S>& island, const Blow& blow) {
@@ -270,12 +281,7 @@ bool stop_what_hits(WorldData<S>& world, Island<S>& island, typename S::Scalar t
   hold_what_struck(island);
   end_blow(world, island, blow);
   count_impulses(island);
-  if (!island.flow.locates) return false;
-  const auto lasts = world.settings.local_error > 0 ? typename S::Scalar(impact_time) : h;
-  find_rates(world, island);
-  const bool latched = latch_by_lambda(island, lasts), broken = break_by_lambda(world, island, time, lasts);
-  if (latched || broken) fill_lambda(island, typename S::Scalar(0));  // no forces
-  return latched || broken;
+  return breaks_by_blow(world, island, time, h);
 }
 
 // Motors push ten thousand times as hard as the bodies are heavy, and half of that: with them grow the impulses of the
@@ -300,12 +306,13 @@ void find_pressed_ends(WorldData<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void start_motors(WorldData<S>& world, Island<S>& island) {
+bool start_motors(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   find_rates(world, island);
-  if (!lacks_motors(island)) return;
+  if (!lacks_motors(island)) return false;
   const double before = kinetic_energy(world, island);
   strike(world, island);
   book_change(world, Source::motor, kinetic_energy(world, island) - before);
+  return breaks_by_blow(world, island, time, h);
 }
 
 template <class S>
@@ -319,7 +326,7 @@ void end_blow(WorldData<S>& world, const Island<S>& island, Blow& blow) {
 #define CDOT_INSTANTIATE(S)                                                             \
   template bool stop_what_hits(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar, Blow&); \
   template void find_pressed_ends(WorldData<S>&, Island<S>&);                           \
-  template void start_motors(WorldData<S>&, Island<S>&);                                \
+  template bool start_motors(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar);          \
   template void end_blow(WorldData<S>&, const Island<S>&, Blow&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -31,8 +31,8 @@ void end_blow(WorldData<S>& world, const Island<S>& island, Blow& blow);
 template <class S>
 void find_pressed_ends(WorldData<S>& world, Island<S>& island);
 
-// The other such motors that lack their rates reach them by impulses.
+// The other such motors that lack their rates reach them by impulses. True if these end a joint or a row: choose again.
 template <class S>
-void start_motors(WorldData<S>& world, Island<S>& island);
+bool start_motors(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h);
 
 }  // namespace cdot

@@ -72,8 +72,9 @@ void latch_after_substep(WorldData<S>& world, typename S::Scalar h) {
   using T = typename S::Scalar;
   for (const int index : world.awake) {
     Island<S>& island = world.islands[index];
+    island.latched = false;
     if (std::none_of(island.segments.begin(), island.segments.end(), has_events<S>)) continue;
-    const bool any = meet_events(world, island, h);
+    const bool any = island.latched = meet_events(world, island, h);
     const T by = passed_by(island);
     const bool passed = by > foreign<T> * island.scale;
     if (!any && !(island.flow.locates && passed)) continue;
@@ -98,11 +99,26 @@ bool latch_by_lambda(Island<S>& island, typename S::Scalar over) {
 }
 
 template <class S>
+bool ends_by_load(const Island<S>& island) {
+  using T = typename S::Scalar;
+  return std::ranges::any_of(island.segments, [](const Segment<S>& segment) {
+    bool any = false;
+    for (int i = segment.begin; has_events(segment) && i < segment.end; ++i) {
+      T idle[2], loaded[2];
+      segment.batch->law->distance(*segment.batch, i, T(0), T(0), idle);
+      segment.batch->law->distance(*segment.batch, i, T(0), T(1), loaded);
+      any |= idle[1] != loaded[1];
+    }
+    return any;
+  });
+}
+
+template <class S>
 void watch_events(WorldData<S>& world) {
   const auto has_some = [](const auto& batch) { return batch->law && batch->law->distance; };
   auto& hooks = world.after_substep;
   if (std::ranges::any_of(world.batches, has_some) && std::ranges::find(hooks, &latch_after_substep<S>) == hooks.end())
-    hooks.push_back(latch_after_substep<S>);
+    hooks.insert(hooks.begin(), latch_after_substep<S>);  // before joints break, whose loads change
   for (Island<S>& island : world.islands) {
     for (const Segment<S>& segment : island.segments) {
       if (!has_events(segment)) continue;
@@ -117,6 +133,7 @@ void watch_events(WorldData<S>& world) {
 #define CDOT_INSTANTIATE(S)                               \
   template bool latch_by_impulses(Island<S>&, S::Scalar); \
   template bool latch_by_lambda(Island<S>&, S::Scalar);   \
+  template bool ends_by_load(const Island<S>&);           \
   template void watch_events(WorldData<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

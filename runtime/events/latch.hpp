@@ -18,6 +18,10 @@ bool latch_by_impulses(Island<S>& island, typename S::Scalar h);
 template <class S>
 bool latch_by_lambda(Island<S>& island, typename S::Scalar over);
 
+// True if a row of the island acts until it carries too much.
+template <class S>
+bool ends_by_load(const Island<S>& island);
+
 // Lets the World look for events after every substep, if any row has some.
 template <class S>
 void watch_events(WorldData<S>& world);

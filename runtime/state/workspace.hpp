@@ -119,6 +119,7 @@ struct IslandWorkspace {
   typename S::Scalar corrections_in_cones = 0;
   // The source of a joint whose number in time has just passed a kink, until the velocities follow; -1: none.
   int kinked = -1;
+  bool latched = false;                     // an event of a row has happened at the end of this substep
   bool jams = false;                        // no load was found that bounds the forces which it comes from
   const RowSolver<S>* solver = nullptr;     // that of the settings, except in a retry
   bool stiffened = false;                   // linearly implicit step: effective masses include stiffness

@@ -226,7 +226,7 @@ void prepare_topology(WorldData<S>& world) {
     island.solver = &solver_of<S>(world.settings.solver);
     island.stiffened = row_of(world.settings.integrator).stiffens;
     if (world.needs_systems()) build_systems(world, island, at);
-    if (!island.bonds.empty())  // among redundant joints
+    if (!island.bonds.empty() || ends_by_load(island))  // among redundant joints
       for (System<S>* system : {&island.system, &island.rescue}) system->share_loads();
     if (world.needs_systems() && world.settings.drift == Drift::projection) reserve_errors(island);
     list_loads(world, island);

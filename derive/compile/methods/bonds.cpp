@@ -32,7 +32,7 @@ constexpr const char* snap_begins = R"(
 constexpr const char* snap_chooses = R"(    strain($ss.time, s.bonds.load, from);
     for (int k = 0; k < strengths; ++k) {{
       T &far = least[mechanism_of[k]], &which = first[mechanism_of[k]];
-      const auto breaks = s.bonds.holds[joint_of[k]] > T(0) && from[k] <= {0} && from[k] < far;
+      const auto breaks = s.bonds.holds[joint_of[k]] > T(0) && from[k] <= {0} && from[k] < far{4};
       far = select(breaks, from[k], far), which = select(breaks, T(joint_of[k]), which);
     }}
     auto some = T(1) < T(0);
@@ -44,6 +44,19 @@ constexpr const char* snap_chooses = R"(    strain($ss.time, s.bonds.load, from)
     if (!any(some)) return{1};
     for (int k = 0; k < joints; ++k) s.bonds.holds[k] = select(now[k], T(0), s.bonds.holds[k]);
 {2}{3}  }}
+)";
+
+// Rows end first, as pins that shear: without them the joints carry other loads.
+constexpr const char* finds_events = R"(    constexpr int mechanism_of_bound[bounded] = {{{}}};
+    T after[bounded], until[bounded];
+    distances($ss.q, s.time, s.v, s.force, after, until);
+    Mask happens[mechanisms];
+    for (Mask& of_mechanism : happens) of_mechanism = T(1) < T(0);
+    for (int i = 0; i < bounded; ++i) {{
+      const T near = T(single ? 1e-5 : 1e-10);
+      const Mask now = (after[i] <= near && s.events.began[i] < T(1)) || (until[i] <= near && s.events.ended[i] < T(1));
+      happens[mechanism_of_bound[i]] = happens[mechanism_of_bound[i]] || now;
+    }}
 )";
 
 // A step that passes the strength of a joint ends there: runtime/events/bonds.cpp.
@@ -108,6 +121,13 @@ const std::vector<int>& bodies_of(const Mechanism& mechanism, const Bond& bond) 
   if (bond.joint >= 0) return mechanism.joints[static_cast<std::size_t>(bond.joint)].bodies;
   return bond.effect >= 0 ? mechanism.effects[static_cast<std::size_t>(bond.effect)].bodies
                           : mechanism.bounded[static_cast<std::size_t>(bond.bounded)].bodies;
+}
+
+std::vector<int> mechanisms_of_bounds(const Mechanism& mechanism) {
+  const std::vector<int> groups = groups_of(mechanism);
+  std::vector<int> of;
+  for (const Effect& bounded : mechanism.bounded) of.push_back(group_of(groups, bounded.bodies));
+  return of;
 }
 
 // The norm of its rows' forces.
@@ -245,8 +265,10 @@ std::string snap_of(const Mechanism& mechanism, const FirstRows& rows, const Con
   text += fmt::format(
       snap_begins, has.snaps ? "Mask" : "void", parameters + (has.snaps ? ", const T& most" : ""),
       std::string(has.rows ? ", force" : "") + (has.bounded ? ", of_bounds" : "") + (has.bears ? ", borne" : ""));
+  const bool waits = has.forces && !has.snaps;  // by other methods an event has ended the step
+  if (waits) text += fmt::format(finds_events, fmt::join(mechanisms_of_bounds(mechanism), ", "));
   text += fmt::format(snap_chooses, has.snaps ? "most" : "T(0)", has.snaps ? " some" : "", after,
-                      has.snaps ? "    return some;\n" : "");
+                      has.snaps ? "    return some;\n" : "", waits ? " && !happens[mechanism_of[k]]" : "");
   if (has.snaps && !has.modes)
     text += fmt::format(chooses_joints, margins_of_bonds(has), forces_of_state(has),
                         std::string(has.rows ? accelerates_joints : accelerates_freely) +

@@ -64,21 +64,23 @@ constexpr const char* starts_motors = R"(
       stands[e] = some && lacks(G, s.modes, e) && magnitude(G.missing[e]) > T(1e-6) * lacked;
     }
   }
+)";
 
-  // The other motors reach their rates by impulses.
-  static void start_motors(State& s, const Mask (&pressed)[bounded], const Mask (&stands)[bounded]) {
+constexpr const char* reaches_rates = R"(
+  // The other motors reach their rates by impulses.{0}
+  static {1} start_motors(State& s, {2}const Mask (&pressed)[bounded], const Mask (&stands)[bounded]{3}) {{
     Guards G;
     Bounded B;
     T mu[bounded];
     guard($ss.q, s.time, s.v, G);
     Mask now = T(1) < T(0);
     for (int e = 0; e < bounded; ++e) now = now || (lacks(G, s.modes, e) && !stands[e]);
-    if (!any(now)) return;
+{4}    if (!any(now)) return{5};
     find_blow(s, G, pressed, stands, B, mu);
-    for (int e = 0; e < bounded; ++e) {
+    for (int e = 0; e < bounded; ++e) {{
       for (int i = 0; i < bodies; ++i) s.v[i] = choose(now, s.v[i] + mu[e] * B.g[e][i], s.v[i]);
-    }
-  }
+    }}
+{6}  }}
 )";
 
 constexpr const char* stops = R"(
@@ -115,15 +117,15 @@ constexpr const char* yields = R"(    State yields = s;
       yields.modes.force[e] = mu[e] / h;
 {1}    }}
     Mask ended = T(1) < T(0);
-{2}    ended = ended && hits;
+{2}    ended = ended && {3};
     for (T& of_row : yields.modes.force) of_row = T(0);
     replace(s, yields, ended);
     return ended;
 )";
-constexpr const char* weighs_blow = R"(    for (int k = 0; k < joints; ++k) {
+constexpr const char* weighs_blow = R"(    for (int k = 0; k < joints; ++k) {{
       T& most = yields.bonds.struck[k];
-      most = select(hits, larger(most, yields.bonds.load[k]), most), s.bonds.struck[k] = most;
-    }
+      most = select({}, larger(most, yields.bonds.load[k]), most), s.bonds.struck[k] = most;
+    }}
 )";
 constexpr const char* blow_of_rows = "    T blow[rows];\n    for (T& of_row : blow) of_row = T(0);\n";
 constexpr const char* blow_of_effects =
@@ -138,8 +140,8 @@ constexpr const char* settles_impact = R"(    T load[bounded];
     {}settle_loads($ss.q, s.time, {}B, mu, load, solve);
 )";
 constexpr const char* unless_it_slips = " && (!is_loaded(B, e) || (B.low[e] < mu[e] && mu[e] < B.high[e]))";
-// The end of stop_what_hits(), where loads may end something.
-std::string yields_of(const Contents& has) {
+// The end of a blow in some lanes, where loads may end something.
+std::string yields_of(const Contents& has, const char* lanes) {
   if (!yields_to_loads(has)) return "";
   const bool weighs_rows = has.snaps && has.rows;
   std::string ends = has.forces ? "    ended = latches(yields);\n" : "";
@@ -147,8 +149,16 @@ std::string yields_of(const Contents& has) {
     ends += fmt::format("{}    ended = snap(yields, {}yields.modes.force, {}{}) || ended;\n",
                         has.bears ? blow_of_effects : "", weighs_rows ? "blow, " : "", has.bears ? "unmoved, " : "",
                         near_event) +
-            weighs_blow;
-  return fmt::format(yields, weighs_rows ? blow_of_rows : "", weighs_rows ? adds_blow : "", ends);
+            fmt::format(weighs_blow, lanes);
+  return fmt::format(yields, weighs_rows ? blow_of_rows : "", weighs_rows ? adds_blow : "", ends, lanes);
+}
+
+std::string rates_of_motors(const Contents& has) {
+  const bool may_end = yields_to_loads(has);
+  const auto if_ends = [&](const char* text) { return may_end ? text : ""; };
+  return fmt::format(reaches_rates, if_ends(" Returns the lanes in which that ends a row or a joint."),
+                     may_end ? "Mask" : "void", if_ends("const T& h, "), if_ends(", const Mask& chooses_anew"),
+                     if_ends("    now = now && !chooses_anew;\n"), if_ends(" now"), yields_of(has, "now"));
 }
 
 }  // namespace
@@ -169,8 +179,8 @@ std::string stops_of(const Contents& has) {
                      if_strong("const Mask (&pressed)[bounded], const Mask (&out)[bounded], "),
                      if_strong("!out[i] && ("), if_strong(")"), has.strong ? bounds_beside_motors : bounds_of_blow,
                      if_strong(", const T& softness = T(usual_softness)"), if_strong(", softness")) +
-         if_strong(starts_motors) +
-         fmt::format(stops, has.loads ? unless_it_slips : "", yields_of(has), has.events ? latches_close : "",
+         if_strong(starts_motors) + (has.strong ? rates_of_motors(has) : "") +
+         fmt::format(stops, has.loads ? unless_it_slips : "", yields_of(has, "hits"), has.events ? latches_close : "",
                      has.events ? " || closes" : "", may_end ? "Mask" : "void",
                      may_end ? "\n  // Returns the lanes in which it ends a row or a joint by its load." : "",
                      may_end ? "const T& h, " : "", may_end ? " hits" : "", if_strong(pressed_and_standing),

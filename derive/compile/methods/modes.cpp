@@ -163,7 +163,7 @@ constexpr const char* chooses = R"(
     fall($ss.q, s.time, s.v, a);
     raise_resolutions(s, a, h);
     Mask stopped[bounded];
-{7}{5}{8}    decide(s, {9}stopped);
+{7}{5}    decide(s, {8}stopped);
     project(s);
     pull($ss.q, s.time, s.v, {0});
     raise_resolutions(s, s.a, h);
@@ -174,7 +174,8 @@ constexpr const char* chooses = R"(
 )";
 
 constexpr const char* stops_and_keeps =
-    "    const Mask ended = stop_what_hits(s, h, {}stopped);\n    const State struck = s;\n";
+    "    {}Mask ended = stop_what_hits(s, h, {}stopped);\n{}    const State struck = s;\n";
+constexpr const char* starts_and_ends = "    ended = start_motors(s, h, pressed, stands, ended) || ended;\n";
 // Forces may make events happen, as of a pin that is too weak: then the modes are others.
 constexpr const char* latches = R"(
   // True in lanes where an event happens.
@@ -285,16 +286,23 @@ std::string pull_of(const Contents& has) {
                      has.cones ? "" : "    T force[bounded];\n", at_bound);
 }
 
+// Blows of ends that are met, then those of motors that start.
+std::string stops(const Contents& has) {
+  const char* const known = has.strong ? "pressed, stands, " : "";
+  if (yields_to_loads(has))
+    return fmt::format(stops_and_keeps, has.strong ? "" : "const ", known, has.strong ? starts_and_ends : "");
+  return fmt::format("    stop_what_hits(s, {}stopped);\n", known) +
+         (has.strong ? "    start_motors(s, pressed, stands);\n" : "");
+}
+
 // Where forces of a choice call for another one.
 std::string choices_of(const Contents& has) {
   const bool again = yields_to_loads(has);
-  std::string text = fmt::format(
-      chooses, arguments_of_pull(has), has.events ? "    latch(s);\n" : "", again ? "choose_once" : "choose_modes",
-      again ? " Not in lanes where a blow ended something." : "", again ? "Mask" : "void",
-      fmt::format(fmt::runtime(again ? stops_and_keeps : "    stop_what_hits(s, {}stopped);\n"),
-                  has.strong ? "pressed, stands, " : ""),
-      again ? "    replace(s, struck, ended);\n    return ended;\n" : "", has.strong ? finds_pressed : "",
-      has.strong ? "    start_motors(s, pressed, stands);\n" : "", has.strong ? "pressed, stands, " : "");
+  std::string text = fmt::format(chooses, arguments_of_pull(has), has.events ? "    latch(s);\n" : "",
+                                 again ? "choose_once" : "choose_modes",
+                                 again ? " Not in lanes where a blow ended something." : "", again ? "Mask" : "void",
+                                 stops(has), again ? "    replace(s, struck, ended);\n    return ended;\n" : "",
+                                 has.strong ? finds_pressed : "", has.strong ? "pressed, stands, " : "");
   if (!again) return text;
   const auto snaps = [&](const char* unless) {
     return fmt::format("snap(s, {}, select({}, T(-1e30), {}))", forces_of_state(has), unless, near_event);

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/events/impacts.hpp"
+
 namespace cdot {
 namespace {
 
@@ -43,11 +45,16 @@ std::string decision_warning(const Scene& scene, const RunResult& result) {
         "whether it stops the bodies there, so the error of the motion after it is not sure",
         count, count == 1 ? " is" : "s are", result.first_undecided,
         name_in(scene.joints, static_cast<int>(result.counts.undecided_joint)));
-  if (const BrokenByBlow& blow = result.broken_by_blow; blow.joint >= 0)
+  if (const BlowOnJoint& blow = result.blow; blow.joint >= 0 && blow.held)
     return fmt::format(
-        "a blow broke joint {} by t = {:.6g} s, which carried {:.2g} % of its strength a step before: equal steps pass "
-        "the whole blow on before the joint breaks, so the motion after it is not sure",
-        joint_name(scene, blow.joint), blow.time, 100 * blow.share_before);
+        "joint {} held a blow by t = {:.6g} s, which is {:.3g} % of its strength where it lasts {:g} ms, as it does "
+        "where it is located. In equal steps of {:.3g} ms its load is less: whether the joint holds is not sure",
+        joint_name(scene, blow.joint), blow.time, 100 * blow.share, 1e3 * impact_time, 1e3 * scene.step);
+  else if (blow.joint >= 0)
+    return fmt::format(
+        "a blow broke joint {} by t = {:.6g} s, which carried {:.2g} % of its strength a step before: equal steps take "
+        "a blow in parts, and lose the rest once a joint breaks, so the motion after it is not sure",
+        joint_name(scene, blow.joint), blow.time, 100 * blow.share);
   if (const NearBreak& near = result.near_break; near.joint >= 0)
     return fmt::format(
         "joint {} is within {:.2g} % of breaking at t = {:.6g} s, and the error of its load is about {:.2g} %: whether "

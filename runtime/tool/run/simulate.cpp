@@ -253,7 +253,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   if (std::isnan(result.energy_end)) result.without_energy = effect_without_energy(data);
   rank.end();
   result.rank_losses = rank.found();
-  result.near_break = breaks.found(world), result.broken_by_blow = blows.found();
+  result.near_break = breaks.found(world), result.blow = blows.found();
   result.worst_step = worst_step.found();
   error.finish(after, result.steps);
   result.error = error.error();

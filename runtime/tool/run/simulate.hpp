@@ -15,7 +15,7 @@
 #include "runtime/tool/run/frame.hpp"
 #include "runtime/tool/run/process.hpp"
 #include "runtime/tool/scene/scene.hpp"
-#include "runtime/tool/watch/broken_by_blow.hpp"
+#include "runtime/tool/watch/blow_watch.hpp"
 #include "runtime/tool/watch/near_break.hpp"
 #include "runtime/tool/watch/rank_watch.hpp"
 #include "runtime/tool/watch/worst.hpp"
@@ -95,7 +95,7 @@ struct RunResult {
   double first_rescue = -1;  // [s] end of the step that an implicit method first had to finish; below 0: none
   LargestForce at_rescue;    // of a joint, there
   NearBreak near_break;
-  BrokenByBlow broken_by_blow;
+  BlowOnJoint blow;
   bool may_break = false;          // joints may, by their loads
   double first_undecided = -1;     // [s] end of the step in which a blow was first undecided; below 0: none
   double first_contradicted = -1;  // [s] the same of motors that contradict each other

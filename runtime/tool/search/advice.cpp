@@ -221,6 +221,7 @@ std::optional<TriedFix> find_advice(const Scene& scene, const RunOptions& option
   for (const Candidate& candidate : candidates) {
     const std::optional<Scene> changed = changed_by(candidate, scene, advice.until);
     if (!changed || std::ranges::any_of(run, std::bind_front(run_alike, *changed))) continue;
+    if (result.blow.joint >= 0 && changed->settings.local_error == 0) continue;  // by equal steps it would be as unsure
     const double most = std::min(most_work - advice.work, most_work_of_a_trial);
     if (!chooses_method(*changed) && work_of_steps(*changed) > most) continue;
     if (!(most > 0)) break;

@@ -16,6 +16,8 @@ constexpr double errors_of_loads = 1e4;
 
 }  // namespace
 
+double share_of_strength(double distance) { return std::isinf(distance) ? distance : (1 - distance) / (1 + distance); }
+
 // Equal steps know the mean of a load. Within a step it may differ from that by as much as from one step to the next.
 template <class S>
 void BreakWatch::look(BasicWorld<S>& world, double time) {
@@ -23,12 +25,12 @@ void BreakWatch::look(BasicWorld<S>& world, double time) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   before_.resize(data.bonds.size(), unknown), nearest_.resize(data.bonds.size());
   for (std::size_t k = 0; k < data.bonds.size(); ++k) {
-    const double distance = distance_from_break(data, data.bonds[k], time);
-    const double error = local_error_ > 0 ? errors_of_loads * local_error_ : std::abs(distance - before_[k]);
-    const NearBreak now{data.bonds[k].joint, std::max(0.0, distance), error, time};
+    const double load = share_of_strength(distance_from_break(data, data.bonds[k], time));
+    const double error = local_error_ > 0 ? errors_of_loads * local_error_ : std::abs(load - before_[k]);
+    const NearBreak now{data.bonds[k].joint, std::max(0.0, 1 - load), error, time};
     const NearBreak& most = nearest_[k];
-    if (distance < error && (most.joint < 0 || now.share() > most.share())) nearest_[k] = now;
-    before_[k] = distance;
+    if (std::isfinite(load) && 1 - load < error && (most.joint < 0 || now.share() > most.share())) nearest_[k] = now;
+    before_[k] = load;
   }
 }
 

@@ -12,10 +12,14 @@ namespace cdot {
 
 struct NearBreak {
   int joint = -1;                  // -1: none
-  double distance = 0, error = 0;  // from the end of its strength, as a share of it
+  double distance = 0, error = 0;  // of the load from the strength, as a share of it
   double time = 0;                 // [s], of the step's end
   double share() const { return error / distance; }
 };
+
+// The load of a joint or a row as a share of its strength. Its distance from breaking is (strength - load) / (strength
+// + load); infinite for a joint that is broken.
+double share_of_strength(double distance);
 
 class BreakWatch {
  public:
@@ -29,7 +33,7 @@ class BreakWatch {
 
  private:
   double local_error_;
-  std::vector<double> before_;      // distance after the last step, by bond
+  std::vector<double> before_;      // load after the last step, by bond
   std::vector<NearBreak> nearest_;  // by bond
 };
 

@@ -8,6 +8,10 @@
 #include "one_way_rk4.hpp"
 #include "ratchet_implicit.hpp"
 #include "ratchet_rattle.hpp"
+#include "sheared_euler.hpp"
+#include "sheared_implicit.hpp"
+#include "sheared_rattle.hpp"
+#include "sheared_rk4.hpp"
 #include "slipping_implicit.hpp"
 #include "slow_turn_implicit.hpp"
 #include "stopped_flight_euler.hpp"
@@ -33,6 +37,14 @@ TEST(CompiledRandom, ABoundMayBeInfinite) {
 TEST(CompiledRandom, ClutchesActInBothHalvesOfAStep) {
   cdot::runs_as_the_world<one_way_rattle<double>>(room + "one_way.toml", Integrator::rattle, 1e-11);
   cdot::runs_as_the_world<ratchet_rattle<double>>(room + "ratchet.toml", Integrator::rattle, 1e-11, 0.9, 0.005);
+}
+
+// A pin shears before the hinge breaks, and a motor that starts at once shears another one.
+TEST(CompiledRandom, PinsShearBeforeJointsBreak) {
+  cdot::runs_as_the_world<sheared_euler<double>>(room + "sheared.toml", Integrator::euler, 1e-11, 0.3);
+  cdot::runs_as_the_world<sheared_implicit<double>>(room + "sheared.toml", Integrator::implicit, 1e-11, 0.3);
+  cdot::runs_as_the_world<sheared_rattle<double>>(room + "sheared.toml", Integrator::rattle, 1e-11, 0.3);
+  cdot::runs_as_the_world<sheared_rk4<double>>(room + "sheared.toml", Integrator::rk4, 1e-11, 0.3);
 }
 
 // Friction that stops a body within a step makes its joints do work, which says nothing about a body at rest.

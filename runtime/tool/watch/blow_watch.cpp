@@ -1,4 +1,4 @@
-#include "runtime/tool/watch/broken_by_blow.hpp"
+#include "runtime/tool/watch/blow_watch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,14 +6,18 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/events/bonds.hpp"
+#include "runtime/events/impacts.hpp"
 #include "runtime/events/latch.hpp"
 #include "runtime/solve/direct.hpp"
+#include "runtime/tool/watch/near_break.hpp"
 
 namespace cdot {
 namespace {
 
 // Without the blow a load grows by at most so many times as much as in the step before.
 constexpr double usual_growth = 2;
+
+constexpr double broken = std::numeric_limits<double>::infinity();
 
 template <class S>
 bool tears(const Batch<S>& batch) {
@@ -26,6 +30,12 @@ double distance_from_end(const Batch<S>& batch, int row, typename S::Scalar forc
   typename S::Scalar from[2];
   batch.law->distance(batch, row, batch.rate[row], force, from);
   return double(from[1]);
+}
+
+// The mean over the last step.
+template <class S>
+double force_of(const WorldData<S>& world, const Batch<S>& batch, int i) {
+  return (double(batch.lambda[i]) + double(batch.correction[i])) / world.last_step;
 }
 
 template <class S>
@@ -58,7 +68,7 @@ void BlowWatch::find_struck_islands(const WorldData<S>& world) {
   pressed_.resize(world.batches.size());
   for (std::size_t k = 0; k < world.batches.size(); ++k) {
     const Batch<S>& batch = *world.batches[k];
-    if (!has_ends(batch)) continue;
+    if (!batch.law || !batch.law->guard) continue;
     const int rows = batch.ops->rows;
     each_kept<S, char>(batch, pressed_[k], rows, 0, [&](int slot, char* before) {
       for (int r = 0; r < rows; ++r) {
@@ -78,9 +88,17 @@ void BlowWatch::look_at_bonds(const WorldData<S>& world, double time) {
     const Bond& bond = world.bonds[k];
     const int island = island_of_joint(world, bond.joint);
     if (world.islands[island].flow.locates) continue;
-    const bool broken = world.joints[bond.joint].broken;
-    if (broken && struck_[static_cast<std::size_t>(island)]) note(bond.joint, of_bonds_[k], time);
-    of_bonds_[k].add(distance_from_break(world, bond, time));
+    const double share = share_of_strength(distance_from_break(world, bond, time));
+    const bool struck = struck_[static_cast<std::size_t>(island)];
+    if (share == broken && struck) note_break(bond.joint, of_bonds_[k], time);
+    Forces forces{};
+    const Place& place = world.joints[bond.joint].places[0];
+    const Batch<S>& batch = *world.batches[place.batch];
+    for (int r = 0; r < batch.ops->rows; ++r)
+      forces[static_cast<std::size_t>(r)] = force_of(world, batch, slot_of(world, place) * batch.ops->rows + r);
+    of_bonds_[k].add(forces, share, struck);
+    const double load = of_bonds_[k].of_blow(world.last_step);
+    note_hold(bond.joint, share_of_strength(bond.distance(bond.parameters.data(), time, load)), time);
   }
 }
 
@@ -91,22 +109,48 @@ void BlowWatch::look_at_rows(const WorldData<S>& world, double time) {
   for (std::size_t k = 0; k < world.batches.size(); ++k) {
     const Batch<S>& batch = *world.batches[k];
     if (!tears(batch)) continue;
-    each_kept<S, Distances>(batch, of_rows_[k], 1, {}, [&](int slot, Distances* before) {
+    each_kept<S, Loads>(batch, of_rows_[k], 1, {}, [&](int slot, Loads* loads) {
       const int island = island_of_joint(world, batch.joint[slot]);
-      if (world.islands[island].flow.locates) return;
+      const bool struck = struck_[static_cast<std::size_t>(island)];
+      const auto share_of = [&](double load) { return share_of_strength(distance_from_end(batch, slot, T(load))); };
+      if (world.islands[island].flow.locates || !(share_of(0) < 1)) return;  // ends by other things than its load
       const bool torn = (static_cast<int>(batch.happened[slot]) & static_cast<int>(Event::ended)) != 0;
-      if (torn && struck_[static_cast<std::size_t>(island)] && distance_from_end(batch, slot, T(0)) > at_event<T>)
-        note(batch.joint[slot], *before, time);
-      const T impulse = batch.lambda[slot] + batch.correction[slot];
-      before->add(torn ? Distances::unknown : distance_from_end(batch, slot, impulse / T(world.last_step)));
+      if (torn && struck) note_break(batch.joint[slot], *loads, time);
+      const double force = force_of(world, batch, slot);
+      loads->add({force}, torn ? broken : share_of(force), struck);
+      note_hold(batch.joint[slot], share_of(loads->of_blow(world.last_step)), time);
     });
   }
 }
 
-// Once it is broken, both distances or one of them are infinite or unknown, and so is their difference.
-void BlowWatch::note(int joint, const Distances& before, double time) {
-  const double without_blow = before.last - usual_growth * std::abs(before.last - before.last_but_one);
-  if (found_.joint < 0 && without_blow > 0) found_ = {joint, 1 - before.last, time};
+void BlowWatch::note_break(int joint, const Loads& loads, double time) {
+  if (found_.joint < 0 && loads.without_blow() < 1) found_ = {joint, false, loads.share[0], time};
+}
+
+void BlowWatch::note_hold(int joint, double share, double time) {
+  if (found_.joint < 0 && share >= 1) found_ = {joint, true, share, time};
+}
+
+void BlowWatch::Loads::add(const Forces& now, double share_now, bool struck) {
+  std::shift_right(forces.begin(), forces.end(), 1);
+  forces[0] = now, share = {share_now, share[0]};
+  since_blow = struck ? 0 : since_blow + 1;
+}
+
+// Infinite or unknown once it is broken, and in the first two steps.
+double BlowWatch::Loads::without_blow() const { return share[0] + usual_growth * std::abs(share[0] - share[1]); }
+
+// By the impulses of two steps beyond the forces before and afterwards.
+double BlowWatch::Loads::of_blow(double h) const {
+  if (since_blow != 2 || !std::isfinite(share[0])) return 0;
+  double square = 0;
+  for (std::size_t r = 0; r < forces[0].size(); ++r) {
+    const auto [least, most] = std::minmax(forces[0][r], forces[3][r]);
+    double impulse = 0;
+    for (const std::size_t step : {1, 2}) impulse += h * (forces[step][r] - std::clamp(forces[step][r], least, most));
+    square += impulse * impulse;
+  }
+  return std::sqrt(square) / impact_time;
 }
 
 #define CDOT_INSTANTIATE(S) template void BlowWatch::look(BasicWorld<S>&, double);
