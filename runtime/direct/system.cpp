@@ -268,8 +268,7 @@ template <class S>
 int System<S>::solve_bounded() {
   std::copy(active_set_.begin(), active_set_.end(), fixed.begin());  // start: the active set of the last step
   each_row([&](int r, const Batch<S>& batch, int) {  // beside a given force that is free, a joint's row is redundant
-    const bool given = lower[r] == upper[r] && batch.law && (batch.law->force || shares_loads_);
-    if (given) fixed[r] = at_lower;
+    if (batch.law && batch.law->force && lower[r] == upper[r]) fixed[r] = at_lower;
   });
   for (int r = 0; r < rows_; ++r) {
     if (broken[r]) fixed[r] = free;

@@ -11,15 +11,21 @@ namespace {
 using effects::wheel;
 using effects::with;
 
-// The turn of a wheel under 24.525 N m that brakes and a pin hold. With `beside`, other rows that do not act.
-double turned(Integrator integrator, const std::vector<double>& brakes, double strength, bool beside) {
+// The turn of a wheel under 24.525 N m that brakes and a pin hold, the pin before them or after; with `beside`, other
+// rows that do not act.
+struct Order {
+  bool pin_first, beside;
+};
+double turned(Integrator integrator, const std::vector<double>& brakes, double strength, Order order) {
   World<double> world(with(integrator));
   const int body = world.add_body({.mass = 1, .inertia = 1});
   world.set_force(body, {0, 0, -24.525});
   const int hinge = revolute(world, world.ground(), body, 0, 0, 0, 0);
+  const SpecEffect pin{"shear_pin", {{"strength", {strength}}}};
+  if (order.pin_first) add_effect(world, hinge, "angle", pin);
   for (const double torque : brakes) add_effect(world, hinge, "angle", {"brake", {{"torque", {torque}}}});
-  add_effect(world, hinge, "angle", {"shear_pin", {{"strength", {strength}}}});
-  if (beside) world.add_joint({"backlash", {world.ground(), body}, {{"play", {0.5}}}, {}});
+  if (!order.pin_first) add_effect(world, hinge, "angle", pin);
+  if (order.beside) world.add_joint({"backlash", {world.ground(), body}, {{"play", {0.5}}}, {}});
   for (int k = 0; k < 20; ++k) EXPECT_TRUE(world.step(0.005));
   return world.pose(body).angle;
 }
@@ -28,11 +34,13 @@ double turned(Integrator integrator, const std::vector<double>& brakes, double s
 TEST(SharedLoads, BrakesBesideAPinGiveNoMoreThanTheyHave) {
   for (const IntegratorRow& row : integrator_rows)
     for (const std::vector<double>& brakes : {std::vector{4.0}, std::vector{4.0, 7.0}})
-      for (const bool beside : {false, true}) {
+      for (const Order order : {Order{false, false}, {false, true}, {true, false}, {true, true}}) {
         const double rest = 24.525 - std::accumulate(brakes.begin(), brakes.end(), 0.0);
-        const std::string what = fmt::format("{}, {} brakes{}", row.name, brakes.size(), beside ? ", beside play" : "");
-        EXPECT_LT(turned(row.integrator, brakes, rest - 0.02, beside), -0.06) << what;
-        EXPECT_NEAR(turned(row.integrator, brakes, rest + 0.02, beside), 0, 1e-12) << what;
+        const std::string what =
+            fmt::format("{}, {} brakes{}{}", row.name, brakes.size(), order.pin_first ? " after the pin" : "",
+                        order.beside ? ", beside play" : "");
+        EXPECT_LT(turned(row.integrator, brakes, rest - 0.02, order), -0.06) << what;
+        EXPECT_NEAR(turned(row.integrator, brakes, rest + 0.02, order), 0, 1e-12) << what;
       }
 }
 
