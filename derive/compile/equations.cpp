@@ -156,11 +156,10 @@ class EquationWriter {
 
   void list_groups() {
     const std::vector<int> all = groups_of(mechanism_);
-    std::vector<int> of_body, of_row, of_bound;
+    std::vector<int> of_body, of_row;
     std::ranges::copy_if(all, std::back_inserter(of_body), [](int group) { return group >= 0; });
     for (const RowBlock& block : system().blocks())
       of_row.insert(of_row.end(), block.rows->count(), group_of(all, *block.bodies));
-    for (const Effect& effect : mechanism_.bounded) of_bound.push_back(group_of(all, effect.bodies));
     out_.groups = 1 + *std::ranges::max_element(of_body);
     out_.group_lists = fmt::format("  static constexpr int groups = {};  // mechanisms\n", out_.groups);
     const auto list = [&](const char* name, const std::vector<int>& groups) {
@@ -168,7 +167,7 @@ class EquationWriter {
         out_.group_lists +=
             fmt::format("  static constexpr int group_of_{}[] = {{{}}};\n", name, fmt::join(groups, ", "));
     };
-    list("body", of_body), list("row", of_row), list("bound", of_bound);
+    list("body", of_body), list("row", of_row), list("bound", groups_of_bounds(mechanism_));
   }
 
   void write_bonds() {

@@ -163,6 +163,14 @@ std::string euler(const Mechanism& mechanism, const Contents& has) {
   return text + fmt::format("    return {};\n  }}\n", has.closes() ? "s.residual" : "T(0)");
 }
 
+std::string text_of_step(const Mechanism& mechanism, const Contents& has) {
+  if (mechanism.method == Method::euler) return euler(mechanism, has);
+  if (mechanism.method == Method::rattle) return rattle(mechanism.tolerance, has);
+  if (mechanism.method == Method::implicit) return implicit(mechanism, has);
+  if (mechanism.method == Method::radau5) return radau(mechanism, has);
+  return runge_kutta(mechanism.method, has, slope_size(mechanism, has.apart).rates <= few_rates);
+}
+
 }  // namespace
 
 Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
@@ -373,17 +381,6 @@ std::string begin_of(Method method, const Contents& has) {
   if (has.exerts) text += "    for (T& of_group : s.begins) of_group = T(1);\n";
   return text + "  }\n";
 }
-
-namespace {
-std::string text_of_step(const Mechanism& mechanism, const Contents& has) {
-  if (mechanism.method == Method::euler) return euler(mechanism, has);
-  if (mechanism.method == Method::rattle) return rattle(mechanism.tolerance, has);
-  if (mechanism.method == Method::implicit) return implicit(mechanism, has);
-  if (mechanism.method == Method::radau5) return radau(mechanism, has);
-  return runge_kutta(mechanism.method, has, slope_size(mechanism, has.apart).rates <= few_rates);
-}
-
-}  // namespace
 
 std::string step_of(const Mechanism& mechanism, const Contents& has) {
   std::string text = text_of_step(mechanism, has);

@@ -1,6 +1,7 @@
 #include "runtime/events/latch.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <cdot/spaces.hpp>
 
@@ -107,7 +108,7 @@ bool ends_by_load(const Island<S>& island) {
       T idle[2], loaded[2];
       segment.batch->law->distance(*segment.batch, i, T(0), T(0), idle);
       segment.batch->law->distance(*segment.batch, i, T(0), T(1), loaded);
-      any |= idle[1] != loaded[1];
+      any |= std::abs(loaded[1] - idle[1]) > T(0);  // where a time is unlimited, both are NaN
     }
     return any;
   });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "derive/compile/methods/events.hpp"
 #include "derive/compile/scene/groups.hpp"
 
 namespace cdot::compile {
@@ -47,15 +48,12 @@ constexpr const char* snap_chooses = R"(    strain($ss.time, s.bonds.load, from)
 )";
 
 // Rows end first, as pins that shear: without them the joints carry other loads.
-constexpr const char* finds_events = R"(    constexpr int mechanism_of_bound[bounded] = {{{}}};
-    T after[bounded], until[bounded];
-    distances($ss.q, s.time, s.v, s.force, after, until);
-    Mask happens[mechanisms];
+constexpr const char* finds_events = R"(    constexpr int mechanism_of_bound[bounded] = {{{0}}};
+{1}    Mask happens[mechanisms];
     for (Mask& of_mechanism : happens) of_mechanism = T(1) < T(0);
     for (int i = 0; i < bounded; ++i) {{
-      const T near = T(single ? 1e-5 : 1e-10);
-      const Mask now = (after[i] <= near && s.events.began[i] < T(1)) || (until[i] <= near && s.events.ended[i] < T(1));
-      happens[mechanism_of_bound[i]] = happens[mechanism_of_bound[i]] || now;
+      const T &began = s.events.began[i], &ended = s.events.ended[i];
+{2}      happens[mechanism_of_bound[i]] = happens[mechanism_of_bound[i]] || begins_now || ends_now;
     }}
 )";
 
@@ -121,13 +119,6 @@ const std::vector<int>& bodies_of(const Mechanism& mechanism, const Bond& bond) 
   if (bond.joint >= 0) return mechanism.joints[static_cast<std::size_t>(bond.joint)].bodies;
   return bond.effect >= 0 ? mechanism.effects[static_cast<std::size_t>(bond.effect)].bodies
                           : mechanism.bounded[static_cast<std::size_t>(bond.bounded)].bodies;
-}
-
-std::vector<int> mechanisms_of_bounds(const Mechanism& mechanism) {
-  const std::vector<int> groups = groups_of(mechanism);
-  std::vector<int> of;
-  for (const Effect& bounded : mechanism.bounded) of.push_back(group_of(groups, bounded.bodies));
-  return of;
 }
 
 // The norm of its rows' forces.
@@ -266,7 +257,8 @@ std::string snap_of(const Mechanism& mechanism, const FirstRows& rows, const Con
       snap_begins, has.snaps ? "Mask" : "void", parameters + (has.snaps ? ", const T& most" : ""),
       std::string(has.rows ? ", force" : "") + (has.bounded ? ", of_bounds" : "") + (has.bears ? ", borne" : ""));
   const bool waits = has.forces && !has.snaps;  // by other methods an event has ended the step
-  if (waits) text += fmt::format(finds_events, fmt::join(mechanisms_of_bounds(mechanism), ", "));
+  if (waits)
+    text += fmt::format(finds_events, fmt::join(groups_of_bounds(mechanism), ", "), distances_now(has), happens_now);
   text += fmt::format(snap_chooses, has.snaps ? "most" : "T(0)", has.snaps ? " some" : "", after,
                       has.snaps ? "    return some;\n" : "", waits ? " && !happens[mechanism_of[k]]" : "");
   if (has.snaps && !has.modes)

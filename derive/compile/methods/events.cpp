@@ -10,15 +10,16 @@ constexpr const char* latch_begins = R"(
   // Events at the end of a step.
   static void latch(State& s) {{
     constexpr bool waits[bounded] = {{{0}}};
-    T after[bounded], until[bounded];
-    distances($ss.q, s.time, s.v, {3}after, until);
-    const T near = T(single ? 1e-5 : 1e-10);
-{1}    for (int i = 0; i < bounded; ++i) {{
+{3}{1}    for (int i = 0; i < bounded; ++i) {{
       T &began = s.events.began[i], &ended = s.events.ended[i];
-      const auto begins_now = after[i] <= near && began < T(1), ends_now = until[i] <= near && ended < T(1);
-{2}      began = select(begins_now, T(1), began), ended = select(ends_now, T(1), ended);
+{4}{2}      began = select(begins_now, T(1), began), ended = select(ends_now, T(1), ended);
       s.events.acts[i] = (waits[i] ? began : T(1)) * (T(1) - ended);
     }}
+)";
+
+constexpr const char* finds_distances = R"(    T after[bounded], until[bounded];
+    distances($ss.q, s.time, s.v, {}after, until);
+    const T near = T(single ? 1e-5 : 1e-10);
 )";
 
 constexpr const char* no_groups = R"(    Mask some[groups];
@@ -39,6 +40,10 @@ constexpr const char* restarts =
 
 }  // namespace
 
+std::string distances_now(const Contents& has) {
+  return fmt::format(finds_distances, !has.forces ? "" : has.modes ? "s.modes.force, " : "s.force, ");
+}
+
 std::string latch_of(const std::string& waits, const Contents& has) {
   const bool alone = has.pulls();  // each mechanism begins anew alone
   std::string text = fmt::format(latch_begins, waits,
@@ -48,9 +53,7 @@ std::string latch_of(const std::string& waits, const Contents& has) {
                                  alone       ? notes_group
                                  : has.modes ? notes_any
                                              : "",
-                                 !has.forces ? ""
-                                 : has.modes ? "s.modes.force, "
-                                             : "s.force, ");
+                                 distances_now(has), happens_now);
   if (alone) text += forgets;
   if (alone && has.weighs_joints() && !has.exerts) text += forgets_lambda;  // which are the loads of that pull
   if (has.modes) text += "    s.modes.known = select(some, T(0), s.modes.known);\n";

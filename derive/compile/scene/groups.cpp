@@ -34,4 +34,11 @@ int group_of(const std::vector<int>& groups, const std::vector<int>& bodies) {
   return group;
 }
 
+std::vector<int> groups_of_bounds(const Mechanism& mechanism) {
+  const std::vector<int> groups = groups_of(mechanism);
+  std::vector<int> of;
+  for (const Effect& bounded : mechanism.bounded) of.push_back(group_of(groups, bounded.bodies));
+  return of;
+}
+
 }  // namespace cdot::compile

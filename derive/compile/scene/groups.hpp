@@ -9,5 +9,7 @@ namespace cdot::compile {
 std::vector<int> groups_of(const Mechanism& mechanism);
 // Of bodies of one mechanism, some of which move.
 int group_of(const std::vector<int>& groups, const std::vector<int>& bodies);
+// By row with bounds.
+std::vector<int> groups_of_bounds(const Mechanism& mechanism);
 
 }  // namespace cdot::compile

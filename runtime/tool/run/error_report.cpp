@@ -23,6 +23,20 @@ std::string above(double share, const Scene& scene, const RunResult& result) {
       body_name(scene, error.body), error.share, error.time, share);
 }
 
+std::string of_blow(const Scene& scene, const BlowOnJoint& blow) {
+  const std::string joint = joint_name(scene, blow.joint);
+  if (blow.held)
+    return fmt::format(
+        "joint {} holds a blow by t = {:.6g} s, because steps of {:.3g} ms spread it. Where a blow is located it lasts "
+        "{:g} ms, and this one is {:.3g} % of the strength: whether the joint holds is not sure",
+        joint, blow.time, 1e3 * scene.step, 1e3 * impact_time, 100 * blow.share);
+  return fmt::format(
+      "a blow breaks joint {} by t = {:.6g} s, which carried {:.2g} % of its strength a step before. Equal steps take "
+      "a "
+      "blow in two parts, and lose the second one where the first breaks a joint: the motion after it is not sure",
+      joint, blow.time, 100 * blow.share);
+}
+
 }  // namespace
 
 double warned_trajectory_share(const Scene& scene) {
@@ -45,16 +59,7 @@ std::string decision_warning(const Scene& scene, const RunResult& result) {
         "whether it stops the bodies there, so the error of the motion after it is not sure",
         count, count == 1 ? " is" : "s are", result.first_undecided,
         name_in(scene.joints, static_cast<int>(result.counts.undecided_joint)));
-  if (const BlowOnJoint& blow = result.blow; blow.joint >= 0 && blow.held)
-    return fmt::format(
-        "joint {} held a blow by t = {:.6g} s, which is {:.3g} % of its strength where it lasts {:g} ms, as it does "
-        "where it is located. In equal steps of {:.3g} ms its load is less: whether the joint holds is not sure",
-        joint_name(scene, blow.joint), blow.time, 100 * blow.share, 1e3 * impact_time, 1e3 * scene.step);
-  else if (blow.joint >= 0)
-    return fmt::format(
-        "a blow broke joint {} by t = {:.6g} s, which carried {:.2g} % of its strength a step before: equal steps take "
-        "a blow in parts, and lose the rest once a joint breaks, so the motion after it is not sure",
-        joint_name(scene, blow.joint), blow.time, 100 * blow.share);
+  if (result.blow.joint >= 0) return of_blow(scene, result.blow);
   if (const NearBreak& near = result.near_break; near.joint >= 0)
     return fmt::format(
         "joint {} is within {:.2g} % of breaking at t = {:.6g} s, and the error of its load is about {:.2g} %: whether "

@@ -97,8 +97,8 @@ void BlowWatch::look_at_bonds(const WorldData<S>& world, double time) {
     for (int r = 0; r < batch.ops->rows; ++r)
       forces[static_cast<std::size_t>(r)] = force_of(world, batch, slot_of(world, place) * batch.ops->rows + r);
     of_bonds_[k].add(forces, share, struck);
-    const double load = of_bonds_[k].of_blow(world.last_step);
-    note_hold(bond.joint, share_of_strength(bond.distance(bond.parameters.data(), time, load)), time);
+    if (const double load = of_bonds_[k].of_blow(world.last_step); load > 0)
+      note_hold(bond.joint, share_of_strength(bond.distance(bond.parameters.data(), time, load)), time);
   }
 }
 
@@ -118,7 +118,8 @@ void BlowWatch::look_at_rows(const WorldData<S>& world, double time) {
       if (torn && struck) note_break(batch.joint[slot], *loads, time);
       const double force = force_of(world, batch, slot);
       loads->add({force}, torn ? broken : share_of(force), struck);
-      note_hold(batch.joint[slot], share_of(loads->of_blow(world.last_step)), time);
+      if (const double load = loads->of_blow(world.last_step); load > 0)
+        note_hold(batch.joint[slot], share_of(load), time);
     });
   }
 }
@@ -132,8 +133,7 @@ void BlowWatch::note_hold(int joint, double share, double time) {
 }
 
 void BlowWatch::Loads::add(const Forces& now, double share_now, bool struck) {
-  std::shift_right(forces.begin(), forces.end(), 1);
-  forces[0] = now, share = {share_now, share[0]};
+  forces[++newest % forces.size()] = now, share = {share_now, share[0]};
   since_blow = struck ? 0 : since_blow + 1;
 }
 
@@ -144,10 +144,10 @@ double BlowWatch::Loads::without_blow() const { return share[0] + usual_growth *
 double BlowWatch::Loads::of_blow(double h) const {
   if (since_blow != 2 || !std::isfinite(share[0])) return 0;
   double square = 0;
-  for (std::size_t r = 0; r < forces[0].size(); ++r) {
-    const auto [least, most] = std::minmax(forces[0][r], forces[3][r]);
+  for (std::size_t r = 0; r < most_rows; ++r) {
+    const auto [least, most] = std::minmax(ago(0)[r], ago(3)[r]);
     double impulse = 0;
-    for (const std::size_t step : {1, 2}) impulse += h * (forces[step][r] - std::clamp(forces[step][r], least, most));
+    for (const unsigned steps : {1, 2}) impulse += h * (ago(steps)[r] - std::clamp(ago(steps)[r], least, most));
     square += impulse * impulse;
   }
   return std::sqrt(square) / impact_time;

@@ -31,14 +31,16 @@ class BlowWatch {
 
  private:
   using Forces = std::array<double, most_rows>;
-  // After the last steps, the newest first: the forces of a joint's rows, and their load as a share of the strength,
-  // which is infinite once it is broken.
+  // After the last steps: the forces of a joint's rows, in turn, and their load as a share of the strength, the newest
+  // first, which is infinite once it is broken.
   struct Loads {
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     std::array<Forces, 4> forces{};
+    unsigned newest = 0;
     std::array<double, 2> share{unknown, unknown};
     int since_blow = 4;  // [steps]
 
+    const Forces& ago(unsigned steps) const { return forces[(newest - steps) % forces.size()]; }
     void add(const Forces& now, double share_now, bool struck);
     double without_blow() const;     // the share expected now, from those before
     double of_blow(double h) const;  // the load over impact_time of one that began two steps of h ago; else 0

@@ -1,6 +1,7 @@
 // Joints and ropes that a blow breaks: by equal steps it acts whole before they break, and the run tells.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <utility>
 
 #include "runtime/text/files.hpp"
 #include "tests/runtime/tool/followed_advice.hpp"
@@ -36,9 +37,9 @@ TEST(BlowWatch, IsToldByEqualSteps) {
   for (const std::string method : {"rattle", "implicit", "euler"}) {
     const std::string options = "--integrator " + method;
     const std::string pin = warning_of(run(folder, rod_on_a_stop(25), options));
-    EXPECT_EQ(pin.find("a blow broke joint \"pin\" by t = 0."), 0u) << method << ": " << pin;
+    EXPECT_EQ(pin.find("a blow breaks joint \"pin\" by t = 0."), 0u) << method << ": " << pin;
     const std::string rope = warning_of(run(folder, rod_on_a_rope, options));
-    EXPECT_EQ(rope.find("a blow broke joint \"rope\" by t = 0.3"), 0u) << method << ": " << rope;
+    EXPECT_EQ(rope.find("a blow breaks joint \"rope\" by t = 0.3"), 0u) << method << ": " << rope;
     EXPECT_NE(rope.find(" s, which carried 0 % of its strength a step before"), rope.npos) << method << ": " << rope;
   }
 }
@@ -66,18 +67,24 @@ TEST(BlowWatch, IsToldWhereItHoldsByTheLengthOfTheStepAlone) {
   for (const std::string method : {"rattle", "implicit"}) {
     const Ran holds = run(folder, rod_on_a_stop(150), "--step 0.02 --integrator " + method);
     EXPECT_EQ(holds.summary["broken_joints"].size(), 0u) << method;
-    EXPECT_EQ(warning_of(holds).find("joint \"pin\" held a blow by t = 0."), 0u) << method << ": " << warning_of(holds);
+    EXPECT_EQ(warning_of(holds).find("joint \"pin\" holds a blow by t = 0."), 0u)
+        << method << ": " << warning_of(holds);
     const Ran strong = run(folder, rod_on_a_stop(5000), "--step 0.02 --integrator " + method);
     EXPECT_EQ(warning_of(strong), "") << method;
   }
   EXPECT_EQ(run(folder, rod_on_a_stop(150), "--integrator dop853").summary["broken_joints"].size(), 1u);
 }
 
+// By other equal steps the warning may be gone, and the joint breaks or holds by chance: only a method that locates
+// blows is a fix.
 TEST(BlowWatch, ComesWithAFixThatWasTried) {
   const TemporaryFolder folder;
-  const Ran ran = run(folder, rod_on_a_stop(25), "--integrator rattle");
-  const std::string options = ran.summary["advice"]["options"];
-  EXPECT_TRUE(run(folder, rod_on_a_stop(25), "--integrator rattle " + options).silent()) << options;
+  for (const auto& [method, strength] : {std::pair{"rattle", 25.0}, {"euler", 150.0}}) {
+    const std::string named = std::string("--integrator ") + method + " ";
+    const std::string options = run(folder, rod_on_a_stop(strength), named).summary["advice"]["options"];
+    EXPECT_NE(options.find("dop853"), options.npos) << method << ": " << options;
+    EXPECT_TRUE(run(folder, rod_on_a_stop(strength), named + options).silent()) << method << ": " << options;
+  }
 }
 
 }  // namespace

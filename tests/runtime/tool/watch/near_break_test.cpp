@@ -37,6 +37,17 @@ TEST(NearBreak, IsToldWhereTheErrorOfTheLoadDecides) {
   EXPECT_EQ(told(1.0005 * most, "--integrator dop853 --local-error 1e-9"), "");
 }
 
+// As a share of the strength: 1 - 1 / 1.005, and less than 0.02 % that the load of the last step lacks to the largest.
+TEST(NearBreak, TellsHowFarTheLoadIsFromTheStrength) {
+  const TemporaryFolder folder;
+  const Ran ran = rod_on_a_pin(folder, 1.005 * most, "--integrator dop853 --local-error 1e-6");
+  const std::string warning = ran.summary["decision_warning"];
+  const std::string within = "is within ";
+  ASSERT_NE(warning.find(within), warning.npos) << warning;
+  const double percent = std::stod(warning.substr(warning.find(within) + within.size()));
+  EXPECT_NEAR(percent, 100 * (1 - 1 / 1.005), 0.02) << warning;
+}
+
 TEST(NearBreak, IsNotToldOfWhatBreaks) {
   const TemporaryFolder folder;
   const Ran ran = rod_on_a_pin(folder, 0.99 * most, "--integrator rattle");
