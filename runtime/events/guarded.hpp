@@ -33,17 +33,23 @@ void each_guarded_row(Island<S>& island, F f) {
   });
 }
 
-// True if a motor of unlimited force acts beside ends, which it may drive its bodies against.
 template <class S>
-bool has_unlimited_motor_beside_ends(const Island<S>& island) {
-  bool motor = false, ends = false;
+bool has_unlimited_motor(const Island<S>& island) {
+  bool motor = false;
   Guard<typename S::Scalar> guards[most_rows];
   each_guarded_slot(island, [&](const Batch<S>& batch, int slot) {
-    ends |= batch.law->error != nullptr;
     batch.law->guard(batch, slot, guards);
     for (int r = 0; r < batch.ops->rows; ++r) motor |= guards[r].of_rate && guards[r].bilateral();
   });
-  return motor && ends;
+  return motor;
+}
+
+// The motor may drive its bodies against the ends.
+template <class S>
+bool has_unlimited_motor_beside_ends(const Island<S>& island) {
+  bool ends = false;
+  each_guarded_slot(island, [&](const Batch<S>& batch, int) { ends |= batch.law->error != nullptr; });
+  return ends && has_unlimited_motor(island);
 }
 
 // J v of every row under a law, into Batch::rate.

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <cdot/spaces.hpp>
 
 #include "runtime/solve/direct.hpp"
 #include "runtime/solve/longest_move.hpp"
+#include "runtime/solve/projection.hpp"
+#include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
 
 namespace cdot {
@@ -28,6 +31,14 @@ constexpr double shortest = 0.5, longest_share = 1.3;
 constexpr int lengths_tried = 52;
 constexpr double least_share = 0.2;  // of a length, for the next attempt
 constexpr double infinity = std::numeric_limits<double>::infinity();
+// Of branches that cross, as given by rounded numbers.
+constexpr double most_misfit = 1e-7;
+// Shares of a leap. After one that passes the pose early, a shorter one that passes it late tells whether errors fall.
+// A step that would end shortly before it ends where another one of the same length passes it in its middle.
+constexpr double early = 0.6, late = 0.75, shortly_after = 1.3, middle = 0.467;
+// Where a joint breaks by its load, a step ends so far before the pose, as loads may grow without bound towards it.
+// One that starts within twice that distance passes the pose.
+constexpr double before_pose = 1e-3;
 
 // Where a row passes a loss of rank: `at` in units of the step, `slope` of the distance per step.
 struct Passing {
@@ -129,6 +140,93 @@ Distances distances_of(Island<S>& island, int row, int stages) {
   return all;
 }
 
+const std::vector<double>& distance_at_stages(const Distances& all) {
+  for (std::size_t j = 1; j < all.square.size(); ++j) all.square[j] = std::sqrt(all.square[j]);
+  return all.square;
+}
+
+// Of the rows of effects that end by their load, leaps() sees the forces at the stages.
+template <class S>
+bool may_break(const WorldData<S>& world, const Island<S>& island) {
+  return std::ranges::any_of(island.bonds, [&](int k) { return !world.joints[world.bonds[k].joint].broken; });
+}
+
+// The zero of the line that fits the distances from stage 0 on best, those before some stage taken as negative.
+template <class Real>
+Passing best_passing_of(const RungeKutta<Real>& method, const std::vector<double>& distance) {
+  Passing best{infinity, 0};
+  double least_error = infinity;
+  for (int split = 1; split < method.stages; ++split) {
+    const auto time = [&](int j) { return double(method.c[j]); };
+    const auto signed_distance = [&](int j) { return time(j) < time(split) ? -distance[j] : distance[j]; };
+    double t_mean = 0, d_mean = 0, tt = 0, td = 0, dd = 0;
+    for (int j = 0; j < method.stages; ++j)
+      t_mean += time(j) / method.stages, d_mean += signed_distance(j) / method.stages;
+    for (int j = 0; j < method.stages; ++j) {
+      const double t = time(j) - t_mean, d = signed_distance(j) - d_mean;
+      tt += t * t, td += t * d, dd += d * d;
+    }
+    const double slope = td / tt, error = dd - slope * td;
+    if (error < least_error) least_error = error, best = {t_mean - d_mean / slope, slope};
+  }
+  return best;
+}
+
+// f(row, its distances) for each row that comes near a loss of rank at the stages that were noted.
+template <class S, class F>
+void each_row_near(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, F f) {
+  for (int r = 0; r < island.system.rows(); ++r) {
+    const Distances all = distances_of(island, r, method.stages);
+    if (!(all.least < near * near && all.least < changes * changes * all.most)) continue;
+    if (way_of_row(world, island, r) * now_over(island, r, all.least, all.diagonal) > far) f(r, all);
+  }
+}
+
+// The poses that the stages pass or lead to.
+struct Passings {
+  Passing all[most_passings];
+  int count = 0;
+  void add(const Passing& one) {
+    if (std::isfinite(one.at) && one.slope > 0 && count < most_passings) all[count++] = one;
+  }
+};
+
+// Where two branches cross but for a misfit e of the row, d d' = e for the distances d, d' along both. On the first,
+// d'' = 2 e (dd/dt)^2 / d^3: the e that explains the error of a step of h; 0 if it passes no pose.
+template <class Real>
+double misfit_of(const RungeKutta<Real>& method, const Passings& passings, double h, double error) {
+  double slope = 0;
+  for (int k = 0; k < passings.count; ++k)
+    if (passings.all[k].at > 0 && passings.all[k].at < 1) slope = std::max(slope, passings.all[k].slope);
+  const double d = distance_of(method, passings.all, passings.all + passings.count, 1);
+  return slope > 0 ? error * h * d * d * d / (2 * slope * slope) : 0;
+}
+
+// The share of a step of h from `time` on that ends before all poses that it passes, and the round-off that it has
+// there; 0 if it passes none. Leaves the island at the start.
+struct EndBefore {
+  double share = 0, noise = 0;
+};
+template <class S>
+EndBefore end_before_poses(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
+                           typename S::Scalar time, typename S::Scalar h) {
+  go_back(world, island);
+  evaluate_anew(world, island, time);
+  island.factored = false;
+  accelerate(world, island, time);
+  EndBefore end{1, 0};
+  each_row_near(world, island, method, [&](int r, const Distances& all) {
+    if (island.system.dependent(r)) return;
+    all.square[0] = std::sqrt(double(island.system.pivot(r)) / all.diagonal);
+    const Passing one = best_passing_of(method, distance_at_stages(all));
+    const double before = before_pose / one.slope;
+    if (!(one.slope > 0 && one.at > 2 * before && one.at - before < end.share)) return;
+    end.share = one.at - before;
+    end.noise = noise_at<typename S::Scalar>(before_pose, one.slope, double(h), end.share);
+  });
+  return end.share < 1 ? end : EndBefore{};
+}
+
 template <class T>
 struct Passage {
   bool near = false;  // the step needs projected stages
@@ -143,31 +241,24 @@ Passage<typename S::Scalar> passage_of(WorldData<S>& world, Island<S>& island, c
   using T = typename S::Scalar;
   // In floats round-off of the projection exceeds what it corrects.
   if (!island.solver->exact || std::is_same_v<T, float>) return {};
-  const auto rows = static_cast<size_t>(island.system.rows());
-  auto& distance = island.flow.of_row;
-  Passing passings[most_passings];
-  int count = 0;
+  Passings passings;
   Passage<T> passage;
   double steepest = 0;
-  for (size_t r = 0; r < rows && count < most_passings; ++r) {
-    const auto [square, least, most, diagonal] = distances_of(island, static_cast<int>(r), method.stages);
-    if (!(least < near * near && least < changes * changes * most)) continue;
-    const double now = now_over(island, static_cast<int>(r), least, diagonal);
-    if (!(way_of_row(world, island, static_cast<int>(r)) * now > far)) continue;
+  each_row_near(world, island, method, [&](int, const Distances& all) {
     passage.near = true;
-    for (int j = 1; j < method.stages; ++j) distance[j] = std::sqrt(square[j]);
-    const Passing one = passing_of(method, distance);
-    if (!std::isfinite(one.at) || !(one.slope > 0)) continue;
-    const bool asks = least < close * close && least < dip * dip * most;
-    if (asks) passings[count++] = one, steepest = std::max(steepest, one.slope);
-    else passage.noise = std::max(passage.noise, noise_at<T>(std::sqrt(least), one.slope, double(h), 1));
-  }
-  if (count == 0) return passage;
-  double best = clearly * distance_of(method, passings, passings + count, 1), share = 0;
+    const Passing one = passing_of(method, distance_at_stages(all));
+    if (!std::isfinite(one.at) || !(one.slope > 0)) return;
+    const bool asks = all.least < close * close && all.least < dip * dip * all.most;
+    if (asks) passings.add(one), steepest = std::max(steepest, one.slope);
+    else passage.noise = std::max(passage.noise, noise_at<T>(std::sqrt(all.least), one.slope, double(h), 1));
+  });
+  if (passings.count == 0) return passage;
+  double best = clearly * distance_of(method, passings.all, passings.all + passings.count, 1);
+  double share = 0;
   for (int k = 0; k <= lengths_tried; ++k) {
     const double other = shortest + (longest_share - shortest) * k / lengths_tried;
     if (!(T(other) * h <= longest)) break;
-    const double d = distance_of(method, passings, passings + count, other);
+    const double d = distance_of(method, passings.all, passings.all + passings.count, other);
     if (d > best) best = d, share = other;
   }
   passage.length = T(share) * h;
@@ -211,8 +302,8 @@ void keep_largest_diagonals(Island<S>& island) {
 }
 
 template <class S>
-bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar longest,
-                     typename S::Scalar& h, double& noise) {
+bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+                     typename S::Scalar longest, typename S::Scalar& h, double& noise) {
   using T = typename S::Scalar;
   if (island.flow.projects_stages || world.settings.drift != Drift::projection) return false;
   const Passage<T> passage = passage_of(world, island, method, h, longest);
@@ -226,10 +317,33 @@ bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<
   }
   island.flow.projects_stages = true;
   ++world.counts->steered;
+  const EndBefore end = may_break(world, island) ? end_before_poses(world, island, method, time, h) : EndBefore{};
   go_back(world, island);
-  if (passage.length > T(0)) h = passage.length;
-  noise = passage.noise;
+  if (end.share > 0) h *= T(end.share);
+  else if (passage.length > T(0)) h = passage.length;
+  noise = end.share > 0 ? end.noise : passage.noise;
   return true;
+}
+
+template <class S>
+typename S::Scalar Leap<S>::after(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, T h,
+                                  double error, T next, double& noise) {
+  if (!island.flow.projects_stages) return next;
+  Passings passings;
+  each_row_near(world, island, method,
+                [&](int, const Distances& all) { passings.add(passing_of(method, distance_at_stages(all))); });
+  const double misfit = misfit_of(method, passings, double(h), error);
+  const bool falls = error <= error_ * std::pow(double(h / length_), 0.5 * method.error_order);
+  if (misfit > 0 && length_ > T(0) && !falls && misfit_ < most_misfit) {
+    noise = std::max(noise, error_ * (1 + 1e-6)), taken_ = true;
+    return length_;
+  }
+  const bool first = misfit > 0 && length_ == T(0);
+  if (first || (misfit > 0 && error < error_)) length_ = h, error_ = error, misfit_ = misfit;
+  const double at = passings.count > 0 ? passings.all[0].at : infinity;
+  if (first && misfit < most_misfit && at < early) return T(at / late) * h;
+  if (at >= 1 && at < shortly_after && length_ == T(0) && !std::exchange(led_, true)) return T(at / (1 + middle)) * h;
+  return next;
 }
 
 template <class T>
@@ -252,11 +366,13 @@ bool Doubt<T>::asks(double error, T& h, double& noise) {
 CDOT_FOR_EACH_NUMBER(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 
-#define CDOT_INSTANTIATE(S)                                            \
-  template void prepare_rank_loss(Island<S>&, const RungeKuttaOf<S>&); \
-  template void note_pivots(Island<S>&, int);                          \
-  template void keep_largest_diagonals(Island<S>&);                    \
-  template bool tries_with_care(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar&, double&);
+#define CDOT_INSTANTIATE(S)                                                                                          \
+  template void prepare_rank_loss(Island<S>&, const RungeKuttaOf<S>&);                                               \
+  template void note_pivots(Island<S>&, int);                                                                        \
+  template void keep_largest_diagonals(Island<S>&);                                                                  \
+  template class Leap<S>;                                                                                            \
+  template bool tries_with_care(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar, S::Scalar&, \
+                                double&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -6,7 +6,9 @@
 // - projects every stage onto the joints before it evaluates the accelerations: the vector field f(P(y)), P the
 //   projection, is the same on the joints and does not depend on that error;
 // - takes a length by which no stage lies close to the pose. The pivots of K at the stages tell when the pose is
-// passed.
+// passed;
+// - where a joint breaks by its load, first ends shortly before the pose, as a step that passes it sees no load that
+// grows without bound towards it.
 #pragma once
 
 #include "runtime/step/runge_kutta.hpp"
@@ -24,12 +26,32 @@ void note_pivots(Island<S>& island, int stage);
 template <class S>
 void keep_largest_diagonals(Island<S>& island);
 
-// True if the attempt at a step of h came near a loss of rank of K: goes back for one with projected stages, of a
-// length h that leads them away from it; 0 if the method cannot pass there. `noise`: magnified round-off that the
-// velocities of such a step have [m/s], [rad/s].
+// True if the attempt at a step of h from `time` on came near a loss of rank of K: goes back for one with projected
+// stages, of a length h that leads them away from it; 0 if the method cannot pass there. `noise`: magnified round-off
+// that the velocities of such a step have [m/s], [rad/s].
 template <class S>
-bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar longest,
-                     typename S::Scalar& h, double& noise);
+bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+                     typename S::Scalar longest, typename S::Scalar& h, double& noise);
+
+// Attempts at one step with care whose error is too large. Two branches of the motion cross at the pose; numbers that
+// are rounded to n digits leave a gap between them. An exact motion then turns into the other branch, within the root
+// of that gap, and ever shorter steps would follow it. Here a motion goes straight on: where errors do not fall with
+// the length, the leap with the least error is taken.
+template <class S>
+class Leap {
+ public:
+  using T = typename S::Scalar;
+  // Call before an attempt at a step of h with this error is rejected: the length of another one, which is `next`
+  // unless it would end near the pose; or that of the best attempt before, with its error as `noise`.
+  T after(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, T h, double error, T next,
+          double& noise);
+  bool taken() const { return taken_; }
+
+ private:
+  T length_ = T(0);  // of the best attempt that passed a pose; 0: none
+  double error_ = 0, misfit_ = 0;
+  bool taken_ = false, led_ = false;
+};
 
 // Tells round-off from an error of the length, where no step before bounds that length: two bodies that are a million
 // times as heavy as the one between them make a pivot as small as a loss of rank does, and that noise then allows a

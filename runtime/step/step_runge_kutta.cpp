@@ -85,10 +85,8 @@ double try_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
                 typename S::Scalar h, F error_now) {
   island.flow.astray = island.jams = false;
   const bool taken = take_stages(world, island, method, time, h);
-  if (island.jams) {
-    island.flow.astray = true;
-    return std::numeric_limits<double>::infinity();
-  }
+  island.flow.astray = island.jams;
+  if (island.jams) return std::numeric_limits<double>::infinity();
   if (!taken) return std::numeric_limits<double>::quiet_NaN();
   double error = method.error_at_end ? 0 : error_now();
   if (method.implicit && error > 1) {
@@ -118,7 +116,7 @@ typename S::Scalar take_fixed_step(WorldData<S>& world, Island<S>& island, const
     const double allowed = share * double(h / whole);
     const double error =
         try_step(world, island, method, time, h, [&] { return share_of_size(island, method, h) / allowed; });
-    if (tries_with_care(world, island, method, longest, h, noise)) {
+    if (tries_with_care(world, island, method, time, longest, h, noise)) {
       if (!(h > T(0))) return h;
       share = careful;
       continue;
@@ -168,11 +166,12 @@ double try_adaptive_step(WorldData<S>& world, Island<S>& island, const RungeKutt
 // True if the attempt with this error needs another one, of a length h and with this noise: near a loss of rank, or in
 // doubt of its noise.
 template <class S>
-bool tries_again(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar reach,
-                 double error, Doubt<typename S::Scalar>& doubt, int& attempt, typename S::Scalar& h, double& noise) {
+bool tries_again(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+                 typename S::Scalar reach, double error, Doubt<typename S::Scalar>& doubt, int& attempt,
+                 typename S::Scalar& h, double& noise) {
   // Where Newton failed, stages tell nothing about the rank.
   const bool failed = method.implicit && std::isnan(error);
-  if (!failed && tries_with_care(world, island, method, reach, h, noise)) {
+  if (!failed && tries_with_care(world, island, method, time, reach, h, noise)) {
     --attempt;  // its length says nothing about the error
     return true;
   }
@@ -193,6 +192,7 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
   T h = length_of_step(proposed, left, reach);
   int astray = 0;
   double noise = 0;
+  Leap<S> leap;
   Doubt<T> doubt(proposed > T(0), world.settings.local_error, method.error_order);
   for (int attempt = 0; attempt <= most_rejections && astray < most_astray; ++attempt) {
     const double allowed = std::max(world.settings.local_error, noise);
@@ -200,7 +200,7 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
     // A NaN counts as the largest error.
     const double factor = std::clamp(safety * std::pow(error, -1.0 / method.error_order), 0.2, 5.0);
     flow.next_step = h * T(error <= 1e300 ? factor : 0.2);
-    if (tries_again(world, island, method, reach, error * allowed, doubt, attempt, h, noise)) {
+    if (tries_again(world, island, method, time, reach, error * allowed, doubt, attempt, h, noise)) {
       if (!(h > T(0))) break;
       continue;
     }
@@ -208,15 +208,17 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
     const double best = double(h) * factor / safety;
     if (paced && tells) paced->learn(double(h), best);
     if (error <= 1) {
+      world.counts->crossed += leap.taken();
       if (world.paces && tells) world.paces->note(island.bodies.front(), double(time), double(h), best);
       flow.next_step =
           paced ? T(paced->next(double(time + h), best)) : after_step<T>(flow.next_step, h, proposed, attempt, noisy);
       return h;
     }
     if (paced) flow.next_step = std::min<T>(flow.next_step, T(paced->next(double(time), best)));
+    const T next = length_of_step<T>(flow.next_step, left, reach);
+    h = leap.after(world, island, method, h, error * allowed, next, noise);
     reject_step(world, island);
     astray = std::isinf(error) ? astray + 1 : 0;
-    h = length_of_step<T>(flow.next_step, left, reach);
   }
   flow.next_step = proposed;
   return T(0);

@@ -82,14 +82,19 @@ void roll_back_island(WorldData<S>& world, int index) {
 
 template <class S>
 void adopt_state(WorldData<S>& world, const std::vector<std::byte>& bytes) {
+  const auto some_broken = [&] {
+    return std::ranges::any_of(world.joints, [](const auto& joint) { return joint.broken; });
+  };
+  bool moved = some_broken();  // rows; only those of broken joints ever move
   std::memcpy(world.block.bytes.data(), bytes.data(), bytes.size());
+  moved |= some_broken();
   world.awake.clear();
   Bodies<S>& all = world.bodies;
   for (int i = 0; i < all.count(); ++i) all.mass[i] = S::inverted(all.inverse_mass[i]);
   for (std::size_t k = 0; k < world.islands.size(); ++k) {
     Island<S>& island = world.islands[k];
     if (!island.asleep) world.awake.push_back(static_cast<int>(k));
-    find_rows(world, island);
+    if (moved) find_rows(world, island);
     compute_again(world, island);
   }
   std::memcpy(world.block.bytes.data(), bytes.data(), bytes.size());

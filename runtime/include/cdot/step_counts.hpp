@@ -21,6 +21,7 @@ struct StepCounts {
   // joints of the first motor and of its rival; -1: none.
   long long contradicted = 0, contradicted_joint = -1, contradicting_joint = -1;
   long long steered = 0;  // steps near a loss of rank of K, with projected stages
+  long long crossed = 0;  // of these: over a pose in which two branches of the motion cross but for rounded numbers
   long long retried = 0;  // failed steps that succeeded in parts
   long long direct = 0;   // of these: steps that needed the direct solver in place of the iterative one
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;  // [s]

@@ -75,6 +75,8 @@ double budget_of_parts(long long steps, double share) {
   return affordable * count + std::min(free_parts + share * count, free_steps);
 }
 
+bool equal_steps(const Scene& scene) { return !(scene.settings.local_error > 0); }
+
 Scene with_more_sweeps(Scene scene) {
   scene.settings.substeps *= more_substeps;
   scene.settings.iterations *= more_iterations;
@@ -90,6 +92,7 @@ ErrorEstimate<S>::ErrorEstimate(const Scene& scene, long long steps)
       warned_(warned_trajectory_share(scene)),
       rates_(steps < some_dozens[1] ? ErrorsByRates<S>::fewest : ErrorsByRates<S>::most),
       size_(extents_of(scene).of_body) {
+  is_point_.reserve(size_.size());
   for (const double size : size_) is_point_.push_back(size == 0);
   total_.sums.resize(size_.size()), sample_.resize(size_.size());
   const Settings& settings = scene.settings;
@@ -106,7 +109,7 @@ ErrorEstimate<S>::ErrorEstimate(const Scene& scene, long long steps)
          : whole                            ? By::longer_steps
                                             : By::shorter_steps);
   // A method that chooses its steps has an estimate of its own.
-  next_ = scene.settings.local_error > 0 ? never() : std::min((spacing_ + 1) / 2, steps - window_ + 1);
+  next_ = equal_steps(scene) ? std::min((spacing_ + 1) / 2, steps - window_ + 1) : never();
 }
 
 template <class S>
@@ -147,6 +150,8 @@ void ErrorEstimate<S>::find_next(long long k) {
 // The steps taken instead come first: the World then goes back but once.
 template <class S>
 void ErrorEstimate<S>::before_step(BasicWorld<S>& run, long long k, double h) {
+  if (k == 1) watches_ = equal_steps(scene_) && ReleaseWatch<S>::is_needed(run.data());
+  if (watches_) releases_.before_step(run.data());
   if (k != next_) return;
   spent_ += price();
   run.snapshot_into(start_);
@@ -187,16 +192,18 @@ bool ErrorEstimate<S>::take_instead(BasicWorld<S>& world, int steps, double expe
 template <class S>
 bool ErrorEstimate<S>::accept(const Frame& before, const Frame& after, long long k, double most) {
   if (!taken_) return false;
-  Total kept = total_;
+  kept_ = total_;
   add(before, after, k);
   const double promised = total_.error.share * static_cast<double>(steps_) / static_cast<double>(k);
   if (window_ <= 2 || promised <= most * warned_) return true;
-  total_ = std::move(kept);
+  std::swap(total_, kept_);
   return false;
 }
 
 template <class S>
 void ErrorEstimate<S>::after_step(BasicWorld<S>& run, const Frame& before, const Frame& after, long long k) {
+  if (k == 1) first_ = before;
+  if (watches_) releases_.after_step(run.data(), after.time - before.time, after.time);
   if (k < next_) return;
   const bool by_rates = by_ == By::own_rates;
   if (by_rates) taken_ = taken_ && rates_.add(run.data(), static_cast<int>(k - next_), length_);
@@ -233,6 +240,7 @@ void ErrorEstimate<S>::take_anew(BasicWorld<S>& run, const std::vector<BodyState
 template <class S>
 void ErrorEstimate<S>::finish(const Frame& last, long long steps) {
   if (total_.error.samples > 0 && steps > last_) add_sums(last, steps);
+  if (!releases_.found().empty()) add_releases(last);
 }
 
 template <class S>
@@ -249,7 +257,6 @@ void ErrorEstimate<S>::compare(const std::vector<BodyState>& after) {
 
 template <class S>
 void ErrorEstimate<S>::add(const Frame& before, const Frame& after, long long k) {
-  if (first_.bodies.empty()) first_ = before;
   const double h = after.time - before.time;
   for (std::size_t i = 0; i < sample_.size(); ++i) {
     const BodyState &from = before.bodies[i], &to = after.bodies[i];
@@ -277,23 +284,41 @@ void ErrorEstimate<S>::find_error_of_step() {
 template <class S>
 void ErrorEstimate<S>::add_sums(const Frame& after, long long k) {
   const double scale = static_cast<double>(k - last_) / window_of_sample_;
-  const double linear = time_scale(total_.speeds[0], total_.changes[0], after.time),
-               angular = time_scale(total_.speeds[1], total_.changes[1], after.time);
+  const TimeScales scales = time_scales(after);
   for (std::size_t body = 0; body < sample_.size(); ++body) {
     BodyError& sums = total_.sums[body];
     add_to(sums.position, sample_[body].position, scale), add_to(sums.angle, sample_[body].angle, scale);
     add_to(sums.velocity, sample_[body].velocity, scale), add_to(sums.spin, sample_[body].spin, scale);
-    judge(after, body, linear, angular);
+    judge(after, body, scales);
   }
 }
 
 template <class S>
-void ErrorEstimate<S>::judge(const Frame& after, std::size_t body, double linear, double angular) {
+void ErrorEstimate<S>::add_releases(const Frame& last) {
+  ++total_.error.samples;
+  const TimeScales scales = time_scales(last);
+  for (const auto& [time, index, free, error] : releases_.found()) {
+    BodyError& sums = total_.sums[static_cast<std::size_t>(index)];
+    const double left = last.time - time;
+    add_to(sums.position, error.velocity, free ? left : std::min(scales.linear, left));
+    add_to(sums.angle, error.spin, free ? left : std::min(scales.angular, left));
+  }
+  for (const Release& release : releases_.found()) judge(last, static_cast<std::size_t>(release.body), scales);
+}
+
+template <class S>
+auto ErrorEstimate<S>::time_scales(const Frame& after) const -> TimeScales {
+  return {time_scale(total_.speeds[0], total_.changes[0], after.time),
+          time_scale(total_.speeds[1], total_.changes[1], after.time)};
+}
+
+template <class S>
+void ErrorEstimate<S>::judge(const Frame& after, std::size_t body, const TimeScales& scales) {
   double& size = size_[body];
   if (is_point_[body]) size = std::max(size, norm(minus(position(after.bodies[body]), position(first_.bodies[body]))));
   const BodyError& sums = total_.sums[body];
-  const double position = norm(sums.position) + linear * norm(sums.velocity);
-  const double angle = std::min(half_turn, norm(sums.angle) + angular * norm(sums.spin));
+  const double position = norm(sums.position) + scales.linear * norm(sums.velocity);
+  const double angle = std::min(half_turn, norm(sums.angle) + scales.angular * norm(sums.spin));
   const double share = std::max(size > 0 ? position / size : 0, angle);
   TrajectoryError& error = total_.error;
   if (share > error.share) error.share = share, error.time = after.time, error.body = static_cast<int>(body);

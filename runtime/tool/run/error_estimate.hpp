@@ -9,7 +9,9 @@
 //
 // The errors of the steps add up with their signs, as those of a symplectic method cancel along an orbit: an error s of
 // velocities displaces a body by s T, where T is the time in which the motion changes, the root of sum v^2 / sum a^2.
-// Growth by chaos is not in it.
+// Growth by chaos is not in it. Where a joint breaks or a row ends in the run's own steps, the samples need not see it:
+// an error s of velocities by that (runtime/tool/watch/release_watch.hpp) displaces a body by s T, or by s t in the
+// time t that is left, if it is shorter or no joint holds the body.
 #pragma once
 
 #include <array>
@@ -21,6 +23,7 @@
 #include "runtime/tool/run/frame.hpp"
 #include "runtime/tool/scene/scene.hpp"
 #include "runtime/tool/watch/errors_by_rates.hpp"
+#include "runtime/tool/watch/release_watch.hpp"
 
 namespace cdot {
 
@@ -52,6 +55,9 @@ class ErrorEstimate {
     Vector speeds{}, changes{};
     TrajectoryError error;
   };
+  struct TimeScales {
+    double linear, angular;  // T of positions and of angles [s]
+  };
   enum class By { own_rates, longer_steps, pairs, shorter_steps, more_sweeps };
 
   void choose(By by);
@@ -75,12 +81,17 @@ class ErrorEstimate {
   void find_error_of_step();
   // The last sample stands for the steps since the one before it, and at the end of the run for those that follow.
   void add_sums(const Frame& after, long long k);
-  void judge(const Frame& after, std::size_t body, double linear, double angular);
+  // Of forces that ended too late.
+  void add_releases(const Frame& last);
+  TimeScales time_scales(const Frame& after) const;
+  void judge(const Frame& after, std::size_t body, const TimeScales& scales);
 
   const Scene& scene_;
   const long long steps_;
   const double warned_;  // a share
   ErrorsByRates<S> rates_;
+  ReleaseWatch<S> releases_;
+  bool watches_ = false;
   By by_;
   int window_;                                    // steps of the run in a sample
   long long spacing_, next_, last_ = 0;           // first step of the next sample, last step of the previous one
@@ -96,7 +107,7 @@ class ErrorEstimate {
   std::vector<BodyError> sample_;                 // the last one: errors of a window
   int window_of_sample_ = 1;
   double error_of_step_ = 0;  // in the last sample, as a share of its mechanism, times the size of the smallest [m]
-  Total total_;
+  Total total_, kept_;        // and before the last sample
   std::vector<double> size_;  // of the mechanism of each body [m]; of a single point the distance that it travels
   std::vector<bool> is_point_;
   Frame first_;  // before the first sample

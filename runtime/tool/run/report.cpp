@@ -209,6 +209,10 @@ std::string summary_text(const Scene& asked, const RunResult& result) {
   if (result.counts.steered > 0)
     text +=
         fmt::format("                  {} steps near a loss of rank took projected stages\n", result.counts.steered);
+  if (result.counts.crossed > 0)
+    text += fmt::format(
+        "                  {} of them cross other branches of the motion but for rounded numbers, and go straight on\n",
+        result.counts.crossed);
   if (result.counts.retried > 0)
     text += fmt::format(
         "  retried         {} failed step{} succeeded in shorter parts, {} of them with the direct solver\n",
@@ -283,7 +287,7 @@ std::string summary_json(const Scene& asked, const RunResult& result) {
     json["own_steps"] = {{"evaluations", result.counts.evaluations}, {"taken", result.counts.taken},
                          {"rejected", result.counts.rejected},       {"events", result.counts.events},
                          {"rescued", result.counts.rescued},         {"steered", result.counts.steered},
-                         {"undecided", result.counts.undecided}};
+                         {"crossed", result.counts.crossed},         {"undecided", result.counts.undecided}};
   if (result.counts.contradicted > 0) json["contradiction"] = contradiction(scene, result);
   for (std::size_t k = 0; k < result.sensors.size(); ++k)
     json["sensors"].push_back({{"name", scene.sensors[k].name},

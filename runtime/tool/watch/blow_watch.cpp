@@ -10,6 +10,7 @@
 #include "runtime/events/latch.hpp"
 #include "runtime/solve/direct.hpp"
 #include "runtime/tool/watch/near_break.hpp"
+#include "runtime/tool/watch/watched_ends.hpp"
 
 namespace cdot {
 namespace {
@@ -19,35 +20,10 @@ constexpr double usual_growth = 2;
 
 constexpr double broken = std::numeric_limits<double>::infinity();
 
-template <class S>
-bool tears(const Batch<S>& batch) {
-  return batch.law && batch.law->distance;
-}
-
-// How far a row is from its end, by a force.
-template <class S>
-double distance_from_end(const Batch<S>& batch, int row, typename S::Scalar force) {
-  typename S::Scalar from[2];
-  batch.law->distance(batch, row, batch.rate[row], force, from);
-  return double(from[1]);
-}
-
 // The mean over the last step.
 template <class S>
 double force_of(const WorldData<S>& world, const Batch<S>& batch, int i) {
   return (double(batch.lambda[i]) + double(batch.correction[i])) / world.last_step;
-}
-
-template <class S>
-int island_of_joint(const WorldData<S>& world, int joint) {
-  return world.island_of[movable_body(world, world.joints[joint])];
-}
-
-// f(slot, before) for each slot of the batch, with the number that was kept for it; `none` at first.
-template <class S, class Number, class F>
-void each_kept(const Batch<S>& batch, std::vector<Number>& kept, int each, Number none, F f) {
-  kept.resize(static_cast<std::size_t>(batch.count() * each), none);
-  for (int slot = 0; slot < batch.count(); ++slot) f(slot, &kept[static_cast<std::size_t>(batch.home[slot] * each)]);
 }
 
 }  // namespace
@@ -112,9 +88,9 @@ void BlowWatch::look_at_rows(const WorldData<S>& world, double time) {
     each_kept<S, Loads>(batch, of_rows_[k], 1, {}, [&](int slot, Loads* loads) {
       const int island = island_of_joint(world, batch.joint[slot]);
       const bool struck = struck_[static_cast<std::size_t>(island)];
-      const auto share_of = [&](double load) { return share_of_strength(distance_from_end(batch, slot, T(load))); };
-      if (world.islands[island].flow.locates || !(share_of(0) < 1)) return;  // ends by other things than its load
-      const bool torn = (static_cast<int>(batch.happened[slot]) & static_cast<int>(Event::ended)) != 0;
+      const auto share_of = [&](double load) { return share_of_end(batch, slot, T(load)); };
+      if (world.islands[island].flow.locates || !ends_by_load(batch, slot)) return;
+      const bool torn = has_ended(batch, slot);
       if (torn && struck) note_break(batch.joint[slot], *loads, time);
       const double force = force_of(world, batch, slot);
       loads->add({force}, torn ? broken : share_of(force), struck);

@@ -92,6 +92,24 @@ Reference read_reference_of_peers(const std::string& problem) {
   return {accuracy, samples_of(json, std::numeric_limits<double>::infinity())};
 }
 
+Apart true_error(const Scene& scene) {
+  const std::vector<double> times = equal_times(scene.duration, 20);
+  RunOptions options;
+  std::vector<Frame> frames;
+  options.row = [&](const Frame& frame) { frames.push_back(frame); };
+  options.row_times = times;
+  std::string warnings;
+  simulate(scene, options, warnings);
+  const Way exact{.integrator = Integrator::dop853, .adaptive = true};
+  const Trajectory reference = trajectory_of(scene, exact, {1, 1e-11}, times);
+  Apart worst;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const Apart here = apart(frames[k], reference.frames.at(k), scene.dimension);
+    worst.position = std::max(worst.position, here.position), worst.angle = std::max(worst.angle, here.angle);
+  }
+  return worst;
+}
+
 std::vector<fs::path> all_scene_files() {
   std::vector<fs::path> files;
   for (const fs::path& folder : {scenes_dir(), source_dir() / "tests/hard_cases"})

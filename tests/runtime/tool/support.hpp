@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/tool/run/trajectory.hpp"
 #include "runtime/tool/search/simulate.hpp"
 
 namespace cdot::test {
@@ -23,6 +24,9 @@ struct Recorded {
 Recorded recorded(const Scene& scene, double seconds_between_rows);
 // The states of a run at equal intervals.
 std::vector<Frame> run_of(Scene scene, double until, double every_seconds);
+
+// The largest distance of a run, at twenty times, from one with dop853 that chooses its steps.
+Apart true_error(const Scene& scene);
 
 // Every scene file of specs/scenes and of tests/hard_cases.
 std::vector<std::filesystem::path> all_scene_files();

@@ -11,33 +11,11 @@
 #include "runtime/state/world_data.hpp"
 #include "runtime/tool/run/error_report.hpp"
 #include "runtime/tool/run/simulate.hpp"
-#include "runtime/tool/run/trajectory.hpp"
 #include "runtime/tool/search/advice.hpp"
 #include "tests/runtime/tool/support.hpp"
 
 namespace cdot::test::error_estimate_test {
 namespace {
-
-constexpr int samples = 20;
-
-// The largest distance from a run with dop853 that chooses its steps.
-Apart true_error(const Scene& scene) {
-  const std::vector<double> times = equal_times(scene.duration, samples);
-  RunOptions options;
-  std::vector<Frame> frames;
-  options.row = [&](const Frame& frame) { frames.push_back(frame); };
-  options.row_times = times;
-  std::string warnings;
-  simulate(scene, options, warnings);
-  const Way exact{.integrator = Integrator::dop853, .adaptive = true};
-  const Trajectory reference = trajectory_of(scene, exact, {1, 1e-11}, times);
-  Apart worst;
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    const Apart here = apart(frames[k], reference.frames.at(k), scene.dimension);
-    worst.position = std::max(worst.position, here.position), worst.angle = std::max(worst.angle, here.angle);
-  }
-  return worst;
-}
 
 TrajectoryError estimate(const Scene& scene) {
   std::string warnings;
