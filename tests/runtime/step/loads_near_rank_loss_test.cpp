@@ -22,8 +22,8 @@ Settings by(Integrator integrator, double local_error = 0) {
   return s;
 }
 
-// Upright cranks of 1 m and 1 kg at -1 rad/s. Their couplers are of 1 kg each: a level bar, or two that are bent by 0.4
-// m.
+// Upright cranks of 1 m and 1 kg at -1 rad/s. Their couplers are of 1 kg each: a level bar, or two that meet 0.4 m
+// higher.
 struct Parallelogram {
   Parallelogram(const Settings& s, bool bent) : world(s) {
     const int left = add_bar(world, {0, 0, 0, 1}), right = add_bar(world, {1, 0, 1, 1});
