@@ -246,10 +246,11 @@ bool is_unresolved(const Flow<S>& flow, const RungeKuttaOf<S>& method, size_t k)
   return flow.ways[k].least * (double(flow.resolution[k].force) + double(slight<T>) * most) < times_between * differs;
 }
 
-// Round-off decides how redundant rows share a load.
+// Round-off decides how redundant rows share a load. Sweeps factor no K.
 template <class S>
 bool shares_loads(const Island<S>& island) {
   const System<S>& system = island.at_work();
+  if (!island.solver->exact) return false;
   for (int r = 0; r < system.rows(); ++r)
     if (system.dependent(r)) return true;
   return false;

@@ -164,7 +164,7 @@ Gap Trial<S>::gap_now(BasicWorld<S>& world) const {
   RowSizes sizes = row_sizes(world);
   for (std::size_t j = 0; j < sizes.of_joint.size(); ++j)
     for (std::size_t r = 0; r < sizes.of_joint[j].size(); ++r)
-      sizes.of_joint[j][r] = std::max(sizes.of_joint[j][r], sizes_.of_joint[j][r]);
+      sizes.of_joint[j][r].value = std::max(sizes.of_joint[j][r].value, sizes_.of_joint[j][r].value);
   return gap_of(world, *scene_, sizes, slack);
 }
 
@@ -326,7 +326,7 @@ double Trial<S>::velocity_off(BasicWorld<S>& world) const {
   for (const Inconsistency& row : world.inconsistencies(0)) {
     const auto& sizes = sizes_.of_joint[static_cast<std::size_t>(row.joint)];
     if (!row.velocity || sizes.empty()) continue;
-    worst = std::max(worst, std::abs(row.value) / (speed * sizes[static_cast<std::size_t>(row.row)]));
+    worst = std::max(worst, std::abs(row.value) / (speed * sizes[static_cast<std::size_t>(row.row)].value));
   }
   return worst;
 }

@@ -25,9 +25,13 @@ inline double order_of(const Settings& s) {
   return test::order_of(is_euler ? Integrator::euler : s.integrator);
 }
 
-// The size of each row of a joint: |J| of a displacement by the mechanism's size and of a rotation by one radian.
+struct RowSize {
+  double value;      // |J| of a displacement by the mechanism's size and of a rotation by one radian
+  double round_off;  // of C, where rotations alone change it: it is of unit vectors, however small J is near a pole
+};
+
 struct RowSizes {
-  std::vector<std::vector<double>> of_joint;
+  std::vector<std::vector<RowSize>> of_joint;
   double length = 1;  // of the mechanism: the longest distance between two bodies, or arm of a joint
 };
 
@@ -55,10 +59,13 @@ RowSizes row_sizes(BasicWorld<S>& world) {
   }
   sizes.length = longest > 0 ? longest : 1;
   sizes.of_joint.resize(static_cast<std::size_t>(world.joint_count()));
+  constexpr double of_units = 4 * std::numeric_limits<typename S::Scalar>::epsilon();
   for (const SystemMatrix::Joint& joint : D.joints)
-    for (int r = joint.first; r < joint.first + joint.rows; ++r)
+    for (int r = joint.first; r < joint.first + joint.rows; ++r) {
+      const auto [straight, turning] = rows[static_cast<std::size_t>(r)];
       sizes.of_joint[static_cast<std::size_t>(joint.joint)].push_back(
-          std::hypot(rows[static_cast<std::size_t>(r)][0] * sizes.length, rows[static_cast<std::size_t>(r)][1]));
+          {std::hypot(straight * sizes.length, turning), straight > 0 ? 0 : of_units});
+    }
   return sizes;
 }
 
@@ -88,8 +95,8 @@ Gap gap_of(const BasicWorld<S>& world, const Scene& scene, const RowSizes& sizes
     const auto& kinds = world.joint_type(j).row_kinds;
     for (std::size_t r = 0; r < C.size(); ++r) {
       const bool one_sided = kinds[r] == RowKind::inequality;
-      if (one_sided && C[r] > -slack * size[r]) continue;
-      const double share = std::abs(C[r]) / size[r] - (one_sided ? slack : 0);
+      if (one_sided && C[r] > -slack * size[r].value) continue;
+      const double share = (std::abs(C[r]) - size[r].round_off) / size[r].value - (one_sided ? slack : 0);
       if (std::isnan(share)) return {share, j};
       if (share > gap.share) gap = {share, j};
     }
