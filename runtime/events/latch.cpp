@@ -100,6 +100,11 @@ bool latch_by_lambda(Island<S>& island, typename S::Scalar over) {
 }
 
 template <class S>
+bool changes_after_substeps(const WorldData<S>& world, const Island<S>& island) {
+  return !world.after_substep.empty() && (!island.flow.locates || std::ranges::any_of(island.segments, has_events<S>));
+}
+
+template <class S>
 bool ends_by_load(const Island<S>& island) {
   using T = typename S::Scalar;
   return std::ranges::any_of(island.segments, [](const Segment<S>& segment) {
@@ -131,10 +136,11 @@ void watch_events(WorldData<S>& world) {
   }
 }
 
-#define CDOT_INSTANTIATE(S)                               \
-  template bool latch_by_impulses(Island<S>&, S::Scalar); \
-  template bool latch_by_lambda(Island<S>&, S::Scalar);   \
-  template bool ends_by_load(const Island<S>&);           \
+#define CDOT_INSTANTIATE(S)                                                    \
+  template bool latch_by_impulses(Island<S>&, S::Scalar);                      \
+  template bool latch_by_lambda(Island<S>&, S::Scalar);                        \
+  template bool changes_after_substeps(const WorldData<S>&, const Island<S>&); \
+  template bool ends_by_load(const Island<S>&);                                \
   template void watch_events(WorldData<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

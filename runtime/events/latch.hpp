@@ -18,6 +18,10 @@ bool latch_by_impulses(Island<S>& island, typename S::Scalar h);
 template <class S>
 bool latch_by_lambda(Island<S>& island, typename S::Scalar over);
 
+// True if a hook of Model::after_substep may change the island: joints break there unless the method locates events.
+template <class S>
+bool changes_after_substeps(const WorldData<S>& world, const Island<S>& island);
+
 // True if a row of the island acts until it carries too much.
 template <class S>
 bool ends_by_load(const Island<S>& island);

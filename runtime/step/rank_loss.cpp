@@ -7,11 +7,13 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/number/zero_of_distances.hpp"
 #include "runtime/solve/direct.hpp"
 #include "runtime/solve/longest_move.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
+#include "runtime/step/between.hpp"
 
 namespace cdot {
 namespace {
@@ -29,40 +31,20 @@ constexpr double close = 0.02, dip = 0.5, clearly = 1.5;
 constexpr int most_passings = 16;  // in one step, of several loops
 constexpr double shortest = 0.5, longest_share = 1.3;
 constexpr int lengths_tried = 52;
-constexpr double least_share = 0.2;  // of a length, for the next attempt
 constexpr double infinity = std::numeric_limits<double>::infinity();
 // Of branches that cross, as given by rounded numbers.
 constexpr double most_misfit = 1e-7;
-// Shares of a leap. After one that passes the pose early, a shorter one that passes it late tells whether errors fall.
-// A step that would end shortly before it ends where another one of the same length passes it in its middle.
-constexpr double early = 0.6, late = 0.75, shortly_after = 1.3, middle = 0.467;
-// Where a joint breaks by its load, a step ends so far before the pose, as loads may grow without bound towards it.
-// One that starts within twice that distance passes the pose.
+// Of a leap. After one whose error is too large, another that has the pose in its middle tells whether errors fall with
+// the length. A step that would end shortly before the pose ends where another of the same length has it in its middle.
+constexpr double middle = 0.467, shortly_after = 1.3;
+// Loads may grow without bound towards the pose: so far before it, a step looks for joints that break. One that starts
+// within twice that distance passes the pose.
 constexpr double before_pose = 1e-3;
+constexpr int most_trials = 3;  // to get there
 
-// Where a row passes a loss of rank: `at` in units of the step, `slope` of the distance per step.
-struct Passing {
-  double at, slope;
-};
-
-// The zero of the line through the distances, which count negative before the smallest.
 template <class Real>
-Passing passing_of(const RungeKutta<Real>& method, const std::vector<double>& distance) {
-  const int n = method.stages - 1;
-  const auto time = [&](int j) { return double(method.c[j]); };
-  int least = 1;
-  for (int j = 2; j <= n; ++j)
-    if (distance[j] < distance[least]) least = j;
-  double t_mean = 0, d_mean = 0;
-  const auto signed_distance = [&](int j) { return time(j) < time(least) ? -distance[j] : distance[j]; };
-  for (int j = 1; j <= n; ++j) t_mean += time(j) / n, d_mean += signed_distance(j) / n;
-  double tt = 0, td = 0;
-  for (int j = 1; j <= n; ++j) {
-    tt += (time(j) - t_mean) * (time(j) - t_mean);
-    td += (time(j) - t_mean) * (signed_distance(j) - d_mean);
-  }
-  const double slope = td / tt;
-  return {t_mean - d_mean / slope, slope};
+auto times_of(const RungeKutta<Real>& method) {
+  return [&method](std::size_t stage) { return double(method.c[stage]); };
 }
 
 // The smallest distance of the stages of a step of `share` from all passings. A step that ends before a passing leaves
@@ -151,27 +133,6 @@ bool may_break(const WorldData<S>& world, const Island<S>& island) {
   return std::ranges::any_of(island.bonds, [&](int k) { return !world.joints[world.bonds[k].joint].broken; });
 }
 
-// The zero of the line that fits the distances from stage 0 on best, those before some stage taken as negative.
-template <class Real>
-Passing best_passing_of(const RungeKutta<Real>& method, const std::vector<double>& distance) {
-  Passing best{infinity, 0};
-  double least_error = infinity;
-  for (int split = 1; split < method.stages; ++split) {
-    const auto time = [&](int j) { return double(method.c[j]); };
-    const auto signed_distance = [&](int j) { return time(j) < time(split) ? -distance[j] : distance[j]; };
-    double t_mean = 0, d_mean = 0, tt = 0, td = 0, dd = 0;
-    for (int j = 0; j < method.stages; ++j)
-      t_mean += time(j) / method.stages, d_mean += signed_distance(j) / method.stages;
-    for (int j = 0; j < method.stages; ++j) {
-      const double t = time(j) - t_mean, d = signed_distance(j) - d_mean;
-      tt += t * t, td += t * d, dd += d * d;
-    }
-    const double slope = td / tt, error = dd - slope * td;
-    if (error < least_error) least_error = error, best = {t_mean - d_mean / slope, slope};
-  }
-  return best;
-}
-
 // f(row, its distances) for each row that comes near a loss of rank at the stages that were noted.
 template <class S, class F>
 void each_row_near(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, F f) {
@@ -189,6 +150,13 @@ struct Passings {
   void add(const Passing& one) {
     if (std::isfinite(one.at) && one.slope > 0 && count < most_passings) all[count++] = one;
   }
+  // Of the first pose after the start; those before it lie behind the step.
+  double first() const {
+    double least = infinity;
+    for (int k = 0; k < count; ++k)
+      if (all[k].at > 0) least = std::min(least, all[k].at);
+    return least;
+  }
 };
 
 // Where two branches cross but for a misfit e of the row, d d' = e for the distances d, d' along both. On the first,
@@ -202,29 +170,56 @@ double misfit_of(const RungeKutta<Real>& method, const Passings& passings, doubl
   return slope > 0 ? error * h * d * d * d / (2 * slope * slope) : 0;
 }
 
-// The share of a step of h from `time` on that ends before all poses that it passes, and the round-off that it has
-// there; 0 if it passes none. Leaves the island at the start.
+// The share of a step of h from `time` on, at most `longest`, that ends before all poses that it passes, and the
+// round-off that it has there; 0 if it passes none. Leaves the island at the start.
 struct EndBefore {
   double share = 0, noise = 0;
 };
 template <class S>
 EndBefore end_before_poses(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
-                           typename S::Scalar time, typename S::Scalar h) {
+                           typename S::Scalar time, typename S::Scalar h, double longest) {
   go_back(world, island);
   evaluate_anew(world, island, time);
   island.factored = false;
   accelerate(world, island, time);
-  EndBefore end{1, 0};
+  EndBefore end{longest, 0};
   each_row_near(world, island, method, [&](int r, const Distances& all) {
     if (island.system.dependent(r)) return;
     all.square[0] = std::sqrt(double(island.system.pivot(r)) / all.diagonal);
-    const Passing one = best_passing_of(method, distance_at_stages(all));
+    const Passing one = best_zero(times_of(method), distance_at_stages(all));
     const double before = before_pose / one.slope;
     if (!(one.slope > 0 && one.at > 2 * before && one.at - before < end.share)) return;
     end.share = one.at - before;
     end.noise = noise_at<typename S::Scalar>(before_pose, one.slope, double(h), end.share);
   });
-  return end.share < 1 ? end : EndBefore{};
+  go_back(world, island);
+  return end.share < longest ? end : EndBefore{};
+}
+
+// True if an event, as of a joint that breaks, follows within a step of h. Leaves the island at the start.
+template <class S>
+bool leads_to_event(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+                    typename S::Scalar h) {
+  const bool found = take_stages(world, island, method, time, h);
+  if (found) project_end(world, island, method, time + h);
+  const bool any = found && passed_event(island.flow);
+  go_back(world, island);
+  return any;
+}
+
+// end_before_poses() of a step of h, if an event follows within it. Each trial tells more exactly where the poses are.
+template <class S>
+EndBefore end_at_event(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+                       typename S::Scalar h) {
+  using T = typename S::Scalar;
+  double share = 1;
+  for (int trial = 0; trial < most_trials; ++trial) {
+    const EndBefore end = end_before_poses(world, island, method, time, T(share) * h, 1 / share);
+    if (!(end.share > 0)) return {};
+    share *= end.share;
+    if (leads_to_event(world, island, method, time, T(share) * h)) return {share, end.noise};
+  }
+  return {};
 }
 
 template <class T>
@@ -246,7 +241,7 @@ Passage<typename S::Scalar> passage_of(WorldData<S>& world, Island<S>& island, c
   double steepest = 0;
   each_row_near(world, island, method, [&](int, const Distances& all) {
     passage.near = true;
-    const Passing one = passing_of(method, distance_at_stages(all));
+    const Passing one = zero_beside_least(times_of(method), distance_at_stages(all));
     if (!std::isfinite(one.at) || !(one.slope > 0)) return;
     const bool asks = all.least < close * close && all.least < dip * dip * all.most;
     if (asks) passings.add(one), steepest = std::max(steepest, one.slope);
@@ -317,7 +312,8 @@ bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<
   }
   island.flow.projects_stages = true;
   ++world.counts->steered;
-  const EndBefore end = may_break(world, island) ? end_before_poses(world, island, method, time, h) : EndBefore{};
+  // Where nothing breaks, a start so close to the pose would only follow the gap that rounded numbers leave there.
+  const EndBefore end = may_break(world, island) ? end_at_event(world, island, method, time, h) : EndBefore{};
   go_back(world, island);
   if (end.share > 0) h *= T(end.share);
   else if (passage.length > T(0)) h = passage.length;
@@ -325,46 +321,35 @@ bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<
   return true;
 }
 
+// True if the error falls with the length as it should, by half of its power at least.
+template <class S>
+bool Leap<S>::falls(T h, double error, int order) const {
+  const double power = 0.5 * order;
+  return h < length_ ? error <= error_ * std::pow(double(h / length_), power)
+                     : error_ <= error * std::pow(double(length_ / h), power);
+}
+
 template <class S>
 typename S::Scalar Leap<S>::after(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, T h,
-                                  double error, T next, double& noise) {
+                                  double error, T next, T longest, double& noise) {
   if (!island.flow.projects_stages) return next;
   Passings passings;
-  each_row_near(world, island, method,
-                [&](int, const Distances& all) { passings.add(passing_of(method, distance_at_stages(all))); });
-  const double misfit = misfit_of(method, passings, double(h), error);
-  const bool falls = error <= error_ * std::pow(double(h / length_), 0.5 * method.error_order);
-  if (misfit > 0 && length_ > T(0) && !falls && misfit_ < most_misfit) {
+  each_row_near(world, island, method, [&](int, const Distances& all) {
+    passings.add(zero_beside_least(times_of(method), distance_at_stages(all)));
+  });
+  const double misfit = misfit_of(method, passings, double(h), error), at = passings.first();
+  const bool passes = misfit > 0, first = passes && length_ == T(0);
+  const bool is_gap = (first ? misfit : misfit_) < most_misfit;
+  const bool stays = passes && !first && !falls(h, error, method.error_order);
+  if (first || (passes && error < error_)) length_ = h, error_ = error, misfit_ = misfit;
+  if (stays && is_gap) {
     noise = std::max(noise, error_ * (1 + 1e-6)), taken_ = true;
     return length_;
   }
-  const bool first = misfit > 0 && length_ == T(0);
-  if (first || (misfit > 0 && error < error_)) length_ = h, error_ = error, misfit_ = misfit;
-  const double at = passings.count > 0 ? passings.all[0].at : infinity;
-  if (first && misfit < most_misfit && at < early) return T(at / late) * h;
+  if (const T other = T(at / middle) * h; first && is_gap && other <= longest) return other;
   if (at >= 1 && at < shortly_after && length_ == T(0) && !std::exchange(led_, true)) return T(at / (1 + middle)) * h;
   return next;
 }
-
-template <class T>
-bool Doubt<T>::asks(double error, T& h, double& noise) {
-  const bool tried = longer_ > T(0);
-  if (!open_ || (!tried && !(error > local_error_ && error <= noise))) return false;
-  if (tried && !(error <= error_ * std::pow(double(h / longer_), 0.5 * order_))) {
-    h = longer_, noise = noise_;
-    open_ = false;
-    return true;
-  }
-  if (error <= local_error_) return false;
-  longer_ = h, error_ = error;
-  noise_ = std::max(noise_, noise), noise = 0;
-  h *= T(std::max(least_share, std::pow(2 * error / local_error_, -1.0 / order_)));
-  return true;
-}
-
-#define CDOT_INSTANTIATE(T) template class Doubt<T>;
-CDOT_FOR_EACH_NUMBER(CDOT_INSTANTIATE)
-#undef CDOT_INSTANTIATE
 
 #define CDOT_INSTANTIATE(S)                                                                                          \
   template void prepare_rank_loss(Island<S>&, const RungeKuttaOf<S>&);                                               \

@@ -6,10 +6,13 @@
 // - projects every stage onto the joints before it evaluates the accelerations: the vector field f(P(y)), P the
 //   projection, is the same on the joints and does not depend on that error;
 // - takes a length by which no stage lies close to the pose. The pivots of K at the stages tell when the pose is
-// passed;
-// - where a joint breaks by its load, first ends shortly before the pose, as a step that passes it sees no load that
-// grows without bound towards it.
+//   passed;
+// - looks at loads shortly before the pose, as a step that passes it sees none that grows without bound towards it;
+//   where one breaks a joint, the step leads there.
 #pragma once
+
+#include <algorithm>
+#include <cmath>
 
 #include "runtime/step/runge_kutta.hpp"
 
@@ -41,13 +44,15 @@ template <class S>
 class Leap {
  public:
   using T = typename S::Scalar;
-  // Call before an attempt at a step of h with this error is rejected: the length of another one, which is `next`
-  // unless it would end near the pose; or that of the best attempt before, with its error as `noise`.
-  T after(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, T h, double error, T next,
+  // Call before an attempt at a step of h with this error is rejected: the length of another one, at most `longest`,
+  // which is `next` unless it would end near the pose; or that of the best attempt before, with its error as `noise`.
+  T after(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, T h, double error, T next, T longest,
           double& noise);
   bool taken() const { return taken_; }
 
  private:
+  bool falls(T h, double error, int order) const;
+
   T length_ = T(0);  // of the best attempt that passed a pose; 0: none
   double error_ = 0, misfit_ = 0;
   bool taken_ = false, led_ = false;
@@ -62,9 +67,24 @@ class Doubt {
   // `bounded`: there is nothing to tell.
   Doubt(bool bounded, double local_error, int order) : open_(!bounded), local_error_(local_error), order_(order) {}
   // Call after an attempt of h with this error. True if another one is needed, of the length h and with this noise.
-  bool asks(double error, T& h, double& noise);
+  bool asks(double error, T& h, double& noise) {
+    const bool tried = longer_ > T(0);
+    if (!open_ || (!tried && !(error > local_error_ && error <= noise))) return false;
+    if (tried && !(error <= error_ * std::pow(double(h / longer_), 0.5 * order_))) {
+      h = longer_, noise = noise_;
+      open_ = false;
+      return true;
+    }
+    if (error <= local_error_) return false;
+    longer_ = h, error_ = error;
+    noise_ = std::max(noise_, noise), noise = 0;
+    h *= T(std::max(least_share, std::pow(2 * error / local_error_, -1.0 / order_)));
+    return true;
+  }
 
  private:
+  static constexpr double least_share = 0.2;  // of a length, for the next attempt
+
   bool open_;
   double local_error_;
   int order_;

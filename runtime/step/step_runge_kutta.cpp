@@ -8,6 +8,7 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/events/events.hpp"
+#include "runtime/events/latch.hpp"
 #include "runtime/solve/misfits.hpp"
 #include "runtime/solve/pieces.hpp"
 #include "runtime/solve/projection.hpp"
@@ -35,8 +36,7 @@ int most_steps_after(int exhausted) { return std::max(fewest_steps, most_steps >
 constexpr double sliver = 1e-4;      // share of the longest step so far
 constexpr int most_rejections = 30;  // in a row
 // The same for attempts whose end cannot be projected, or only by a correction that undoes the motion. If steps that
-// are hundreds of times shorter fail too, the length is not the cause but contradicting velocities, as of a motor and a
-// bar.
+// are hundreds of times shorter fail too, the cause is not the length but contradicting velocities, as of two motors.
 constexpr int most_astray = 5;
 // Of the longest step: a shorter one is not looked at for events that it leaps over. In such a step behind an impact,
 // ways are round-off and what Newton leaves.
@@ -216,7 +216,7 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
     }
     if (paced) flow.next_step = std::min<T>(flow.next_step, T(paced->next(double(time), best)));
     const T next = length_of_step<T>(flow.next_step, left, reach);
-    h = leap.after(world, island, method, h, error * allowed, next, noise);
+    h = leap.after(world, island, method, h, error * allowed, next, reach, noise);
     reject_step(world, island);
     astray = std::isinf(error) ? astray + 1 : 0;
   }
@@ -322,9 +322,9 @@ bool take_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& me
   flow.low.assign(flow.margins.begin(), flow.margins.end());
   if (world.settings.local_error > 0) note_ways(world, island, time);
   flow.end_kept = flow.projects_stages = false;
-  // A hook after the substep may change the World, so no step may pass the end.
+  // A hook after the substep may change the island, so no step may pass the end.
   const T furthest = world.paces ? std::min(furthest_reach * h, T(world.paces->longest())) : furthest_reach * h;
-  const T reach = world.after_substep.empty() ? std::min(furthest, way.to_break) : way.left;
+  const T reach = changes_after_substeps(world, island) ? way.left : std::min(furthest, way.to_break);
   flow.length = world.settings.local_error > 0 ? take_adaptive_step(world, island, method, time, way.left, reach)
                                                : take_fixed_step(world, island, method, time, way.left, h, reach);
   if (flow.length > T(0)) return true;

@@ -1,6 +1,7 @@
 // The mechanisms of specs/scenes/gallery against closed forms: the page of each promises a law of its motion.
 #include <algorithm>
 #include <cmath>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 #include <numbers>
 
@@ -247,6 +248,19 @@ TEST(Gallery, BennettsHalfAnglesKeepTheirProduct) {
     EXPECT_NEAR(std::sin(first) * std::sin(second), product * std::cos(first) * std::cos(second), 1e-3) << "t = " << t;
     EXPECT_NEAR(std::hypot(p.e0, p.e1, std::hypot(p.e2, p.e3)), 1, 1e-12);
   });
+}
+
+// Steps of a second and more pass poses where joints lose rank, or begin beside them.
+TEST(Gallery, ErrorsFallWithTheLocalErrorPastFlatPoses) {
+  Scene scene = scene_named("gallery/bennett");
+  scene.accuracy = 0, scene.step = usual_step(scene.duration, true);
+  scene.settings.integrator = Integrator::dop853;
+  for (int halves = 2; halves <= 16; ++halves) {
+    scene.settings.local_error = std::pow(10, -halves / 2.0);
+    const double off = true_error(scene).larger();
+    fmt::print("  at a local error of {:.0e}: off by {:.1e}\n", scene.settings.local_error, off);
+    EXPECT_LT(off, scene.settings.local_error + 1e-9) << scene.settings.local_error;
+  }
 }
 
 }  // namespace
