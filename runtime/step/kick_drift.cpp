@@ -5,6 +5,7 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/events/guarded.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/loads.hpp"
 #include "runtime/solve/misfits.hpp"
@@ -120,6 +121,26 @@ void exert_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h
   evaluate_anew(world, island, time);  // restores dC/dt, which gamma replaced
 }
 
+// A motor of unlimited force that ends hold presses by System::usual_softness, with ten times what brings its bodies to
+// its rate. Ends begin a step without their impulses, so it begins with that alone.
+template <class S>
+void ease_held_motors(WorldData<S>& world, Island<S>& island) {
+  using T = typename S::Scalar;
+  constexpr T pressing = T(2 / System<S>::usual_softness);
+  if (!island.solver->exact || !has_unlimited_motor_beside_ends(island)) return;
+  find_rates(world, island);
+  System<S>& system = island.at_work();
+  Guard<T> guards[most_rows];
+  system.each_row([&](int row, Batch<S>& batch, int i) {
+    if (!is_motor(batch) || !batch.law->guard || system.broken[row]) return;
+    batch.law->guard(batch, i / batch.ops->rows, guards);
+    const auto& guard = guards[i % batch.ops->rows];
+    const T most = std::abs(missing_of(batch, i, guard)) / T(system.diagonal(row));
+    if (!guard.of_rate || !guard.bilateral() || !(std::abs(batch.lambda[i]) < pressing * most)) return;
+    batch.lambda[i] = std::clamp(batch.lambda[i], -most, most);
+  });
+}
+
 // Motors, limits and friction are solved with the exact rows. Springs have acted as forces.
 template <class S>
 void bound_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
@@ -171,7 +192,10 @@ typename S::Scalar begin_kick_drift(WorldData<S>& world, Island<S>& island, type
   using T = typename S::Scalar;
   const T share = world.last_step > 0 ? h / T(world.last_step) : T(0);
   // Errors that sweeps left in the impulses would grow with them, until they throw the bodies off.
-  if (island.evaluated) return island.solver->exact ? share : std::min(T(1), share);
+  if (island.evaluated) {
+    ease_held_motors(world, island);
+    return island.solver->exact ? share : std::min(T(1), share);
+  }
   project_start(world, island, typename S::Scalar(world.time));
   evaluate_anew(world, island, typename S::Scalar(world.time));
   clear_correction(world, island);
