@@ -32,8 +32,8 @@ constexpr int most_passings = 16;  // in one step, of several loops
 constexpr double shortest = 0.5, longest_share = 1.3;
 constexpr int lengths_tried = 52;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// Of branches that cross, as given by rounded numbers.
-constexpr double most_misfit = 1e-7;
+// Of branches that cross, as given by rounded numbers. Two leaps find the same misfit but for a factor.
+constexpr double most_misfit = 1e-7, same = 5;
 // Of a leap. After one whose error is too large, another that has the pose in its middle tells whether errors fall with
 // the length. A step that would end shortly before the pose ends where another of the same length has it in its middle.
 constexpr double middle = 0.467, shortly_after = 1.3;
@@ -340,7 +340,8 @@ typename S::Scalar Leap<S>::after(WorldData<S>& world, Island<S>& island, const 
   const double misfit = misfit_of(method, passings, double(h), error), at = passings.first();
   const bool passes = misfit > 0, first = passes && length_ == T(0);
   const bool is_gap = (first ? misfit : misfit_) < most_misfit;
-  const bool stays = passes && !first && !falls(h, error, method.error_order);
+  const bool is_same = misfit < same * misfit_ && misfit_ < same * misfit;
+  const bool stays = passes && !first && is_same && !falls(h, error, method.error_order);
   if (first || (passes && error < error_)) length_ = h, error_ = error, misfit_ = misfit;
   if (stays && is_gap) {
     noise = std::max(noise, error_ * (1 + 1e-6)), taken_ = true;
