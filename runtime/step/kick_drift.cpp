@@ -132,10 +132,10 @@ void ease_held_motors(WorldData<S>& world, Island<S>& island) {
   System<S>& system = island.at_work();
   Guard<T> guards[most_rows];
   system.each_row([&](int row, Batch<S>& batch, int i) {
-    if (!is_motor(batch) || !batch.law->guard || system.broken[row]) return;
+    if (!is_motor(batch) || !batch.law->guard || batch.explicit_time() || system.broken[row]) return;
     batch.law->guard(batch, i / batch.ops->rows, guards);
     const auto& guard = guards[i % batch.ops->rows];
-    const T most = std::abs(missing_of(batch, i, guard)) / T(system.diagonal(row));
+    const T most = std::abs(guard.rate - batch.rate[i]) / T(system.diagonal(row));  // the end's bias has its rate
     if (!guard.of_rate || !guard.bilateral() || !(std::abs(batch.lambda[i]) < pressing * most)) return;
     batch.lambda[i] = std::clamp(batch.lambda[i], -most, most);
   });

@@ -256,5 +256,46 @@ pb = [-0.2, 0]
     }
 }
 
+// An arm whose motor of unlimited force has its rate all the time, beside limits far away: RATTLE is of second order.
+TEST(Integrators, DriveAnArmAtTheirOrder) {
+  Scene scene = read_scene(R"(title = "arm"
+gravity = [0, -9.81]
+duration = 2
+[[body]]
+name = "first"
+mass = 1
+shape = { rod = 1 }
+position = [0.5, 0]
+[[body]]
+name = "second"
+mass = 1
+shape = { rod = 1 }
+position = [1.5, 0]
+[[joint]]
+type = "revolute"
+bodies = ["world", "first"]
+at = [0, 0]
+angle.motor = { speed = 1 }
+angle.limit = { lower = -10, upper = 10 }
+[[joint]]
+type = "revolute"
+bodies = ["first", "second"]
+at = [1, 0]
+)",
+                           "arm.toml");
+  scene.accuracy = 0, scene.settings.integrator = Integrator::rattle;
+  double before = 0;
+  for (const double step : {0.02, 0.01, 0.005}) {
+    scene.step = step;
+    const double off = true_error(scene).angle;
+    fmt::print("  steps of {} s: off by {:.1e} rad\n", step, off);
+    EXPECT_LT(off, 10 * step * step);
+    if (before > 0) {
+      EXPECT_NEAR(before / off, 4, 0.5);
+    }
+    before = off;
+  }
+}
+
 }  // namespace
 }  // namespace cdot::test::integrators_test
