@@ -38,8 +38,8 @@ bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<
 
 // Attempts at one step with care whose error is too large. Two branches of the motion cross at the pose; numbers that
 // are rounded to n digits leave a gap between them. An exact motion then turns into the other branch, within the root
-// of that gap, and ever shorter steps would follow it. Here a motion goes straight on: where errors do not fall with
-// the length, the leap with the least error is taken.
+// of that gap, and ever shorter steps would follow it. Here a motion goes straight on: where two leaps find
+// the same gap, and errors do not fall with the length, that with the least error is taken.
 template <class S>
 class Leap {
  public:

@@ -21,6 +21,14 @@ inline Settings settings(Solver solver, Drift drift = Drift::projection, double 
   return s;
 }
 
+// Of a Runge-Kutta method on the earth, by equal steps or with a local error.
+inline Settings runge_kutta(Integrator integrator, double local_error = 0) {
+  Settings s = settings(Solver::direct, Drift::projection, -9.81);
+  s.integrator = integrator;
+  s.local_error = local_error;
+  return s;
+}
+
 template <class T>
 int revolute(World<T>& world, int a, int b, double ax, double ay, double bx, double by) {
   return world.add_joint({"revolute", {a, b}, {{"pa", {ax, ay}}, {"pb", {bx, by}}}, {}});

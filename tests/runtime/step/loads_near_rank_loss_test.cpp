@@ -16,13 +16,6 @@ namespace {
 
 constexpr double gravity = 9.81, damping = 0.5;
 
-Settings by(Integrator integrator, double local_error = 0) {
-  Settings s = settings(Solver::direct, Drift::projection, -gravity);
-  s.integrator = integrator;
-  s.local_error = local_error;
-  return s;
-}
-
 // Upright cranks of 1 m and 1 kg at -1 rad/s. Their couplers are of 1 kg each: a level bar, or two that meet 0.4 m
 // higher.
 struct Parallelogram {
@@ -73,7 +66,7 @@ TEST(LoadsNearRankLoss, BreakAPin) {
     for (const auto& [integrator, allowed] :
          {std::pair{rk4, 0.0}, {rk4, 1e-6}, {dop853, 0.0}, {dop853, 1e-6}, {dop853, 1e-9}})
       for (const double h : {0.05, 0.031, 0.02, 0.007}) {
-        Parallelogram p(by(integrator, allowed), false);
+        Parallelogram p(runge_kutta(integrator, allowed), false);
         const double breaks = time_of_break(strength);
         set_breaking_load(p.world, p.last, strength);
         double time = 0;
@@ -94,10 +87,10 @@ TEST(LoadsNearRankLoss, ShearAPin) {
     return time;
   };
   for (const double strength : {20.0, 100.0}) {
-    const double bends = time_of_bend(by(Integrator::dop853), strength, 1e-4);
+    const double bends = time_of_bend(runge_kutta(Integrator::dop853), strength, 1e-4);
     EXPECT_LT(bends, 1.5) << strength;
     for (const double h : {0.05, 0.03})
-      EXPECT_NEAR(time_of_bend(by(Integrator::dop853, 1e-8), strength, h), bends, h) << strength << " " << h;
+      EXPECT_NEAR(time_of_bend(runge_kutta(Integrator::dop853, 1e-8), strength, h), bends, h) << strength << " " << h;
   }
 }
 
@@ -125,7 +118,7 @@ TEST(LoadsNearRankLoss, JointsThatHoldChangeNoBranch) {
     for (const double angle : {0.53, 0.77, 0.92, 1.13, 1.32, 1.46})
       for (const double allowed : {1e-5, 1e-7, 1e-9})
         for (const bool may_break : {false, true}) {
-          const double by_now = apart_after(by(Integrator::dop853, allowed), angle, misfit, may_break);
+          const double by_now = apart_after(runge_kutta(Integrator::dop853, allowed), angle, misfit, may_break);
           EXPECT_LT(by_now, 1e-3) << misfit << " " << angle << " " << allowed << " " << may_break;
           ++runs, apart += by_now > 1e-3;
         }

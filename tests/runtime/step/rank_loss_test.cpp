@@ -15,13 +15,6 @@ namespace {
 
 constexpr double gravity = 9.81, duration = 10;
 
-Settings runge_kutta(Integrator integrator, double local_error = 0) {
-  Settings s = settings(Solver::direct, Drift::projection, -gravity);
-  s.integrator = integrator;
-  s.local_error = local_error;
-  return s;
-}
-
 // n windows: n + 1 cranks of 1 m and n level couplers, all of 1 kg, at right angles, turning at -1 rad/s. (N-four-bar
 // mechanism of the IFToMM library of computational benchmark problems.) Flat at 0 and 180 degrees.
 int add_windows(World<double>& world, int n) {
