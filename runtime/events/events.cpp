@@ -167,7 +167,7 @@ void count_guarded_rows(Island<S>& island) {
 
 namespace {
 
-// False if a blow ended a joint or a row: choose again.
+// False if a blow ended a joint or a row, or another one follows: choose again.
 template <class S>
 bool choose_modes_once(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h,
                        Blow& blow) {
@@ -192,6 +192,7 @@ bool choose_modes_once(WorldData<S>& world, Island<S>& island, typename S::Scala
   if (starts_motor) put_in(world, Source::motor, kinetic_energy(world, island) - before);
   else if (blow.source >= 0 && !is_kinked) end_blow(world, island, blow);
   note_rates(world, island);
+  if (another_follows(island, blow)) return false;
   accelerate(world, island, time);
   find_resolution(world, island, h);
   return true;

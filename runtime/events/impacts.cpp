@@ -14,6 +14,9 @@
 namespace cdot {
 namespace {
 
+// After these a row waits for its own event. Each takes a share of the speed that the one before left.
+constexpr int most_followers = 32;
+
 // True if a row stops or drives its bodies by an impulse: an end that is met, a latch that closes, or a clutch of
 // unlimited force that meets a rate beyond its own. `missing` is what the row lacks to its rate; has_events: it may be
 // a latch, which from its event on holds its bodies on both sides.
@@ -323,10 +326,23 @@ void end_blow(WorldData<S>& world, const Island<S>& island, Blow& blow) {
   else put_in(world, static_cast<Source>(blow.source), -lost);  // by an end that moves
 }
 
+template <class S>
+bool another_follows(Island<S>& island, Blow& blow) {
+  using T = typename S::Scalar;
+  if (blow.source < 0 || blow.followed >= most_followers) return false;
+  bool any = false;
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
+    if (batch.mode[i] == Mode::off) any |= strikes(guard, resolution, missing_of(batch, i, guard), false);
+  });
+  blow.followed += any;
+  return any;
+}
+
 #define CDOT_INSTANTIATE(S)                                                             \
   template bool stop_what_hits(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar, Blow&); \
   template void find_pressed_ends(WorldData<S>&, Island<S>&);                           \
   template bool start_motors(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar);          \
+  template bool another_follows(Island<S>&, Blow&);                                     \
   template void end_blow(WorldData<S>&, const Island<S>&, Blow&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -12,6 +12,7 @@ inline constexpr double impact_time = 1e-3;
 struct Blow {
   int source = -1, joint = -1;
   double left = 0;
+  int followed = 0;  // by so many more
 };
 
 // Rows that close at contact stop by impulses: J v >= 0 with impulses >= 0. Joints take part, motors with a bounded
@@ -20,6 +21,11 @@ struct Blow {
 // open, at once: true if one does. Choose modes again then. Writes `blow` if there is one.
 template <class S>
 bool stop_what_hits(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h, Blow& blow);
+
+// True if the projection of the velocities after a blow makes a row that is off strike: a rope that the blow slackened
+// is taut again, and pulls the bodies against an end that they have met. Choose modes again then.
+template <class S>
+bool another_follows(Island<S>& island, Blow& blow);
 
 // Books what the projection of the velocities after a blow takes. Beside a body that is much lighter than its
 // neighbours, round-off leaves it a part of what the blow takes.
