@@ -228,9 +228,45 @@ typename S::Scalar go_to_earlier_event(WorldData<S>& world, Island<S>& island, c
   if (!(before < h)) return h;
   island.flow.length = before;
   if (go_to_ends(world, island, method, time, before) && passed_event(island.flow))
-    return go_to_event(world, island, method, time, before);
+    return go_to_event(world, island, method, time, before, before);
   island.flow.length = h;
   return go_to(world, island, method, time, h) ? h : T(0);  // stages are less exact than the end
+}
+
+// Goes to `at` by the interpolant of a step of h and projects. True if that changes no number by more than the local
+// error: at the distance d from a loss of rank it magnifies the interpolant's error by 1 / d.
+template <class S>
+bool go_by_interpolant(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+                       typename S::Scalar h, typename S::Scalar at) {
+  Flow<S>& flow = island.flow;
+  if (!go_to(world, island, method, time, h)) return false;
+  flow.length = h;
+  look_between(world, island, method, time + h, h - at);
+  project(world, island, time + at, true);
+  flow.end_kept = false;
+  read_numbers(world, island, flow.end.data());
+  for (size_t k = 0; k < flow.end.size() - flow.work.size(); ++k) {
+    const double change = double(flow.end[k] - flow.now[k]), size = 1 + std::abs(double(flow.now[k]));
+    if (!(std::abs(change) <= world.settings.local_error * size)) return false;
+  }
+  return true;
+}
+
+// The whole step of h led its stages away from a loss of rank. Those of the step to an event at `at` may lie near it,
+// as where a rope lets go in the pose in which its force changes sign through a pole. Then goes there by the
+// interpolant of the whole step; where that is not exact enough, half as far, so that the next step is shorter and it
+// is. No further than `left`: no later step could go back between.
+template <class S>
+typename S::Scalar avoid_rank_loss(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
+                                   typename S::Scalar time, typename S::Scalar h, typename S::Scalar at,
+                                   typename S::Scalar left) {
+  using T = typename S::Scalar;
+  if (!island.flow.projects_stages || method.further_terms == 0 || !(at > T(0))) return at;
+  if (error_of_step(island, method, at, world.settings.local_error) <= 1) return at;
+  const T end = std::min(at, left), half = T(0.5) * end;
+  if (go_by_interpolant(world, island, method, time, h, end)) return end;
+  island.flow.next_step = end;
+  return go_to(world, island, method, time, half) ? half : T(0);
 }
 
 }  // namespace
@@ -242,14 +278,16 @@ bool passed_event(const Flow<S>& flow) {
 
 template <class S>
 typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
-                               typename S::Scalar time, typename S::Scalar h) {
+                               typename S::Scalar time, typename S::Scalar h, typename S::Scalar left) {
   using T = typename S::Scalar;
-  if (world.settings.local_error > 0) {
-    const T at = go_to_sighted_event(world, island, method, time, h);
-    if (at > T(0)) return go_to_earlier_event(world, island, method, time, at);
-    if (!go_to_ends(world, island, method, time, h)) return T(0);
-  }
-  return search_event(island.flow, h, [&](T at) { return go_to(world, island, method, time, at); }).at;
+  const auto search = [&] {
+    return search_event(island.flow, h, [&](T at) { return go_to(world, island, method, time, at); }).at;
+  };
+  if (!(world.settings.local_error > 0)) return search();
+  T at = go_to_sighted_event(world, island, method, time, h);
+  if (at > T(0)) at = go_to_earlier_event(world, island, method, time, at);
+  else if (go_to_ends(world, island, method, time, h)) at = search();
+  return avoid_rank_loss(world, island, method, time, h, at, left);
 }
 
 template <class S>
@@ -286,7 +324,8 @@ void go_to_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& me
 
 #define CDOT_INSTANTIATE(S)                                                                                \
   template bool passed_event(const Flow<S>&);                                                              \
-  template S::Scalar go_to_event(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar); \
+  template S::Scalar go_to_event(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar,  \
+                                 S::Scalar);                                                               \
   template void look_between(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);     \
   template void go_between(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                  \
   template void go_to_end(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);

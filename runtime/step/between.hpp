@@ -15,11 +15,11 @@ inline constexpr double passed = -1;
 template <class S>
 bool passed_event(const Flow<S>& flow);
 
-// Goes to the first event of a step of h from `time` on that passed one. Returns the time from the step's start to the
-// event; 0 if an implicit method finds no shorter step.
+// Goes to the first event of a step of h from `time` on that passed one, with `left` to the end of step(h). Returns the
+// time from the step's start to the event, or to an earlier end; 0 if an implicit method finds no shorter step.
 template <class S>
 typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
-                               typename S::Scalar time, typename S::Scalar h);
+                               typename S::Scalar time, typename S::Scalar h, typename S::Scalar left);
 
 // Moves the bodies to `ahead` before the end of the last step, of Flow::length, which is at `time`. C stays open.
 template <class S>

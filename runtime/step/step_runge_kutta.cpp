@@ -357,7 +357,7 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
     keep_largest_diagonals(island);
     flow.slivers = flow.length < T(sliver) * flow.longest ? flow.slivers + 1 : 0;
     if (passed_event(flow)) {
-      flow.length = go_to_event(world, island, method, time, flow.length);
+      flow.length = go_to_event(world, island, method, time, flow.length, way.left);
       ++world.counts->events;
       events = flow.length > T(0) ? events + 1 : most_now + 1;
       flow.known = false;
