@@ -39,10 +39,10 @@ constexpr double share_of_events = 1e-9;
 // of time with which it grew over the second half up to then. The run that comes next expects a little more.
 constexpr double tells = 0.25, most_growth = 2, further_growth = 0.5;
 
-// A run that agrees well with the one before goes on with a larger local error: at most the accuracy, and this share of
-// the local error before. What is foreseen then counts so many times, and grows at least with the energy's error of the
+// A run that agrees well with the one before goes on with a larger local error: at most these shares of the accuracy, as
+// interpolants err by some local errors between the ends of steps, and of the local error before. What is foreseen then counts so many times, and grows at least with the energy's error of the
 // run before, and is to be within this share of the accuracy. Smaller changes are not worth while.
-constexpr double loosest_share = 0.01, times_foreseen = 4, aim_if_looser = 0.5, least_looser = 1.2;
+constexpr double loosest_of_asked = 0.25, loosest_share = 0.01, times_foreseen = 4, aim_if_looser = 0.5, least_looser = 1.2;
 
 // Round-off of all steps spoils a run as much as this share of its start does, as seen of mechanisms whose starts are
 // symmetric.
@@ -263,7 +263,7 @@ double looser_error(const Yardstick& yardstick, double duration, const Attempt& 
   const double foreseen =
       times_foreseen * std::max(1.0, coarse.energy_share / shared) * course.at_end(course.growth, further_growth);
   Try looser = fine.knob;
-  for (looser.local_error = std::min(yardstick.asked(), loosest_share * coarse.knob.local_error);
+  for (looser.local_error = std::min(loosest_of_asked * yardstick.asked(), loosest_share * coarse.knob.local_error);
        looser.local_error > least_looser * now; looser.local_error /= least_looser) {
     const double of_energy = shared / std::max(round_off, fine.energy_share) * now / looser.local_error;
     const double gain = sure_gain_of(yardstick, coarse, fine, looser, of_energy, foreseen);
