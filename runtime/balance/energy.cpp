@@ -1,4 +1,5 @@
 // The energy of a state.
+#include <algorithm>
 #include <cmath>
 
 #include <cdot/spaces.hpp>
@@ -27,6 +28,24 @@ typename S::Velocity moved_along(const Bodies<S>& all, int body, const typename 
     if (force.wx == 0 && force.wy == 0 && force.wz == 0)
       return {now.x - start.x, now.y - start.y, now.z - start.z, 0, 0, 0};
   return S::difference(now, start);
+}
+
+// The largest force of a row in the last step [N], [N m].
+template <class S>
+double largest_force(const WorldData<S>& world, const Island<S>& island) {
+  double largest = 0;
+  for (const Segment<S>& segment : island.segments) {
+    const int rows = segment.batch->ops->rows;
+    for (int i = segment.begin * rows; i < segment.end * rows; ++i)
+      largest = std::max(largest, std::abs(double(segment.batch->lambda[i])));
+  }
+  return world.last_step > 0 ? largest / world.last_step : 0;
+}
+
+// The speeds that a run by this local error may have where it should rest, as beside stiff springs [sizes/s].
+double idle_speed(double local_error) {
+  constexpr double of_local_error = 1000, most = 0.1;
+  return std::min(of_local_error * local_error, most);
 }
 
 }  // namespace
@@ -92,7 +111,8 @@ double kinetic_energy(const WorldData<S>& world, const Island<S>& island) {
 template <class S>
 double small_energy(const WorldData<S>& world) {
   using T = typename S::Scalar;
-  constexpr double motion = by_precision<T>(1e-3, 1e-6), of_weight = 0.1;
+  constexpr double motion = by_precision<T>(1e-3, 1e-6), of_weight = 0.1, way_of_forces = by_precision<T>(1e-5, 1e-12);
+  const double speed = std::max(motion, idle_speed(world.settings.local_error));
   const Bodies<S>& all = world.bodies;
   double small = 0;
   for (const Island<S>& island : world.islands) {
@@ -102,8 +122,8 @@ double small_energy(const WorldData<S>& world) {
       const double m = 1 / double(all.inverse_mass[i].m);
       weight += m * std::sqrt(S::dot(linear, linear)), mass += m;
     }
-    const double size = double(island.size);
-    small += of_weight * weight * size + 0.5 * mass * motion * motion * size * size;
+    const double size = double(island.size), force = largest_force(world, island);
+    small += (of_weight * weight + way_of_forces * force) * size + 0.5 * mass * speed * speed * size * size;
   }
   return small;
 }

@@ -329,7 +329,8 @@ void end_blow(WorldData<S>& world, const Island<S>& island, Blow& blow) {
 template <class S>
 bool another_follows(Island<S>& island, Blow& blow) {
   using T = typename S::Scalar;
-  if (blow.source < 0 || blow.followed >= most_followers) return false;
+  // Sweeps leave rates that are not exactly 0.
+  if (!island.solver->exact || blow.source < 0 || blow.followed >= most_followers) return false;
   bool any = false;
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
     if (batch.mode[i] == Mode::off) any |= strikes(guard, resolution, missing_of(batch, i, guard), false);

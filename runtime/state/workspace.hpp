@@ -61,6 +61,7 @@ struct FlowWorkspace {
   T fixed_step = 0;                 // its length; 0: the error chooses the steps
   bool projects_stages = false;     // in steps near a loss of rank
   bool locates = false;             // this step locates all loads in time, so its end need not look for them
+  bool kinked = false;              // the error estimates of the last attempt are alike
   bool astray = false;              // the last attempt at a step reversed a joint's direction
   // Pivots of K at the stages of a step, as shares of their diagonals, and these, [stage][row]; of one row
   // (step/rank_loss.hpp).
@@ -146,6 +147,9 @@ struct Workspace {
   bool at_once = false;
   // Of islands' rows by steps on velocities, by the direct solver: their price where rows press on each other.
   long long solves = 0;
+  // Steps that the local error chose, but whose error estimates of different orders are alike: forces have kinks within
+  // them, or change as quickly.
+  long long kinked = 0;
   std::vector<int> awake;  // islands, in order
 };
 

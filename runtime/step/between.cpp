@@ -322,12 +322,11 @@ void go_to_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& me
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                                                                \
-  template bool passed_event(const Flow<S>&);                                                              \
-  template S::Scalar go_to_event(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar,  \
-                                 S::Scalar);                                                               \
-  template void look_between(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);     \
-  template void go_between(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                  \
+#define CDOT_INSTANTIATE(S)                                                                                           \
+  template bool passed_event(const Flow<S>&);                                                                         \
+  template S::Scalar go_to_event(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar, S::Scalar); \
+  template void look_between(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);                \
+  template void go_between(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                             \
   template void go_to_end(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

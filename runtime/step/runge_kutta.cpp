@@ -117,11 +117,16 @@ double largest_error_of_collocation(const Flow<S>& flow, F unit) {
   return worst;
 }
 
+// In smooth steps of dop853 the estimate of fifth order is a few percent of that of third order, at errors that matter;
+// where a force has a kink both are as large. Measured over all scenes and random mechanisms.
+constexpr double alike = 0.3;
+
 // Combines both estimates. The squares of smaller ones underflow.
 template <class S, class F>
-double estimated_error(const Flow<S>& flow, const RungeKuttaOf<S>& method, typename S::Scalar h, F unit) {
+double estimated_error(Flow<S>& flow, const RungeKuttaOf<S>& method, typename S::Scalar h, F unit) {
   if (method.implicit) return largest_error_of_collocation(flow, unit);
   const double first = largest_error(flow, method, 0, h, unit), second = largest_error(flow, method, 1, h, unit);
+  flow.kinked = second >= 1e-100 && first > alike * second;
   if (second < 1e-100) return first;
   return first * first / std::sqrt(first * first + 0.01 * second * second);
 }
@@ -213,7 +218,7 @@ void project_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& 
 }
 
 template <class S>
-double error_of_step(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h, double allowed) {
+double error_of_step(Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h, double allowed) {
   constexpr double epsilon = std::numeric_limits<typename S::Scalar>::epsilon();
   return estimated_error(island.flow, method, h,
                          [&](size_t k) {
@@ -225,7 +230,7 @@ double error_of_step(const Island<S>& island, const RungeKuttaOf<S>& method, typ
 }
 
 template <class S>
-double share_of_size(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h) {
+double share_of_size(Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h) {
   return estimated_error(island.flow, method, h, [&](size_t k) {
     const int number = static_cast<int>(k % numbers_per_body<S>), of_velocity = number - S::pose_numbers;
     const bool velocity = of_velocity >= 0;
@@ -302,8 +307,8 @@ void reject_step(WorldData<S>& world, Island<S>& island) {
   template void reject_step(WorldData<S>&, Island<S>&);                                                   \
   template bool take_stages(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);     \
   template void project_end(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                \
-  template double error_of_step(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar, double);             \
-  template double share_of_size(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
+  template double error_of_step(Island<S>&, const RungeKuttaOf<S>&, S::Scalar, double);                   \
+  template double share_of_size(Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -70,11 +70,11 @@ template <class S>
 void project_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time);
 
 // Estimated error of the step / `allowed` [m], [rad], [m/s], [rad/s]. The allowed error is relative for velocities
-// above 1 and at least one unit in the last place of every number.
+// above 1 and at least one unit in the last place of every number. Writes Flow::kinked.
 template <class S>
-double error_of_step(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h, double allowed);
+double error_of_step(Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h, double allowed);
 // Estimated error in units of Island::size and of 1 rad; relative for velocities above one such unit per second.
 template <class S>
-double share_of_size(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h);
+double share_of_size(Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h);
 
 }  // namespace cdot

@@ -26,8 +26,7 @@ namespace cdot {
 namespace {
 
 // Limits on events in one step(h), beside one for each row that has events, and on consecutive slivers. More of them
-// mean chatter or jamming; fall_back() then finishes the step. A hand of fifteen joints at their limits settles on
-// these one after the other.
+// mean chatter or jamming; fall_back() then finishes the step. Fifteen joints of a hand settle one after the other.
 constexpr int most_events = 32, most_slivers = 1000;
 // The same for steps of one step(h). An error below round-off, or a force too stiff for explicit steps, asks for more.
 // After a step(h) that took them all, the next one may take an eighth, so that a run of such steps ends.
@@ -54,9 +53,10 @@ constexpr double smallest_part = 1.0 / 16;
 template <class S>
 constexpr auto slight_displacement = typename S::Scalar(1e-6);  // in units of Island::size, and [rad]
 // Steps of an implicit method cost the cube of the bodies. Larger islands that lose rank again and again, as a slack
-// bridge does, are damped there by Euler's method, so that a run of them ends.
+// bridge does, are damped there by Euler's method.
 constexpr int most_to_carry_on = 20;
-constexpr int furthest_reach = 64;  // of an adaptive step, in units of h
+constexpr int furthest_reach = 64;         // of an adaptive step, in units of h
+constexpr double least_that_tells = 0.02;  // of the allowed error: smaller ones tell nothing about kinks
 
 // The length of the next step: near `best`, with `left` to the end of step(h), at most `reach`. A step that ends at
 // `left` saves the interpolation, if it is only a little shorter or longer than `best`.
@@ -208,7 +208,7 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
     const double best = double(h) * factor / safety;
     if (paced && tells) paced->learn(double(h), best);
     if (error <= 1) {
-      world.counts->crossed += leap.taken();
+      world.counts->crossed += leap.taken(), world.kinked += flow.kinked && error > least_that_tells;
       if (world.paces && tells) world.paces->note(island.bodies.front(), double(time), double(h), best);
       flow.next_step =
           paced ? T(paced->next(double(time + h), best)) : after_step<T>(flow.next_step, h, proposed, attempt, noisy);

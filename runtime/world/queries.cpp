@@ -5,6 +5,7 @@
 #include <cdot/world.hpp>
 
 #include "runtime/balance/balance.hpp"
+#include "runtime/direct/weakest_row.hpp"
 #include "runtime/rows/parameters.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/state/add_rows.hpp"
@@ -303,13 +304,7 @@ WeakestRow BasicWorld<S>::weakest_row() const {
   WeakestRow weakest;
   for (auto& island : data_->islands) {
     if (!island.solver || !island.solver->exact || !island.system.built()) continue;
-    System<S>& system = island.system;
-    system.each_row([&](int row, const Batch<S>& batch, int i) {
-      if (system.fixed[row] || system.broken[row] || system.dependent(row)) return;
-      const double share = double(system.pivot(row) / system.diagonal(row));
-      if (!(share < weakest.share)) return;
-      weakest = {share, batch.joint[i / batch.ops->rows], i % batch.ops->rows};
-    });
+    if (const WeakestRow row = cdot::weakest_row(island.system); row.share < weakest.share) weakest = row;
   }
   return weakest;
 }

@@ -21,8 +21,9 @@ struct Balance {
   double taken = 0;   // by dampers, drag, friction, impacts of limits and ropes, breaking and sleep [J]
   // The rest: energy that appeared (> 0) or disappeared (< 0) without a source [J].
   double method() const { return kinetic + potential - start - put_in + taken; }
-  // Energies below this are small for the mechanism [J]: a tenth of its weight times its size, and the energy of
-  // motions by a millionth of its size (in float a thousandth). A mechanism at rest has no other scale.
+  // Energies below this are small for the mechanism [J]: a tenth of its weight times its size; the work of its largest
+  // force on 1e-12 of that (in float 1e-5), round-off; and the energy of motions by a millionth of its size a second
+  // (in float a thousandth), or by as much as the local error lets a mechanism at rest move, which has no other scale.
   double small = 0;
 
   // Over the islands that touch no immovable body and have no drag, the worst. The error is the change of an island's

@@ -37,6 +37,14 @@ std::string of_blow(const Scene& scene, const BlowOnJoint& blow) {
       joint, blow.time, 100 * blow.share);
 }
 
+std::string of_turn(const Scene& scene, const SharpTurn& turn) {
+  return fmt::format(
+      "within one step {} changes its velocity by {:.2g} % by t = {:.6g} s, where row {} of {} nearly loses rank. Two "
+      "branches of the motion cross in that pose, and where the steps fall may decide which one the run takes: the "
+      "motion after it is not sure",
+      body_name(scene, turn.body), 100 * turn.share, turn.time, turn.row.row, joint_name(scene, turn.row.joint));
+}
+
 }  // namespace
 
 double warned_trajectory_share(const Scene& scene) {
@@ -60,6 +68,7 @@ std::string decision_warning(const Scene& scene, const RunResult& result) {
         count, count == 1 ? " is" : "s are", result.first_undecided,
         name_in(scene.joints, static_cast<int>(result.counts.undecided_joint)));
   if (result.blow.joint >= 0) return of_blow(scene, result.blow);
+  if (result.sharp_turn.body >= 0) return of_turn(scene, result.sharp_turn);
   if (const NearBreak& near = result.near_break; near.joint >= 0)
     return fmt::format(
         "joint {} is within {:.2g} % of breaking at t = {:.6g} s, and the error of its load is about {:.2g} %: whether "

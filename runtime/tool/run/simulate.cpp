@@ -197,12 +197,15 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   RankWatch rank;
   BreakWatch breaks(scene.settings);
   BlowWatch blows;
+  TurnWatch<S> turns;
+  const bool leads_stages = works_on_accelerations(scene.settings.integrator) && !(scene.settings.local_error > 0);
   WorstStepWatch<S> worst_step(told_share(scene), steps.count());
   ErrorEstimate<S> error(scene, steps.count());
   for (long long k = 0;; ++k) {
     judge(scene, after, result);
     if (k > 0) rank.look(after.time, world.weakest_row());
     if (k > 0) breaks.look(world, after.time), blows.look(world, after.time);
+    if (leads_stages) turns.look(world, after.time - before.time, after.time);
     if (!result.finite) break;
     if (k == 0) worst_step.begin(world, energy, result.balance);
     else worst_step.look(world, energy, k, bool(options.look), result.balance);
@@ -219,7 +222,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
         std::upper_bound(next_diagnosis, options.diagnose_times.end(), after.time + same_time * scene.duration);
     if (due != next_diagnosis) look(scene, world, result);
     next_diagnosis = due;
-    result.counts = world.step_counts(), result.solves = data.solves;
+    result.counts = world.step_counts(), result.solves = data.solves, result.kinked = data.kinked;
     result.stopped = (options.look && !options.look(after, result)) ||
                      evaluations_of(result) > options.most_evaluations ||
                      (options.is_trial && in_vain(scene, options, result, error.error()));
@@ -254,6 +257,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   rank.end();
   result.rank_losses = rank.found();
   result.near_break = breaks.found(world), result.blow = blows.found();
+  result.sharp_turn = turns.found();
   result.worst_step = worst_step.found();
   error.finish(after, result.steps);
   result.error = error.error();

@@ -18,6 +18,7 @@
 #include "runtime/tool/watch/blow_watch.hpp"
 #include "runtime/tool/watch/near_break.hpp"
 #include "runtime/tool/watch/rank_watch.hpp"
+#include "runtime/tool/watch/turn_watch.hpp"
 #include "runtime/tool/watch/worst.hpp"
 #include "runtime/tool/watch/worst_step.hpp"
 
@@ -71,6 +72,7 @@ struct RunResult {
   std::optional<Choice> choice;  // if the scene asks for an accuracy
   StepCounts counts;             // of integrators on accelerations
   long long solves = 0;          // of others, see Workspace::solves
+  long long kinked = 0;          // steps, see Workspace::kinked
   double time = 0;               // at the end [s]
   double start = 0;              // [s]; above 0 if the run continued from a state
   long long steps = 0;
@@ -96,6 +98,7 @@ struct RunResult {
   LargestForce at_rescue;    // of a joint, there
   NearBreak near_break;
   BlowOnJoint blow;
+  SharpTurn sharp_turn;
   bool may_break = false;          // joints may, by their loads
   double first_undecided = -1;     // [s] end of the step in which a blow was first undecided; below 0: none
   double first_contradicted = -1;  // [s] the same of motors that contradict each other

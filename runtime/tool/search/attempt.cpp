@@ -15,6 +15,9 @@ constexpr double far_if_dear = 0.03, gain_if_dear = 10;
 // Of the distance: an energy that is off by less says nothing about the motion. A motor keeps a wheel's energy whatever
 // its angle is.
 constexpr double witness = 1e-5;
+// Beyond this share of steps with kinks it says nothing either: an error that is made at a kink depends on where in a
+// step it falls, so one run may be exact by chance.
+constexpr double few_kinks = 0.01;
 
 // --- Claims.
 constexpr double least_sure = 1e-12;  // below it, smaller steps gain nothing for sure
@@ -39,10 +42,12 @@ constexpr double share_of_events = 1e-9;
 // of time with which it grew over the second half up to then. The run that comes next expects a little more.
 constexpr double tells = 0.25, most_growth = 2, further_growth = 0.5;
 
-// A run that agrees well with the one before goes on with a larger local error: at most these shares of the accuracy, as
-// interpolants err by some local errors between the ends of steps, and of the local error before. What is foreseen then counts so many times, and grows at least with the energy's error of the
-// run before, and is to be within this share of the accuracy. Smaller changes are not worth while.
-constexpr double loosest_of_asked = 0.25, loosest_share = 0.01, times_foreseen = 4, aim_if_looser = 0.5, least_looser = 1.2;
+// A run that agrees well with the one before goes on with a larger local error: at most these shares of the accuracy,
+// as interpolants err by some local errors between the ends of steps, and of the local error before. What is foreseen
+// then counts so many times, and grows at least with the energy's error of the run before, and is to be within this
+// share of the accuracy. Smaller changes are not worth while.
+constexpr double loosest_of_asked = 0.25, loosest_share = 0.01, times_foreseen = 4, aim_if_looser = 0.5,
+                 least_looser = 1.2;
 
 // Round-off of all steps spoils a run as much as this share of its start does, as seen of mechanisms whose starts are
 // symmetric.
@@ -63,6 +68,11 @@ std::size_t stride_of(const Attempt& coarse, const Attempt& fine) {
   return static_cast<std::size_t>(fine.knob.intervals / coarse.knob.intervals);
 }
 
+bool is_kinked(const Attempt& attempt) {
+  const RunResult& run = attempt.result;
+  return static_cast<double>(run.kinked) > few_kinks * static_cast<double>(run.counts.taken);
+}
+
 // The error of places of events, as large as if all had the same sign.
 double error_of_events(const Yardstick& yardstick, const Attempt& attempt) {
   return yardstick.of_largest(share_of_events) * static_cast<double>(attempt.result.counts.events);
@@ -70,9 +80,10 @@ double error_of_events(const Yardstick& yardstick, const Attempt& attempt) {
 
 // The error that a run may have where the comparison does not show it, up to the accuracy asked for: between its times;
 // by events, of which hundreds in a row may agree in two runs by chance; and by velocities, if the loose run happens to
-// be as good as the fine one. Equal steps are compared where they end: a damped motion may be over before.
+// be as good as the fine one, as where forces have kinks. Equal steps are compared where they end: a damped motion may
+// be over before.
 double unseen_error(const Yardstick& yardstick, const Attempt& attempt) {
-  if (!attempt.knob.adaptive()) return yardstick.asked();
+  if (!attempt.knob.adaptive() || is_kinked(attempt)) return yardstick.asked();
   double pace = 0;
   for (const Frame& frame : attempt.frames) pace = std::max(pace, yardstick.allowed_pace(frame));
   const double lasts = attempt.frames.empty() ? 0 : attempt.frames.back().time - attempt.frames.front().time;
@@ -117,7 +128,7 @@ double sure_gain_of(const Yardstick& yardstick, const Attempt& coarse, const Att
   const bool rescued = coarse.result.counts.rescued > 0 || fine.result.counts.rescued > 0;
   const bool events = coarse.result.counts.events > 0 || fine.result.counts.events > 0;
   const double noise = yardstick.of_largest(events ? share_of_events : strictest_local_error);
-  const bool tells_of_energy = coarse.energy_share >= witness * apart;
+  const bool tells_of_energy = coarse.energy_share >= witness * apart && !is_kinked(coarse) && !is_kinked(fine);
   const double sure = sure_gain(knob.row(), gain(coarse.knob, knob, rescued, noise), tells_of_energy ? of_energy : 1);
   const bool unresolved = fine.knob.adaptive() && fine.dear && apart > far_if_dear;
   return unresolved ? std::min(sure, gain_if_dear) : sure;

@@ -131,6 +131,12 @@ Recorded recorded(const Scene& scene, double seconds_between_rows) {
   return run;
 }
 
+double largest_apart(const Scene& scene, const std::vector<Frame>& a, const std::vector<Frame>& b) {
+  double most = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, apart(a[k], b[k], scene.dimension).larger());
+  return most;
+}
+
 std::vector<Frame> run_of(Scene scene, double until, double every_seconds) {
   std::vector<Frame> frames;
   scene.duration = until;

@@ -22,6 +22,8 @@ struct Recorded {
   std::vector<Frame> rows;
 };
 Recorded recorded(const Scene& scene, double seconds_between_rows);
+// The largest difference of two runs at the same times [m, rad].
+double largest_apart(const Scene& scene, const std::vector<Frame>& a, const std::vector<Frame>& b);
 // The states of a run at equal intervals.
 std::vector<Frame> run_of(Scene scene, double until, double every_seconds);
 

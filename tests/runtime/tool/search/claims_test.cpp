@@ -67,31 +67,10 @@ Scene ropes(const char* dimension) {
   return scene;
 }
 
-struct Delivered {
-  std::vector<Frame> rows;
-  RunResult result;
-};
-
-Delivered delivered(const Scene& scene) {
-  Delivered run;
-  RunOptions options;
-  options.row_times = every(0.02, scene.duration);
-  options.row = [&](const Frame& frame) { run.rows.push_back(frame); };
-  std::string warnings;
-  run.result = simulate(scene, options, warnings);
-  return run;
-}
-
-double largest_apart(const Scene& scene, const std::vector<Frame>& a, const std::vector<Frame>& b) {
-  double most = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, apart(a[k], b[k], scene.dimension).larger());
-  return most;
-}
-
 void expect_claims(Scene scene, const std::vector<Frame>& truth, const std::vector<double>& accuracies) {
   for (const double accuracy : accuracies) {
     scene.accuracy = accuracy;
-    const auto [rows, result] = delivered(scene);
+    const auto [result, rows] = recorded(scene, 0.02);
     const double off = largest_apart(scene, rows, truth);
     fmt::print("  {:.1e}: claims {:.1e}, is off by {:.1e}; {} events, {} steps left to another method\n", accuracy,
                result.choice->achieved, off, result.counts.events, result.counts.rescued);
@@ -107,19 +86,19 @@ TEST(Claims, HoldWhereImpactsQuicken) {
   for (const char* dimension : {"planar", "spatial"}) {
     Scene scene = ropes(dimension);
     scene.accuracy = 1e-6;
-    const std::vector<Frame> truth = delivered(scene).rows;
+    const std::vector<Frame> truth = recorded(scene, 0.02).rows;
     double off[2];
     for (const double step : {1e-4, 2.5e-5}) {
       Scene fixed = ropes(dimension);
       fixed.settings.integrator = Integrator::rattle, fixed.step = step;
-      off[step < 5e-5] = largest_apart(scene, delivered(fixed).rows, truth);
+      off[step < 5e-5] = largest_apart(scene, recorded(fixed, 0.02).rows, truth);
     }
     fmt::print("  RATTLE is off by {:.1e} and {:.1e}\n", off[0], off[1]);
     EXPECT_LT(off[1], 0.5 * off[0]);
     EXPECT_LT(off[1], 5e-3);
     expect_claims(scene, truth, {1e-2, 1e-3, 1e-4});
     scene.accuracy = 1e-8;
-    const auto [rows, result] = delivered(scene);
+    const auto [result, rows] = recorded(scene, 0.02);
     EXPECT_FALSE(result.choice->reached);
     EXPECT_GT(result.choice->of_events, 1e-8);
     EXPECT_NE(accuracy_failure(*result.choice).find("is finer than events are located"), std::string::npos);
@@ -134,7 +113,7 @@ TEST(Claims, HoldWhereErrorsAreMagnified) {
     Scene named = scene;
     named.settings.integrator = Integrator::dop853, named.settings.local_error = local_error;
     named.step = named.duration / 10;
-    return delivered(named).rows;
+    return recorded(named, 0.02).rows;
   };
   const std::vector<Frame> truth = by_local_error(1e-12);
   const double coarse = largest_apart(scene, by_local_error(1e-9), truth),
@@ -142,7 +121,7 @@ TEST(Claims, HoldWhereErrorsAreMagnified) {
   EXPECT_LT(fine, 0.02 * coarse);  // so it is the truth, to about a tenth of `fine`
   EXPECT_LT(fine, 1e-5);
   scene.accuracy = 1e-4;
-  const auto [rows, result] = delivered(scene);
+  const auto [result, rows] = recorded(scene, 0.02);
   const double off = largest_apart(scene, rows, truth);
   fmt::print("  claims {:.1e}, is off by {:.1e}\n", result.choice->achieved, off);
   EXPECT_TRUE(result.choice->reached);
@@ -184,9 +163,9 @@ TEST(Claims, OfEqualStepsAreNoSmallerThanAsked) {
   Scene scene = read_scene(file);
   Scene exact = scene;
   exact.settings.integrator = Integrator::dop853, exact.settings.local_error = 1e-12, exact.step = 0.0875;
-  const std::vector<Frame> truth = delivered(exact).rows;
+  const std::vector<Frame> truth = recorded(exact, 0.02).rows;
   scene.accuracy = 1e-4;
-  const auto [rows, result] = delivered(scene);
+  const auto [result, rows] = recorded(scene, 0.02);
   const double off = largest_apart(scene, rows, truth);
   fmt::print("  {} claims {:.1e}, is off by {:.1e}\n", name_of(integrators, result.choice->integrator),
              result.choice->achieved, off);
@@ -345,13 +324,13 @@ TEST(Claims, CountEveryEventOfALongRow) {
     Scene exact = scene;
     exact.settings.integrator = integrator, exact.settings.local_error = local_error;
     exact.step = 7e-4;
-    return delivered(exact).rows;
+    return recorded(exact, 0.02).rows;
   };
   const std::vector<Frame> truth = named(Integrator::dop853, 1e-12);
   EXPECT_LT(largest_apart(scene, named(Integrator::rk4, 1e-11), truth), 1e-5);
   for (const double accuracy : {3e-5, 1e-5, 5e-6}) {
     scene.accuracy = accuracy;
-    const auto [rows, result] = delivered(scene);
+    const auto [result, rows] = recorded(scene, 0.02);
     const double off = largest_apart(scene, rows, truth);
     fmt::print("  {:.0e}: {} events, claims {:.1e}, is off by {:.1e}\n", accuracy, result.counts.events,
                result.choice->achieved, off);
