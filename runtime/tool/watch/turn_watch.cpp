@@ -61,13 +61,16 @@ void TurnWatch<S>::look(BasicWorld<S>& world, double h, double time) {
     const Change change = largest_change(data, island, before_);
     for (const int body : island.bodies) course.most = std::max(course.most, speed(island, data.bodies.velocity[body]));
     course.steps = events == events_ ? course.steps + 1 : 0;
-    const WeakestRow row = weakest_row(island.system);
-    const bool near = row.share < near_pose * near_pose;
+    // In the pose itself the row is redundant, and another one is the weakest.
+    const bool redundant = island.redundant_rows > course.redundant, was_near = course.near;
+    const WeakestRow before = course.row;
+    if (!redundant) course.row = weakest_row(island.system);
+    course.near = redundant || course.row.share < near_pose * near_pose;
     const double share = change.amount / course.most;
     const bool turns = share > least_share && change.amount > times_as_quick * course.usual * h;
-    if (near && course.usual >= 0 && course.steps > settled && turns && share > found_.share)
-      found_ = {row, change.body, share, time};
-    if (!near) course.usual = change.amount / h;
+    const bool passes = (course.near || was_near) && course.usual >= 0 && course.steps > settled;
+    if (passes && turns && share > found_.share) found_ = {was_near ? before : course.row, change.body, share, time};
+    if (!course.near && !was_near) course.usual = change.amount / h, course.redundant = island.redundant_rows;
   }
   events_ = events;
   before_.assign(data.bodies.velocity.begin(), data.bodies.velocity.end());

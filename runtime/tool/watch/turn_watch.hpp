@@ -29,6 +29,9 @@ class TurnWatch {
   struct Course {
     double most = 0;      // the largest velocity so far
     double usual = -1;    // the change per time in the last step away from a loss of rank; below 0: none yet
+    int redundant = 0;    // rows, after that step
+    bool near = false;    // the last step ended near one
+    WeakestRow row;       // by which it did
     long long steps = 0;  // since the last event
   };
 
