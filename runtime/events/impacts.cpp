@@ -14,8 +14,8 @@
 namespace cdot {
 namespace {
 
-// After these a row waits for its own event. Each takes a share of the speed that the one before left.
-constexpr int most_followers = 32;
+// Blows follow as long as each strikes less hard than this share of the one before. Then a row waits for its own event.
+constexpr double weaker = 0.5;
 
 // True if a row stops or drives its bodies by an impulse: an end that is met, a latch that closes, or a clutch of
 // unlimited force that meets a rate beyond its own. `missing` is what the row lacks to its rate; has_events: it may be
@@ -278,7 +278,7 @@ bool stop_what_hits(WorldData<S>& world, Island<S>& island, typename S::Scalar t
   find_rates(world, island);
   const Blow now = what_hits(island);
   if (now.source < 0) return false;
-  blow = now, blow.left = kinetic_energy(world, island);
+  blow.source = now.source, blow.joint = now.joint, blow.left = kinetic_energy(world, island);
   if (world.settings.local_error > 0 && island.flow.locates && !island.loads.empty()) judge_blow(world, island, blow);
   strike(world, island);
   hold_what_struck(island);
@@ -329,14 +329,16 @@ void end_blow(WorldData<S>& world, const Island<S>& island, Blow& blow) {
 template <class S>
 bool another_follows(Island<S>& island, Blow& blow) {
   using T = typename S::Scalar;
-  // Sweeps leave rates that are not exactly 0.
-  if (!island.solver->exact || blow.source < 0 || blow.followed >= most_followers) return false;
-  bool any = false;
+  if (!island.solver->exact || blow.source < 0) return false;  // sweeps leave rates that are not exactly 0
+  double hardest = 0;
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<T>& resolution) {
-    if (batch.mode[i] == Mode::off) any |= strikes(guard, resolution, missing_of(batch, i, guard), false);
+    const T missing = missing_of(batch, i, guard);
+    if (batch.mode[i] == Mode::off && strikes(guard, resolution, missing, false))
+      hardest = std::max(hardest, double(std::abs(missing) / resolution.rate));
   });
-  blow.followed += any;
-  return any;
+  const bool follows = hardest > 0 && hardest < weaker * blow.follower;
+  blow.follower = hardest;
+  return follows;
 }
 
 #define CDOT_INSTANTIATE(S)                                                             \

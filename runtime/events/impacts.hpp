@@ -1,6 +1,8 @@
 // Inelastic impacts of rows under a law.
 #pragma once
 
+#include <limits>
+
 #include "runtime/state/world_data.hpp"
 
 namespace cdot {
@@ -12,7 +14,7 @@ inline constexpr double impact_time = 1e-3;
 struct Blow {
   int source = -1, joint = -1;
   double left = 0;
-  int followed = 0;  // by so many more
+  double follower = std::numeric_limits<double>::infinity();  // how hard the last one struck that followed
 };
 
 // Rows that close at contact stop by impulses: J v >= 0 with impulses >= 0. Joints take part, motors with a bounded
