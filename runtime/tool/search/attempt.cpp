@@ -269,7 +269,8 @@ double foreseen_distance(const Yardstick& yardstick, double duration, const Atte
 double looser_error(const Yardstick& yardstick, double duration, const Attempt& coarse, const Attempt& fine) {
   const double now = fine.knob.local_error;
   const Course course = course_of(yardstick, duration, coarse, fine);
-  if (course.ends == 0 || coarse.result.counts.events > fine.result.counts.events) return now;
+  const bool events_to_come = coarse.result.counts.events > fine.result.counts.events;
+  if (course.ends == 0 || events_to_come || is_kinked(coarse)) return now;  // kinks may be still to come
   const double shared = std::max(round_off, coarse.energy_shares[course.ends]);
   const double foreseen =
       times_foreseen * std::max(1.0, coarse.energy_share / shared) * course.at_end(course.growth, further_growth);
