@@ -166,13 +166,14 @@ TEST(Claims, CountWhatLocatedEventsLeave) {
 // does, too, or is made in the second half.
 TEST(Claims, ArePromisedBeforeARunGoesOnLooser) {
   const Yardstick yardstick(box(TemporaryFolder(), 1));
-  const auto looser = [&](double distance, double energy_to_come, int events, int events_so_far = 0) {
+  const auto looser = [&](double distance, double energy_to_come, int events, int events_so_far = 0, int kinks = 0) {
     Attempt coarse = attempt_of(2e-2, 16, 1), fine = attempt_of(2e-6, 64, 0.5);
     for (Frame& frame : coarse.frames) frame.bodies[0].x = distance * frame.time;
     for (Frame& frame : fine.frames) frame.bodies[0].x = 0;
     for (const Frame& frame : coarse.frames) coarse.energy_shares.push_back(1e-3 / energy_to_come * frame.time);
     coarse.energy_share = 1e-3, fine.energy_share = 1e-7, coarse.result.counts.events = events;
     fine.result.counts.events = events_so_far;
+    coarse.result.counts.taken = 20, coarse.result.kinked = kinks;
     return looser_error(yardstick, 1, coarse, fine);
   };
   EXPECT_EQ(looser(1e-6, 1, 0), 0.25e-4);  // a share of the accuracy
@@ -181,8 +182,9 @@ TEST(Claims, ArePromisedBeforeARunGoesOnLooser) {
   EXPECT_EQ(looser(3e-2, 1, 0), 2e-6);  // of its own knob
   EXPECT_LT(looser(3e-4, 4, 0), 0.5 * looser(3e-4, 1, 0));
   EXPECT_EQ(looser(1e-6, 1000, 0), 2e-6);
-  EXPECT_EQ(looser(1e-6, 1, 2, 1), 2e-6);  // an event may lie ahead
-  EXPECT_GT(looser(1e-6, 1, 2, 2), 2e-5);  // both lie behind
+  EXPECT_EQ(looser(1e-6, 1, 2, 1), 2e-6);     // an event may lie ahead
+  EXPECT_GT(looser(1e-6, 1, 2, 2), 2e-5);     // both lie behind
+  EXPECT_EQ(looser(1e-6, 1, 0, 0, 1), 2e-6);  // a kink may lie ahead
 }
 
 }  // namespace
