@@ -58,10 +58,10 @@ struct FlowWorkspace {
   std::vector<T> stage_forces;      // of held rows, [guarded][stage]
   std::vector<double> first_kick;   // of rows with bounds: [J] in the first of two kicks
   int guarded = 0;                  // number of guarded rows
+  float alike = 0;                  // the smaller error estimate of the last attempt, as a share of the other
   T fixed_step = 0;                 // its length; 0: the error chooses the steps
   bool projects_stages = false;     // in steps near a loss of rank
   bool locates = false;             // this step locates all loads in time, so its end need not look for them
-  bool kinked = false;              // the error estimates of the last attempt are alike
   bool astray = false;              // the last attempt at a step reversed a joint's direction
   // Pivots of K at the stages of a step, as shares of their diagonals, and these, [stage][row]; of one row
   // (step/rank_loss.hpp).

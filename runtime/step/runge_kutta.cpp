@@ -117,16 +117,12 @@ double largest_error_of_collocation(const Flow<S>& flow, F unit) {
   return worst;
 }
 
-// In smooth steps of dop853 the estimate of fifth order is a few percent of that of third order, at errors that matter;
-// where a force has a kink both are as large. Measured over all scenes and random mechanisms.
-constexpr double alike = 0.3;
-
 // Combines both estimates. The squares of smaller ones underflow.
 template <class S, class F>
 double estimated_error(Flow<S>& flow, const RungeKuttaOf<S>& method, typename S::Scalar h, F unit) {
   if (method.implicit) return largest_error_of_collocation(flow, unit);
   const double first = largest_error(flow, method, 0, h, unit), second = largest_error(flow, method, 1, h, unit);
-  flow.kinked = second >= 1e-100 && first > alike * second;
+  flow.alike = second < 1e-100 ? 0.0f : static_cast<float>(first / second);
   if (second < 1e-100) return first;
   return first * first / std::sqrt(first * first + 0.01 * second * second);
 }

@@ -55,8 +55,7 @@ constexpr auto slight_displacement = typename S::Scalar(1e-6);  // in units of I
 // Steps of an implicit method cost the cube of the bodies. Larger islands that lose rank again and again, as a slack
 // bridge does, are damped there by Euler's method.
 constexpr int most_to_carry_on = 20;
-constexpr int furthest_reach = 64;         // of an adaptive step, in units of h
-constexpr double least_that_tells = 0.02;  // of the allowed error: smaller ones tell nothing about kinks
+constexpr int furthest_reach = 64;  // of an adaptive step, in units of h
 
 // The length of the next step: near `best`, with `left` to the end of step(h), at most `reach`. A step that ends at
 // `left` saves the interpolation, if it is only a little shorter or longer than `best`.
@@ -208,7 +207,7 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
     const double best = double(h) * factor / safety;
     if (paced && tells) paced->learn(double(h), best);
     if (error <= 1) {
-      world.counts->crossed += leap.taken(), world.kinked += flow.kinked && error > least_that_tells;
+      world.counts->crossed += leap.taken(), world.kinked += has_kink(flow, world.settings.local_error, error);
       if (world.paces && tells) world.paces->note(island.bodies.front(), double(time), double(h), best);
       flow.next_step =
           paced ? T(paced->next(double(time + h), best)) : after_step<T>(flow.next_step, h, proposed, attempt, noisy);

@@ -78,23 +78,29 @@ double error_of_events(const Yardstick& yardstick, const Attempt& attempt) {
   return yardstick.of_largest(share_of_events) * static_cast<double>(attempt.result.counts.events);
 }
 
+// The local error of velocities, if it goes on to the end.
+double error_of_velocities(const Yardstick& yardstick, const Attempt& attempt) {
+  if (attempt.frames.empty()) return 0;
+  double pace = 0;
+  for (const Frame& frame : attempt.frames) pace = std::max(pace, yardstick.allowed_pace(frame));
+  return attempt.knob.local_error * pace * (attempt.frames.back().time - attempt.frames.front().time);
+}
+
 // The error that a run may have where the comparison does not show it, up to the accuracy asked for: between its times;
 // by events, of which hundreds in a row may agree in two runs by chance; and by velocities, if the loose run happens to
 // be as good as the fine one, as where forces have kinks. Equal steps are compared where they end: a damped motion may
 // be over before.
 double unseen_error(const Yardstick& yardstick, const Attempt& attempt) {
   if (!attempt.knob.adaptive() || is_kinked(attempt)) return yardstick.asked();
-  double pace = 0;
-  for (const Frame& frame : attempt.frames) pace = std::max(pace, yardstick.allowed_pace(frame));
-  const double lasts = attempt.frames.empty() ? 0 : attempt.frames.back().time - attempt.frames.front().time;
   const double error = std::max(local_errors * (attempt.knob.local_error + error_of_events(yardstick, attempt)),
-                                velocity_errors * attempt.knob.local_error * pace * lasts);
+                                velocity_errors * error_of_velocities(yardstick, attempt));
   return std::min(error, yardstick.asked());
 }
-// The share of it that may refuse a run.
+// What of it may refuse a run: a share, and where forces have kinks the whole error of velocities.
 double refusing_error(const Yardstick& yardstick, const Attempt& attempt) {
-  return std::max(std::min(local_errors * attempt.knob.local_error, unseen * yardstick.asked()),
-                  error_of_events(yardstick, attempt));
+  return std::max({std::min(local_errors * attempt.knob.local_error, unseen * yardstick.asked()),
+                   error_of_events(yardstick, attempt),
+                   is_kinked(attempt) ? error_of_velocities(yardstick, attempt) : 0});
 }
 
 // The gain by steps: that of a run between the two up to where it ended early, as it is measured by its distance `left`
