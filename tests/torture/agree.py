@@ -76,6 +76,15 @@ def compare(run, kind, seeds):
     return differ
 
 
+def save(kinds, seeds, folder):
+    folder.mkdir(parents=True, exist_ok=True)
+    for kind in kinds:
+        for seed in seeds:
+            (folder / f"{kind}_{seed}.toml").write_text(scene(kind, seed), encoding="utf-8")
+    print(f"{len(kinds) * len(seeds)} scenes are in {folder}")
+    return 0
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cdot_run", help="the program cdot-run")
@@ -83,13 +92,17 @@ def main():
     parser.add_argument("--seed", type=int, default=0, help="of the first arm")
     parser.add_argument("--count", type=int, default=40, help="of arms of each kind")
     parser.add_argument("--print", action="store_true", help="print the scene of the first seed, and run nothing")
+    parser.add_argument("--save", type=pathlib.Path, metavar="FOLDER", help="write the scenes to it, and run nothing")
     given = parser.parse_args()
-    if given.print:
-        print(scene(given.kind or KINDS[0], given.seed), end="")
-        return 0
+    kinds = [given.kind] if given.kind else KINDS
     seeds = range(given.seed, given.seed + given.count)
+    if given.print:
+        print(scene(kinds[0], given.seed), end="")
+        return 0
+    if given.save:
+        return save(kinds, seeds, given.save)
     try:
-        differ = [compare(given.cdot_run, kind, seeds) for kind in ([given.kind] if given.kind else KINDS)]
+        differ = [compare(given.cdot_run, kind, seeds) for kind in kinds]
     except RuntimeError as fault:
         print(fault)
         return 2

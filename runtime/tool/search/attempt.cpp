@@ -96,7 +96,7 @@ double unseen_error(const Yardstick& yardstick, const Attempt& attempt) {
                                 velocity_errors * error_of_velocities(yardstick, attempt));
   return std::min(error, yardstick.asked());
 }
-// What of it may refuse a run: a share, and where forces have kinks the whole error of velocities.
+// A share of it may refuse a run, and where forces have kinks the whole error of velocities.
 double refusing_error(const Yardstick& yardstick, const Attempt& attempt) {
   return std::max({std::min(local_errors * attempt.knob.local_error, unseen * yardstick.asked()),
                    error_of_events(yardstick, attempt),
