@@ -8,9 +8,8 @@
 namespace cdot {
 namespace {
 
-// The square root of a share is the distance from the loss of rank, in rad or in arms. A loss lies below `near_loss`
-// and is the bottom of a dip: before and after it the distance is `dip` times as large.
-constexpr double near_loss = 0.05, dip = 5;
+// A loss is the bottom of a dip: before and after it the distance is so many times as large.
+constexpr double dip = 5;
 
 }  // namespace
 

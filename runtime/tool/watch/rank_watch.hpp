@@ -10,6 +10,10 @@
 
 namespace cdot {
 
+// The square root of a pivot's share is the distance from the loss of rank, in rad or in arms. Below this one K nearly
+// loses rank.
+inline constexpr double near_loss = 0.05;
+
 struct RankLoss {
   double time = 0;  // [s], of the nearest step's end
   WeakestRow row;

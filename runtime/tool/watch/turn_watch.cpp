@@ -7,12 +7,11 @@
 
 #include "runtime/direct/weakest_row.hpp"
 #include "runtime/state/world_data.hpp"
+#include "runtime/tool/watch/rank_watch.hpp"
 
 namespace cdot {
 namespace {
 
-// The square root of a pivot's share is the distance from the loss of rank, in rad or in arms.
-constexpr double near_pose = 0.05;
 // A turn changes a velocity by this share of the largest, and so many times as quickly as in the last step before.
 constexpr double least_share = 0.02, times_as_quick = 10;
 // Ends that are met and rows that slip change velocities as well. So many steps after them tell nothing.
@@ -65,7 +64,7 @@ void TurnWatch<S>::look(BasicWorld<S>& world, double h, double time) {
     const bool redundant = island.redundant_rows > course.redundant, was_near = course.near;
     const WeakestRow before = course.row;
     if (!redundant) course.row = weakest_row(island.system);
-    course.near = redundant || course.row.share < near_pose * near_pose;
+    course.near = redundant || course.row.share < near_loss * near_loss;
     const double share = change.amount / course.most;
     const bool turns = share > least_share && change.amount > times_as_quick * course.usual * h;
     const bool passes = (course.near || was_near) && course.usual >= 0 && course.steps > settled;
