@@ -294,6 +294,7 @@ void find_pressed_ends(WorldData<S>& world, Island<S>& island) {
   constexpr double nearly_rigid = 1e-4;
   forget_pressed_ends(island);
   if (!may_press(island)) return;
+  const bool jams = island.jams;
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.displacement[i] = all.velocity[i];
   for (const double softness : {2 * nearly_rigid, nearly_rigid}) {
@@ -305,6 +306,7 @@ void find_pressed_ends(WorldData<S>& world, Island<S>& island) {
   island.system.softness_of_motors = System<S>::usual_softness;
   find_rates(world, island);
   if (lacks_motors(island)) note_pressed_ends(island);
+  island.jams = jams;
   for (int i : island.bodies) all.velocity[i] = all.displacement[i];
 }
 

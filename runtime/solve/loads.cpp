@@ -184,15 +184,31 @@ bool turns_cones(const Island<S>& island) {
   return std::any_of(island.loads.begin(), island.loads.end(), [](const LoadedRow<S>& row) { return row.turns; });
 }
 
+namespace {
+
+// Of the sums that loads are, from the impulses of all rows of the present solution.
+template <class S>
+typename S::Scalar round_off_of_loads(const Island<S>& island) {
+  using T = typename S::Scalar;
+  constexpr T of_sums = 16 * std::numeric_limits<T>::epsilon();
+  T largest = 0;
+  for (const auto lambda : island.at_work().lambda) largest = std::max(largest, T(std::abs(lambda)));
+  return of_sums * largest;
+}
+
+}  // namespace
+
 template <class S>
 typename S::Scalar find_load_changes(Island<S>& island) {
   using T = typename S::Scalar;
+  const T round_off = round_off_of_loads(island);
   T worst = 0, largest = 0;
   for (size_t k = 0; k < island.loads.size(); ++k) {
     const LoadedRow<S>& row = island.loads[k];
     const T found = row.turns ? row.corner_found : row.found, change = found - (row.turns ? row.corner : row.load);
     island.load_changes[k] = change;
-    worst = std::max(worst, std::abs(change)), largest = std::max(largest, std::abs(found));
+    if (std::abs(change) > round_off) worst = std::max(worst, std::abs(change));
+    largest = std::max(largest, std::abs(found));
   }
   if (largest > T(0)) return worst / largest;
   return worst > T(0) ? std::numeric_limits<T>::infinity() : T(0);  // a contact that is lost has no load

@@ -116,7 +116,7 @@ template <class S>
 bool move_on(Island<S>& island);
 
 // Writes what solve() changed in loads and corners to Island::load_changes. Returns the largest change, as a share of
-// the largest of them.
+// the largest of them. Beside the largest impulse of the solution, loads are no surer than its round-off.
 template <class S>
 typename S::Scalar find_load_changes(Island<S>& island);
 

@@ -54,6 +54,18 @@ TEST(Arms, AreStoppedByABlowThatSlackensARope) {
   EXPECT_LT(largest_apart(scene, rows_by(scene, Integrator::dop853, 0, 5e-3), truth), 1e-6);
 }
 
+// Beside the impulses that hold a motor of unlimited force, the load of a pin may be round-off, and settles.
+TEST(Arms, PressOntoAnEndThatTurnsRound) {
+  Scene scene = arm("pressed");
+  const std::vector<Frame> truth = rows_by(scene, Integrator::dop853, 1e-11);
+  EXPECT_LT(largest_apart(scene, rows_by(scene, Integrator::rk4, 0, 5e-4), truth), 1e-5);
+  EXPECT_LT(largest_apart(scene, rows_by(scene, Integrator::rk4, 0, 1e-4), truth), 1e-6);
+  EXPECT_LT(largest_apart(scene, rows_by(scene, Integrator::radau5, 1e-8), truth), 1e-5);
+  const auto [result, rows] = recorded(scene, between_rows);  // by default
+  EXPECT_TRUE(result.choice.value().reached);
+  EXPECT_LT(largest_apart(scene, rows, truth), result.choice->achieved);
+}
+
 // The step over the pole leads its stages away from it, but a step to the event would end there. It was off by 1.7 rad
 // at a local error of 1e-2, and by 2e-3 rad at one of 2e-6.
 TEST(Arms, LetGoOfARopeInThePoseWhereItsForceIsUnbounded) {
