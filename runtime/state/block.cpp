@@ -28,11 +28,11 @@ constexpr char type_of() {
 template <class T>
 class Layout {
  public:
-  Layout(Block& block, std::byte* to) : block_(block), to_(to) { block.items.clear(); }
+  Layout(Block& block, std::byte* to) : block_(block), to_(to) {}
 
   void item(const char* name, int index, bool) {
     at_ = Snapshot::aligned(at_);
-    block_.items.push_back({index < 0 ? std::string(name) : fmt::format("{}[{}]", name, index), 'c', 0});
+    items_.push_back({index < 0 ? std::string(name) : fmt::format("{}[{}]", name, index), 'c', 0});
   }
   template <class Number>
   void operator()(StateArray<Number>& array) {
@@ -46,18 +46,19 @@ class Layout {
   void counts(StateNumber<StepCounts>& counts) {
     item("counts", -1, true);
     if (to_) counts.settle(to_ + at_);
-    block_.items.back() = {"counts", 'l', sizeof(StepCounts) / sizeof(long long)};
+    items_.back() = {"counts", 'l', sizeof(StepCounts) / sizeof(long long)};
     at_ += sizeof(StepCounts);
   }
   void common_ends() { block_.common = {0, at_}; }
   std::size_t size() const { return Snapshot::aligned(at_); }
+  std::vector<Snapshot::Item> items() { return std::move(items_); }
 
  private:
   template <class Number, class Array>
   void add(Array& array, std::size_t count) {
     constexpr std::size_t numbers = std::is_class_v<Number> ? sizeof(Number) / sizeof(T) : 1;
     static_assert(!std::is_class_v<Number> || sizeof(Number) % sizeof(T) == 0);
-    Snapshot::Item& item = block_.items.back();
+    Snapshot::Item& item = items_.back();
     item.type = type_of<Number, T>();
     item.count += count * numbers;
     if (to_) array.settle(to_ + at_);
@@ -66,6 +67,7 @@ class Layout {
 
   Block& block_;
   std::byte* to_;
+  std::vector<Snapshot::Item> items_;
   std::size_t at_ = 0;
 };
 
@@ -149,6 +151,7 @@ void settle_state(WorldData<S>& world) {
   std::vector<std::byte> bytes(layout.size());
   Layout<T> move(world.block, bytes.data());
   StateList::each(world, move);
+  world.block.items = std::make_shared<const std::vector<Snapshot::Item>>(move.items());
   world.block.bytes.swap(bytes);
   if (const auto heir = world.block.heir.lock()) *heir = std::move(bytes);
   world.block.heir.reset();

@@ -14,9 +14,9 @@ struct Block {
     std::size_t begin, end;
   };
   std::vector<std::byte> bytes;
-  std::vector<Snapshot::Item> items;
-  Range common{};                           // time and counts
-  std::vector<std::vector<Range>> islands;  // ranges of each that steps change
+  std::shared_ptr<const std::vector<Snapshot::Item>> items;  // of these bytes
+  Range common{};                                            // time and counts
+  std::vector<std::vector<Range>> islands;                   // ranges of each that steps change
   // Of whoever shows the bytes to a program (derive/python): receives them when another layout replaces them.
   std::weak_ptr<std::vector<std::byte>> heir;
 };

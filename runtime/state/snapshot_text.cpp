@@ -142,7 +142,7 @@ std::string Snapshot::text() const {
       fmt::format("{}\nof {}\nbodies {} {:x}\njoints {} {:x}\norder {:x}\n", first_line, origin_.method,
                   origin_.body_count, origin_.bodies, origin_.joint_count, origin_.joints, origin_.order);
   std::size_t at = 0;
-  for (const Item& item : items_) {
+  for (const Item& item : items()) {
     text += fmt::format("{} {} {}", item.name, item.type, item.count);
     with_number_type(item.type, [&](auto number) {
       for (std::size_t k = 0; k < item.count; ++k, at += sizeof number) {
@@ -162,9 +162,10 @@ Snapshot Snapshot::read(std::string_view text) {
   if (reader.line() != first_line) reader.fail(fmt::format("it does not begin with \"{}\"", first_line));
   reader.next_line();
   snapshot.origin_ = read_origin(reader);
+  Items items;
   std::string_view name;
-  for (; !reader.ended() && (name = reader.word()) != "end";)
-    snapshot.items_.push_back(read_item(reader, name, snapshot.bytes_));
+  for (; !reader.ended() && (name = reader.word()) != "end";) items.push_back(read_item(reader, name, snapshot.bytes_));
+  snapshot.items_ = std::make_shared<const Items>(std::move(items));
   if (reader.ended()) reader.fail("the last line is missing");
   if (reader.number<std::uint64_t>(16) != hash_of(text.substr(0, reader.line_start())))
     reader.fail("the text was changed: its hash differs");

@@ -131,7 +131,7 @@ struct SnapshotAccess {
   template <class S>
   static void save(WorldData<S>& world, Snapshot& to) {
     Snapshot::Origin origin = origin_of(world);
-    if (!same_hashes(origin, to.origin_) || to.items_.size() != world.block.items.size()) {
+    if (!same_hashes(origin, to.origin_) || to.items_ != world.block.items) {
       to.origin_ = origin;
       to.origin_.method = method_of<S>(world.settings);
       to.items_ = world.block.items;
@@ -144,7 +144,7 @@ struct SnapshotAccess {
   template <class S>
   static void prepare_as(WorldData<S>& world, const Snapshot& from) {
     const std::byte* at = from.bytes_.data();
-    for (const Snapshot::Item& item : from.items_) {
+    for (const Snapshot::Item& item : from.items()) {
       if (item.name == "joints.left_out")
         for (size_t k = 0; k < world.joints.size() && k < item.count; ++k)
           world.joints[k].broken = at[k] != std::byte{0};
@@ -156,7 +156,7 @@ struct SnapshotAccess {
 
   template <class S>
   static bool load(WorldData<S>& world, const Snapshot& from, std::uint64_t order) {
-    if (order != from.origin_.order || world.block.items != from.items_) return false;
+    if (order != from.origin_.order || !from.has(*world.block.items)) return false;
     adopt_state(world, from.bytes_);
     return true;
   }
@@ -189,14 +189,15 @@ double Snapshot::time() const {
 std::vector<std::string> Snapshot::differences(const Snapshot& other) const {
   std::vector<std::string> names;
   std::size_t here = 0, there = 0;
-  for (std::size_t k = 0; k < std::max(items_.size(), other.items_.size()); ++k) {
-    const bool both = k < items_.size() && k < other.items_.size() && items_[k] == other.items_[k];
+  const Items &mine = items(), &others = other.items();
+  for (std::size_t k = 0; k < std::max(mine.size(), others.size()); ++k) {
+    const bool both = k < mine.size() && k < others.size() && mine[k] == others[k];
     if (!both) {
-      names.push_back(k < items_.size() ? items_[k].name : other.items_[k].name);
+      names.push_back(k < mine.size() ? mine[k].name : others[k].name);
       return names;  // later items have no counterpart
     }
-    const std::size_t bytes = items_[k].count * Snapshot::size_of(items_[k].type);
-    if (std::memcmp(bytes_.data() + here, other.bytes_.data() + there, bytes) != 0) names.push_back(items_[k].name);
+    const std::size_t bytes = mine[k].count * Snapshot::size_of(mine[k].type);
+    if (std::memcmp(bytes_.data() + here, other.bytes_.data() + there, bytes) != 0) names.push_back(mine[k].name);
     here = Snapshot::aligned(here + bytes), there = Snapshot::aligned(there + bytes);
   }
   return names;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,12 +36,14 @@ class Snapshot {
   static constexpr std::size_t alignment = alignof(long double);
   static constexpr std::size_t aligned(std::size_t at) { return (at + alignment - 1) / alignment * alignment; }
 
-  bool empty() const { return items_.empty(); }
+  bool empty() const { return items().empty(); }
   const Origin& origin() const { return origin_; }
   double time() const;  // [s]; 0 if empty
 
   // True if every bit is equal.
-  bool operator==(const Snapshot&) const = default;
+  bool operator==(const Snapshot& other) const {
+    return origin_ == other.origin_ && bytes_ == other.bytes_ && has(other.items());
+  }
   // Names of the arrays whose bits differ or that only one snapshot has.
   std::vector<std::string> differences(const Snapshot& other) const;
 
@@ -50,9 +53,15 @@ class Snapshot {
 
  private:
   friend struct SnapshotAccess;  // runtime/state/snapshot.cpp
+  using Items = std::vector<Item>;
+  const Items& items() const {
+    static const Items none;
+    return items_ ? *items_ : none;
+  }
+  bool has(const Items& others) const { return items_.get() == &others || items() == others; }
   Origin origin_;
-  std::vector<Item> items_;
-  std::vector<std::byte> bytes_;  // of all items
+  std::shared_ptr<const Items> items_;  // snapshots of one World share theirs; null: none
+  std::vector<std::byte> bytes_;        // of all items
 };
 
 }  // namespace cdot
