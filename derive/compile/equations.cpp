@@ -234,13 +234,15 @@ class EquationWriter {
       out_.guard = guard_of(blocks_, out_.constants), out_.resolve = resolve_of(blocks_, out_.constants);
     }
     if (mechanism_.has_loads()) out_.carry = carry_of(blocks_, joints_, out_.constants);
+    const bool starts_motors =
+        mechanism_.method == Method::rattle && mechanism_.has_loads() && mechanism_.has_strong_motors();
+    if (out_.has_ends || starts_motors) out_.along = along_of(blocks_, out_.constants);
     if (!out_.has_ends) return;
     out_.reach = reach_of(blocks_, joints_, out_.constants);
     out_.past = past_of(blocks_, out_.constants);
     if (mechanism_.method == Method::rattle || mechanism_.method == Method::implicit)
       out_.nearest = nearest_of(blocks_, out_.constants);
     if (mechanism_.method == Method::implicit) out_.drift_of_ends = drift_of_ends(blocks_, out_.constants);
-    out_.along = along_of(blocks_, out_.constants);
     if (mechanism_.keeps_momenta())
       out_.displace =
           displace_of(blocks_, joints_, out_.constants, [&](std::size_t b) { return has_ends(blocks_, b); });

@@ -15,12 +15,13 @@
 #include "derive/compile/methods/loads.hpp"
 #include "derive/compile/methods/modes.hpp"
 #include "derive/compile/methods/rates.hpp"
-#include "derive/compile/methods/rattle.hpp"
 #include "derive/compile/methods/state.hpp"
 #include "derive/compile/methods/tables.hpp"
 #include "derive/compile/midpoint/implicit.hpp"
 #include "derive/compile/midpoint/tension.hpp"
 #include "derive/compile/one_freedom/step.hpp"
+#include "derive/compile/rattle/rattle.hpp"
+#include "derive/compile/rattle/start.hpp"
 #include "derive/compile/readings/readings.hpp"
 #include "derive/compile/steps.hpp"
 #include "derive/compile/texts.hpp"
@@ -198,7 +199,10 @@ class HeaderWriter {
                      equations_.kick);
     if (has().bears) write_bear(at, moving);
     if (has().corrects_loads()) write_carry(at), text_ += settle_loads_of(has(), equations_.cones);
-    if (has().ends) write_ends(at, moving);
+    if (has().ends) write_ends(at);
+    if (!equations_.along.outputs.empty())
+      write_function("J v of rows with bounds", "along(" + at + ", " + moving + ", T (&along)[bounded])",
+                     equations_.along);
     if (has().events) {
       write_function("Distances from the events of rows with bounds",
                      "distances(" + at + ", " + moving + (has().forces ? ", const T (&force)[bounded]" : "") +
@@ -307,7 +311,7 @@ class HeaderWriter {
     text_ += BodyTexts{mechanism_, names_.bodies}.judged();
   }
 
-  void write_ends(const std::string& at, const std::string& moving) {
+  void write_ends(const std::string& at) {
     write_function("The part of rows with ends in a projection",
                    "reach(" + at + (has().rows ? ", const Jacobian& J" : "") + ", Bounded& B)", equations_.reach);
     write_function("Errors of rows with ends", "past(" + at + ", T (&past)[bounded])", equations_.past);
@@ -317,8 +321,6 @@ class HeaderWriter {
     if (has().ends_drift)
       write_function("Rates of C from the nearer end of bodies at rest",
                      "drift_of_ends(" + at + ", T (&moves)[bounded])", equations_.drift_of_ends);
-    write_function("J v of rows with bounds", "along(" + at + ", " + moving + ", T (&along)[bounded])",
-                   equations_.along);
     if (mechanism_.keeps_momenta())
       write_function("d = M^-1 (J^T lambda + E^T mu), E the rows with bounds",
                      "displace(" + at + (has().rows ? ", const Jacobian& J, const T (&lambda)[rows]" : "") +

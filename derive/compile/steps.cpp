@@ -6,11 +6,11 @@
 #include "derive/compile/foresight/foresight.hpp"
 #include "derive/compile/gyroscopes.hpp"
 #include "derive/compile/methods/bonds.hpp"
-#include "derive/compile/methods/rattle.hpp"
 #include "derive/compile/methods/runge_kutta.hpp"
 #include "derive/compile/methods/weights.hpp"
 #include "derive/compile/midpoint/implicit.hpp"
 #include "derive/compile/one_freedom/step.hpp"
+#include "derive/compile/rattle/rattle.hpp"
 #include "derive/compile/texts.hpp"
 #include "derive/compile/types.hpp"
 
@@ -197,7 +197,7 @@ Contents contents_of(const Mechanism& mechanism, const Equations& equations) {
           .modes = !mechanism.bounded.empty() && mechanism.on_accelerations(),
           .loads = mechanism.has_loads(),
           .cones = mechanism.has_cones(),
-          .strong = mechanism.on_accelerations() && mechanism.has_strong_motors(),
+          .strong = mechanism.has_strong_motors(),
           .bonds = !mechanism.bonds.empty(),
           .snaps = !mechanism.bonds.empty() && mechanism.on_accelerations(),
           .bears = !equations.bear_start.outputs.empty() || !equations.bear.outputs.empty(),

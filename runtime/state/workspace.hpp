@@ -62,6 +62,7 @@ struct FlowWorkspace {
   T fixed_step = 0;                 // its length; 0: the error chooses the steps
   bool projects_stages = false;     // in steps near a loss of rank
   bool locates = false;             // this step locates all loads in time, so its end need not look for them
+  bool motors_struck = false;       // in this step of RATTLE, before its drift: begin_kick_drift()
   bool astray = false;              // the last attempt at a step reversed a joint's direction
   // Pivots of K at the stages of a step, as shares of their diagonals, and these, [stage][row]; of one row
   // (step/rank_loss.hpp).

@@ -6,6 +6,7 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/events/guarded.hpp"
+#include "runtime/events/resolution.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/loads.hpp"
 #include "runtime/solve/misfits.hpp"
@@ -100,6 +101,27 @@ void note_grips(Island<S>& island) {
   });
 }
 
+// True if a motor of unlimited force misses more of its rate than round-off, and these accelerations bring it there in
+// the time t, as they do not where an end holds it.
+template <class S>
+bool reaches_rate_by_blow(WorldData<S>& world, Island<S>& island, typename S::Scalar t) {
+  using T = typename S::Scalar;
+  bool any = false;
+  each_guarded_slot(island, [&](Batch<S>& batch, int i) {
+    if (!acts_by_force(batch)) return;
+    Guard<T> guard;
+    batch.law->guard(batch, i, &guard);
+    if (!guard.bilateral()) return;
+    Resolution<T> resolution[most_rows] = {};
+    find_resolution(world, island, batch, i, t, resolution);
+    const T missing = batch.impulse[i];
+    batch.ops->velocity(batch, i, i + 1, world.bodies.velocity_rate.data(), batch.rate.data());
+    any |=
+        std::abs(missing) > T(4) * resolution[0].rate && std::abs(missing - t * batch.rate[i]) < std::abs(missing) / 2;
+  });
+  return any;
+}
+
 // Rows without C have none for the first half of a step: velocity rows, motors and friction. They repeat their impulses
 // from the second half of the last step. A start from 0 would alternate between 0 and twice the impulse forever. The
 // start is therefore half of their impulse in h.
@@ -111,6 +133,7 @@ void exert_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h
   const T time = T(world.time);
   if (has_rows(island, acts_by_force<S>)) reach_rates(world, island, h / 2);
   else accelerate(world, island, time);
+  island.flow.motors_struck = !island.loads.empty() && reaches_rate_by_blow(world, island, h / 2);
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     const bool acts = !batch.law || acts_by_force(batch);
@@ -141,6 +164,21 @@ void ease_held_motors(WorldData<S>& world, Island<S>& island) {
   });
 }
 
+// Ends that are not met yet do not slow their bodies before. A blow in two parts would load friction in both of them,
+// in the first one perhaps against the slip before the blow.
+template <class S>
+void wait_for_ends(const Island<S>& island, Batch<S>& batch, int begin, int end) {
+  using T = typename S::Scalar;
+  if (!batch.law->error || !batch.law->guard) return;
+  Guard<T> guards[most_rows];
+  for (int slot = begin; slot < end; ++slot) {
+    batch.law->guard(batch, slot, guards);
+    for (int r = 0; r < batch.ops->rows; ++r)
+      if (guards[r].one_sided() && guards[r].gap() > foreign<T> * island.scale)
+        batch.lower[slot * batch.ops->rows + r] = batch.upper[slot * batch.ops->rows + r] = T(0);
+  }
+}
+
 // Motors, limits and friction are solved with the exact rows. Springs have acted as forces.
 template <class S>
 void bound_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
@@ -155,6 +193,7 @@ void bound_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
       continue;
     }
     batch.law->fill(batch, segment.begin, segment.end, h, world.settings);
+    if (!island.loads.empty() && island.solver->exact) wait_for_ends(island, batch, segment.begin, segment.end);
     for (int i = begin; i < end; ++i) {
       if (!acts_at_start(island, batch, i)) continue;
       batch.lower[i] *= T(0.5);  // the other half acts at the start of the next step
@@ -191,6 +230,7 @@ template <class S>
 typename S::Scalar begin_kick_drift(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   const T share = world.last_step > 0 ? h / T(world.last_step) : T(0);
+  island.flow.motors_struck = false;
   // Errors that sweeps left in the impulses would grow with them, until they throw the bodies off.
   if (island.evaluated) {
     ease_held_motors(world, island);
@@ -228,12 +268,12 @@ void drift_with_rates(WorldData<S>& world, Island<S>& island, typename S::Scalar
 }
 
 template <class S>
-void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h, bool struck) {
+void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h, EndLoads loads) {
   factorize_rows(world, island);
   bound_rows(world, island, h);
   island.factored = false;
-  // Loads are those of the whole step. The other half of what they bound acts at the start of the next one.
-  island.corrections_in_loads = 1, island.loads_in_kick = typename S::Scalar(struck ? 1 : 0.5);
+  island.corrections_in_loads = loads == EndLoads::of_end ? 0 : 1;
+  island.loads_in_kick = typename S::Scalar(loads == EndLoads::half ? 0.5 : 1);
   island.solver->velocities(world, island, world.bodies.velocity.data(), typename S::Scalar(1));
   island.corrections_in_loads = 0, island.loads_in_kick = 1;
   forget_dampers(world, island);
@@ -283,7 +323,7 @@ bool settle_clutches(Island<S>& island) {
   template void note_start(const WorldData<S>&, Island<S>&);                 \
   template void drift(WorldData<S>&, Island<S>&, S::Scalar);                 \
   template void drift_with_rates(WorldData<S>&, Island<S>&, S::Scalar);      \
-  template void solve_end(WorldData<S>&, Island<S>&, S::Scalar, bool);       \
+  template void solve_end(WorldData<S>&, Island<S>&, S::Scalar, EndLoads);   \
   template void calm_sticking_rows(Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

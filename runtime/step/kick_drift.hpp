@@ -13,6 +13,7 @@ bool repeats_impulses(const Island<S>& island);
 
 // Prepares the start of a step of h. A state that is not the end of a step is projected, and its exact rows are
 // factored. Returns the factor that scales the present impulses to this step: h / last step, for sweeps at most 1.
+// Flow::motors_struck: motors of unlimited force reach their rates at the start by a blow that loads friction.
 template <class S>
 typename S::Scalar begin_kick_drift(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 
@@ -28,11 +29,15 @@ void drift(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 template <class S>
 void drift_with_rates(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 
+// The impulses by which loads grow the friction of the end: those of the whole step, of which the other half acts at
+// the start of the next one; all of them there, after an end was struck; those of the end alone, after a blow of motors
+// at the start has taken its friction.
+enum class EndLoads : char { half, whole, of_end };
+
 // The velocities at the end of a step of h, after an evaluation of C and J: J v = -dC/dt. Motors, limits and friction
 // act with half of their impulse; the other half acts at the start of the next step. Springs have acted as forces.
-// Where an end was struck, friction takes its whole share of the impact here.
 template <class S>
-void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h, bool struck);
+void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h, EndLoads loads);
 
 // Where a loaded row alone sticks, the impulses s and e of both halves of a step are what stops it, s + e = P. If the
 // next step began with s' = e, an error of s would change its sign in each step and never fade, and others that it

@@ -308,14 +308,15 @@ void note_gaps(const Island<S>& island) {
   each_end(island, [](Batch<S>& batch, int i, const auto& guard) { batch.rate[i] = guard.gap(); });
 }
 
-// True if a body meets an end: its gap was open at the start, and the drift closed half of it or more. The rest follows
-// in the next step, but the end already slows the body.
+// True if a body meets an end: its gap was open at the start, and the drift closed it. In an island without loads it is
+// enough that the drift closed half of it: there the end already slows the body.
 template <class S>
 bool is_struck(const Island<S>& island) {
   using T = typename S::Scalar;
   bool struck = false;
   each_end(island, [&](const Batch<S>& batch, int i, const auto& guard) {
-    struck |= batch.rate[i] > foreign<T> * island.scale && T(2) * guard.gap() <= batch.rate[i];
+    const T met = foreign<T> * island.scale, near = island.loads.empty() ? T(0.5) * batch.rate[i] : met;
+    struck |= batch.rate[i] > met && guard.gap() <= near;
   });
   return struck;
 }
@@ -363,7 +364,7 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     }
     drift_with_renewed_directions(world, island, h, at_start, share);
   }
-  const bool struck = repeats && is_struck(island);
+  const bool struck = repeats && is_struck(island), started = island.flow.motors_struck;
   book_start(world, island, h / 2);
   note_impulses_of_forces(island, h / 2, true);
   restore_turns(island);
@@ -375,11 +376,11 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   kick(world, island, h / 2);
   note_impulses_of_forces(island, h / 2, false);
   if (repeats && !by_sweeps) island.at_work().choose([](const Batch<S>&, int) { return true; });  // rolling as well
-  solve_end(world, island, h, struck);
+  solve_end(world, island, h, struck ? EndLoads::whole : started ? EndLoads::of_end : EndLoads::half);
   book_kick(world, island, Impulses::rattle_end, h / 2);  // the mirror image of the start
   if (!island.loads.empty()) calm_sticking_rows(island);
   const bool anew = repeats && !by_sweeps && settle_clutches(island);
-  island.evaluated = !struck && !anew;  // the next step does not repeat friction's share of an impact
+  island.evaluated = !struck && !started && !anew;  // the next step does not repeat friction's share of an impact
 }
 
 template <class S>

@@ -92,6 +92,7 @@ const std::vector<std::string> rooms = {
     "derive/compile/one_freedom", // a mechanism of one freedom in a few angles
     "derive/compile/methods",  // its steps as text
     "derive/compile/bounded", // impulses of rows with bounds as text
+    "derive/compile/rattle", // RATTLE as text
     "derive/compile/midpoint", // the implicit midpoint rule, in programs and text
     "derive/compile/collocation", // Radau IIA as text
     "derive/compile",      // a scene to a header of its own

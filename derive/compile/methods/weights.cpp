@@ -117,15 +117,25 @@ constexpr const char* settles_euler_joints = R"(    T drawn[rows];
     for (int i = 0; i < rows; ++i) drawn[i] = h * s.drawn[i];
 )";
 
-// Loads are those of the whole step. The other half of what they bound acts at the start of the next one.
+// Loads are those of the whole step. The other half of what they bound acts at the start of the next one. After a blow
+// of motors at the start, which has taken its friction, they are those of the end alone.
 constexpr const char* settles_rattle = R"(    T of_first[bounded], load[bounded];
     for (int i = 0; i < bounded; ++i) {{
       of_first[i] = {0}half * s.repeats[i], load[i] = h * magnitude(s.force[i]);
       const T in_kick = {5};
       B.by_low[i] = in_kick * B.by_low[i], B.by_high[i] = in_kick * B.by_high[i];
     }}
-{1}{3}    settle_loads($ss.q, s.time, {2}of_first, {4}B, mu, load, [&](T (&now)[bounded]) {{ settle(B, s.hold, now); }});
+{1}{6}{3}    settle_loads($ss.q, s.time, {2}of_first, {4}B, mu, load, [&](T (&now)[bounded]) {{ settle(B, s.hold, now); }});
 )";
+// After a blow of motors at the start, which has taken its friction, loads are those of the end alone.
+constexpr const char* counts_end_alone = R"(    for (int i = 0; i < bounded; ++i) {{
+      const auto alone = started[group_of_bound[i]]{0};
+      of_first[i] = select(alone, T(0), of_first[i]);
+      B.by_low[i] = select(alone, T(2), T(1)) * B.by_low[i], B.by_high[i] = select(alone, T(2), T(1)) * B.by_high[i];
+    }}
+{1})";
+constexpr const char* counts_rows_of_end_alone =
+    "    for (int i = 0; i < rows; ++i) drawn[i] = select(started[group_of_row[i]]{0}, T(0), drawn[i]);\n";
 constexpr const char* settles_rattle_joints = R"(    T drawn[rows];
     for (int i = 0; i < rows; ++i) drawn[i] = half * found[i];
 )";
@@ -219,9 +229,16 @@ std::string rattle_weighs(const Contents& has) {
 }
 
 std::string settles_end_with_loads(const Contents& has) {
-  return fmt::format(settles_rattle, has.ends ? "total[i] + " : "", has.rows ? settles_rattle_joints : "",
-                     has.rows ? "s.J, s.lambda, drawn, " : "", turns_alone(has), corners(has),
-                     has.strikes() ? "select(struck[group_of_bound[i]], T(1), T(0.5))" : "T(0.5)");
+  const auto unless_struck = [&](const char* group) {
+    return has.strikes() ? fmt::format(" && !struck[{}[i]]", group) : std::string();
+  };
+  const std::string rows_alone =
+      has.rows ? fmt::format(counts_rows_of_end_alone, unless_struck("group_of_row")) : std::string();
+  return fmt::format(
+      settles_rattle, has.ends ? "total[i] + " : "", has.rows ? settles_rattle_joints : "",
+      has.rows ? "s.J, s.lambda, drawn, " : "", turns_alone(has), corners(has),
+      has.strikes() ? "select(struck[group_of_bound[i]], T(1), T(0.5))" : "T(0.5)",
+      has.starts_motors() ? fmt::format(counts_end_alone, unless_struck("group_of_bound"), rows_alone) : "");
 }
 
 std::string settles_start_with_loads(const Contents& has) {

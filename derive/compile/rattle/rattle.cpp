@@ -1,10 +1,11 @@
-#include "derive/compile/methods/rattle.hpp"
+#include "derive/compile/rattle/rattle.hpp"
 
 #include <fmt/format.h>
 
 #include "derive/compile/foresight/foresight.hpp"
 #include "derive/compile/methods/bonds.hpp"
 #include "derive/compile/methods/weights.hpp"
+#include "derive/compile/rattle/start.hpp"
 
 namespace cdot::compile {
 namespace {
@@ -17,6 +18,9 @@ constexpr const char* begins = R"(
 {}    const T half = T(0.5) * h;
     Velocity before[bodies], a[bodies];
 )";
+constexpr const char* starts_with_motors = R"(    Mask started[groups];
+    start(s, h, started);
+)";
 
 // Effects act by their rates at both ends of the step.
 constexpr const char* dampens = R"(    dampen($ss.q, s.time, s.v, h, before);
@@ -24,7 +28,8 @@ constexpr const char* dampens = R"(    dampen($ss.q, s.time, s.v, h, before);
 )";
 
 // Gaps of ends at the start, and whether a body met one of its mechanism until the drift ended: there friction takes
-// its share of the impact at once, and the next step does not repeat it.
+// its share of the impact at once, and the next step does not repeat it. Without loads it is enough that the drift
+// closed half of a gap: there the end already slows the body.
 constexpr const char* notes_gaps = R"(    T gap[bounded], side_at_start[bounded];
     nearest($ss.q, s.time, gap, side_at_start);
     for (int i = 0; i < bounded; ++i) gap[i] = side_at_start[i] * gap[i];
@@ -34,12 +39,21 @@ constexpr const char* strikes = R"(    Mask struck[groups];
     T off[bounded], side_at_end[bounded];
     nearest($ss.q, s.time, off, side_at_end);
     for (int i = 0; i < bounded; ++i) {{
-      const auto meets = gap[i] > T((single ? 1e9 : 1e5) * {}) && T(2) * side_at_end[i] * off[i] <= gap[i];
+      const T met = T((single ? 1e9 : 1e5) * {0});
+      const auto meets = gap[i] > met && side_at_end[i] * off[i] <= {1};
       struck[group_of_bound[i]] = struck[group_of_bound[i]] || meets;
     }}
 )";
 constexpr const char* begins_where_struck =
     "    for (int i = 0; i < groups; ++i) s.begins[i] = select(struck[i], T(1), s.begins[i]);\n";
+constexpr const char* begins_where_started =
+    "    for (int i = 0; i < groups; ++i) s.begins[i] = select(started[i], T(1), s.begins[i]);\n";
+// Ends that are not met yet do not slow their bodies before: a blow in two parts would load friction in both of them.
+constexpr const char* waits_for_ends = R"(    for (int i = 0; i < bounded; ++i) {{
+      const auto waits = side_at_end[i] * off[i] > T((single ? 1e9 : 1e5) * {}) && magnitude(side_at_end[i]) > T(0);
+      B.low[i] = select(waits, T(0), B.low[i]), B.high[i] = select(waits, T(0), B.high[i]);
+    }}
+)";
 
 constexpr const char* notes_velocities = "    for (int i = 0; i < bodies; ++i) before[i] = s.v[i];\n";
 
@@ -266,41 +280,6 @@ constexpr const char* pushes = R"(
   }
 )";
 
-constexpr const char* sums_pulls = R"(    for (int e = 0; e < bounded; ++e) {{
-      const T again = {3};
-      for (int i = 0; i < bodies; ++i) {0}{2}pull[i] = {2}pull[i] + mu[e] * B.p[e][i] + again * B.u[e][i];
-{1}    }}
-)";
-constexpr const char* sums_lambda =
-    "      for (int i = 0; i < rows; ++i) {0}lambda[i] = {0}lambda[i] + mu[e] * B.l[e][i];\n";
-
-// The first step does not repeat what ended another one.
-constexpr const char* start_begins = R"(
-  // Forces of joints and motors at the start of a run, of mechanisms and in lanes that begin.
-  static void start(State& s, const T& h) {
-    Mask begins[groups], some = T(1) < T(0);
-    for (int i = 0; i < groups; ++i) begins[i] = s.begins[i] > T(0), some = some || begins[i];
-    if (!any(some)) return;
-    Velocity pull[bodies];
-)";
-constexpr const char* start_by_joints = R"(    T lambda[rows];
-    exert($ss.q, s.time, s.v, s.J, h, lambda, pull);
-)";
-constexpr const char* start_with_bounds = R"(    Bounded B;
-    T mu[bounded], hold[bounded];
-{0}    exert($ss.q, s.time, s.v, {1}pull, B);
-    for (int i = 0; i < bounded; ++i) hold[i] = s.hold[i];
-{2})";
-constexpr const char* start_holds =
-    "    for (int i = 0; i < bounded; ++i) s.hold[i] = select(begins[group_of_bound[i]], hold[i], s.hold[i]);\n";
-constexpr const char* start_ends =
-    R"(    for (int i = 0; i < bodies; ++i) s.pull[i] = choose(begins[group_of_body[i]], pull[i], s.pull[i]);
-{}{}    for (T& of_group : s.begins) of_group = T(0);
-  }}
-)";
-constexpr const char* start_lambda =
-    "    for (int i = 0; i < rows; ++i) s.lambda[i] = select(begins[group_of_row[i]], lambda[i], s.lambda[i]);\n";
-
 // Newton on the velocities of the drift, with J of its start.
 std::string closing(double tolerance, const Contents& has) {
   std::string text = closing_begins;
@@ -330,7 +309,7 @@ std::string closing(double tolerance, const Contents& has) {
 }
 
 // The end's impulses of joints, effects and rows with bounds together.
-std::string finishing(const Contents& has) {
+std::string finishing(double tolerance, const Contents& has) {
   std::string text = "    Velocity next[bodies];\n";
   if (!has.pulls()) text += "    Velocity pull[bodies];\n";
   if (has.bounded) text += "    Bounded B;\n    T mu[bounded];\n";
@@ -338,6 +317,7 @@ std::string finishing(const Contents& has) {
                       has.looks ? "given, end, " : "", has.rows ? "s.lambda, " : "", has.pulls() ? "s.pull" : "pull",
                       has.bounded ? ", B" : "");
   if (has.bounded) {
+    if (has.strikes() && has.loads) text += fmt::format(waits_for_ends, tolerance);
     text += bounds_of_clutches(has);
     text += has.loads ? settles_end_with_loads(has) : "    settle(B, s.hold, mu);\n";
     text += weighs_bounds(has);
@@ -358,21 +338,10 @@ std::string frees_of(const std::vector<int>& rows) {
   return rows.empty() ? "" : fmt::format(frees, rows.size(), fmt::join(rows, ", "));
 }
 
-std::string start_of(const Contents& has) {
-  std::string text = start_begins;
-  if (has.bounded)
-    text +=
-        fmt::format(start_with_bounds, has.rows ? "    T lambda[rows];\n" : "", has.rows ? "s.J, h, lambda, " : "h, ",
-                    has.loads ? settles_start_with_loads(has) : "    settle(B, hold, mu);\n") +
-        fmt::format(sums_pulls, "", has.rows ? fmt::format(sums_lambda, "") : "", "", repeats_of_start(has)) +
-        start_holds;
-  else text += start_by_joints;
-  text += shares(has, "lambda");
-  return text + fmt::format(start_ends, has.rows ? start_lambda : "", repeats_at_start(has));
-}
-
 std::string rattle(double tolerance, const Contents& has) {
-  std::string text = fmt::format(begins, has.exerts ? "    start(s, h);\n" : "");
+  std::string text = fmt::format(begins, has.starts_motors() ? starts_with_motors
+                                         : has.exerts        ? "    start(s, h);\n"
+                                                             : "");
   text += bears_at_start(has);
   if (has.strikes()) text += notes_gaps;
   text += has.dampens ? dampens : notes_velocities;
@@ -381,17 +350,18 @@ std::string rattle(double tolerance, const Contents& has) {
   text += weighs_first_half(has);
   text += fmt::format(first_kick, has.foresees ? "(a[i] + pull[i])" : has.pulls() ? "(a[i] + s.pull[i])" : "a[i]");
   text += has.closes() ? closing(tolerance, has) : drifts(has, "s") + "    s.time = s.time + h;\n";
-  if (has.strikes()) text += fmt::format(strikes, tolerance);
+  if (has.strikes()) text += fmt::format(strikes, tolerance, has.loads ? "met" : "T(0.5) * gap[i]");
   if (has.gyroscopes) text += follows;
   text += "$C";
   if (has.rows) text += evaluates;
   text += fmt::format(second_kick, has.looks ? looks : "", has.carries ? "    carry(start_q, s.q, before);\n" : "");
-  text += has.finishes ? finishing(has) : has.rows ? joints_end : "";
+  text += has.finishes ? finishing(tolerance, has) : has.rows ? joints_end : "";
   if (has.foresees) text += remembers;
   text += bears_at_end(has, "end");
   text += shares(has, "s.lambda");
   text += rattle_weighs(has);
   if (has.strikes()) text += begins_where_struck;
+  if (has.starts_motors()) text += begins_where_started;
   if (has.events) text += "    latch(s);\n";
   return text + fmt::format("    return {};\n  }}\n", has.closes() ? "s.residual" : "T(0)");
 }

@@ -1,4 +1,4 @@
-// step() of RATTLE as text, with its start and its ends.
+// step() of RATTLE as text, with its ends.
 #pragma once
 
 #include <string>
@@ -14,7 +14,5 @@ std::string rattle(double tolerance, const Contents& has);
 std::string frees_of(const std::vector<int>& rows);
 // push(), by which ends act in the first half, if there are some.
 std::string pushes_of(const Contents& has);
-// start(), if `exerts`.
-std::string start_of(const Contents& has);
 
 }  // namespace cdot::compile

@@ -5,6 +5,8 @@
 #include "jamming_rod_rk4.hpp"
 #include "rough_ball_dop853.hpp"
 #include "rough_ball_rk4.hpp"
+#include "rough_elbow_implicit.hpp"
+#include "rough_elbow_rattle.hpp"
 #include "rough_pins_dop853.hpp"
 #include "rough_pins_rk4.hpp"
 #include "rough_rail_dop853.hpp"
@@ -29,6 +31,16 @@ TEST(CompiledLoads, MoveAsTheWorld) {
   runs_as_the_world<rough_pins_rk4<double>>(scenes + "rough_pins.toml", Integrator::rk4, 1e-11, 2);
   runs_as_the_world<rough_pins_dop853<double>>(scenes + "rough_pins.toml", Integrator::dop853, 1e-11, 2);
   runs_as_the_world<rough_rail_rk4<double>>(scenes + "rough_rail.toml", Integrator::rk4, 1e-12, 2);
+}
+
+// A motor starts by a blow, and an end takes one. The World is tested by methods that locate blows:
+// LoadedEffects.TakeTheirShareOfABlowOnce.
+TEST(CompiledLoads, TakeTheirShareOfABlowOnce) {
+  const std::string elbow = scenes + "rough_elbow.toml";
+  for (const double step : {4e-4, 2.5e-4, 1e-4}) {
+    runs_as_the_world<rough_elbow_rattle<double>>(elbow, Integrator::rattle, 1e-10, 0.3, step);
+    runs_as_the_world<rough_elbow_implicit<double>>(elbow, Integrator::implicit, 1e-10, 0.3, step);
+  }
 }
 
 // Two loads solve for the pin. The World takes the least one, and is tested by a closed form in
