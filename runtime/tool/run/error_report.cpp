@@ -37,6 +37,14 @@ std::string of_blow(const Scene& scene, const BlowOnJoint& blow) {
       joint, blow.time, 100 * blow.share);
 }
 
+std::string of_slip(const Scene& scene, const TurnedSlip& slip) {
+  return fmt::format(
+      "a blow by t = {:.6g} s turns round the slip of joint {}, whose friction it loads. Equal steps of {} take a blow "
+      "in "
+      "two parts, and friction acts in the first one against the slip before: the motion after it is not sure",
+      slip.time, joint_name(scene, slip.joint), row_of(scene.settings.integrator).name);
+}
+
 std::string of_turn(const Scene& scene, const SharpTurn& turn) {
   return fmt::format(
       "within one step {} changes its velocity by {:.2g} % by t = {:.6g} s, where row {} of {} nearly loses rank. Two "
@@ -68,6 +76,7 @@ std::string decision_warning(const Scene& scene, const RunResult& result) {
         count, count == 1 ? " is" : "s are", result.first_undecided,
         name_in(scene.joints, static_cast<int>(result.counts.undecided_joint)));
   if (result.blow.joint >= 0) return of_blow(scene, result.blow);
+  if (result.turned_slip.joint >= 0) return of_slip(scene, result.turned_slip);
   if (result.sharp_turn.body >= 0) return of_turn(scene, result.sharp_turn);
   if (const NearBreak& near = result.near_break; near.joint >= 0)
     return fmt::format(

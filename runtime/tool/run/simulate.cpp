@@ -197,6 +197,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   RankWatch rank;
   BreakWatch breaks(scene.settings);
   BlowWatch blows;
+  SlipWatch slips;
   TurnWatch<S> turns;
   const bool leads_stages = works_on_accelerations(scene.settings.integrator) && !(scene.settings.local_error > 0);
   WorstStepWatch<S> worst_step(told_share(scene), steps.count());
@@ -204,7 +205,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   for (long long k = 0;; ++k) {
     judge(scene, after, result);
     if (k > 0) rank.look(after.time, world.weakest_row());
-    if (k > 0) breaks.look(world, after.time), blows.look(world, after.time);
+    if (k > 0) breaks.look(world, after.time), blows.look(world, after.time), slips.look(world, after.time);
     if (leads_stages) turns.look(world, after.time - before.time, after.time);
     if (!result.finite) break;
     if (k == 0) worst_step.begin(world, energy, result.balance);
@@ -257,7 +258,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   rank.end();
   result.rank_losses = rank.found();
   result.near_break = breaks.found(world), result.blow = blows.found();
-  result.sharp_turn = turns.found();
+  result.sharp_turn = turns.found(), result.turned_slip = slips.found();
   result.worst_step = worst_step.found();
   error.finish(after, result.steps);
   result.error = error.error();

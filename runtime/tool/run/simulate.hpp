@@ -18,6 +18,7 @@
 #include "runtime/tool/watch/blow_watch.hpp"
 #include "runtime/tool/watch/near_break.hpp"
 #include "runtime/tool/watch/rank_watch.hpp"
+#include "runtime/tool/watch/slip_watch.hpp"
 #include "runtime/tool/watch/turn_watch.hpp"
 #include "runtime/tool/watch/worst.hpp"
 #include "runtime/tool/watch/worst_step.hpp"
@@ -98,6 +99,7 @@ struct RunResult {
   LargestForce at_rescue;    // of a joint, there
   NearBreak near_break;
   BlowOnJoint blow;
+  TurnedSlip turned_slip;
   SharpTurn sharp_turn;
   bool may_break = false;          // joints may, by their loads
   double first_undecided = -1;     // [s] end of the step in which a blow was first undecided; below 0: none

@@ -33,28 +33,9 @@ void BlowWatch::look(BasicWorld<S>& world, double time) {
   const WorldData<S>& data = world.data();
   const auto torn = [](const auto& batch) { return tears(*batch); };
   if (found_.joint >= 0 || (data.bonds.empty() && std::ranges::none_of(data.batches, torn))) return;
-  find_struck_islands(data);
+  struck_.look(data);
   look_at_bonds(data, time);
   look_at_rows(data, time);
-}
-
-template <class S>
-void BlowWatch::find_struck_islands(const WorldData<S>& world) {
-  struck_.assign(world.islands.size(), false);
-  pressed_.resize(world.batches.size());
-  for (std::size_t k = 0; k < world.batches.size(); ++k) {
-    const Batch<S>& batch = *world.batches[k];
-    if (!batch.law || !batch.law->guard) continue;
-    const int rows = batch.ops->rows;
-    each_kept<S, char>(batch, pressed_[k], rows, 0, [&](int slot, char* before) {
-      for (int r = 0; r < rows; ++r) {
-        const int i = slot * rows + r;
-        const bool presses = batch.lambda[i] != 0 || batch.correction[i] != 0;
-        if (presses && !before[r]) struck_[static_cast<std::size_t>(island_of_joint(world, batch.joint[slot]))] = true;
-        before[r] = presses;
-      }
-    });
-  }
 }
 
 template <class S>
@@ -65,7 +46,7 @@ void BlowWatch::look_at_bonds(const WorldData<S>& world, double time) {
     const int island = island_of_joint(world, bond.joint);
     if (world.islands[island].flow.locates) continue;
     const double share = share_of_strength(distance_from_break(world, bond, time));
-    const bool struck = struck_[static_cast<std::size_t>(island)];
+    const bool struck = struck_[island];
     if (share == broken && struck) note_break(bond.joint, of_bonds_[k], time);
     Forces forces{};
     const Place& place = world.joints[bond.joint].places[0];
@@ -87,7 +68,7 @@ void BlowWatch::look_at_rows(const WorldData<S>& world, double time) {
     if (!tears(batch)) continue;
     each_kept<S, Loads>(batch, of_rows_[k], 1, {}, [&](int slot, Loads* loads) {
       const int island = island_of_joint(world, batch.joint[slot]);
-      const bool struck = struck_[static_cast<std::size_t>(island)];
+      const bool struck = struck_[island];
       const auto share_of = [&](double load) { return share_of_end(batch, slot, T(load)); };
       if (world.islands[island].flow.locates || !ends_by_load(batch, slot)) return;
       const bool torn = has_ended(batch, slot);

@@ -11,6 +11,8 @@
 #include <cdot/detail/block.hpp>
 #include <cdot/world.hpp>
 
+#include "runtime/tool/watch/struck_islands.hpp"
+
 namespace cdot {
 
 struct BlowOnJoint {
@@ -47,8 +49,6 @@ class BlowWatch {
   };
 
   template <class S>
-  void find_struck_islands(const WorldData<S>& world);
-  template <class S>
   void look_at_bonds(const WorldData<S>& world, double time);
   template <class S>
   void look_at_rows(const WorldData<S>& world, double time);
@@ -57,8 +57,7 @@ class BlowWatch {
 
   std::vector<Loads> of_bonds_;
   std::vector<std::vector<Loads>> of_rows_;  // that act until they carry too much, by batch and home
-  std::vector<std::vector<char>> pressed_;   // ends that pressed in the last step, by batch and home
-  std::vector<char> struck_;                 // islands with an end that began to press in this step
+  StruckIslands struck_;
   BlowOnJoint found_;
 };
 
