@@ -16,10 +16,17 @@ constexpr Real rounded = 8 * std::numeric_limits<Real>::epsilon();
 }  // namespace
 
 template <class S>
+void System<S>::load_softness() {
+  each_row([&](int row, const Batch<S>& batch, int i) {
+    if (batch.law) softness[row] = batch.softness[i];
+  });
+}
+
+template <class S>
 void System<S>::load_laws() {
+  load_softness();
   each_row([&](int row, const Batch<S>& batch, int i) {
     if (!batch.law) return;
-    softness[row] = batch.softness[i];
     lower[row] = batch.lower[i];
     upper[row] = batch.upper[i];
   });
@@ -278,8 +285,9 @@ int System<S>::solve_bounded() {
   rounds_ = 0, rivals_ = {};
   int dependent = part_and_settle();
   // A motor that yielded to a row now at its bound need not yield any more: it pulls a slipping brake with all it has.
+  // Bounds are the caller's, as those of changes in the middle of a step.
   if (eased_) {
-    load_laws();
+    load_softness();
     dependent = part_and_settle();
   }
   share_within_bounds();

@@ -220,6 +220,7 @@ class System {
   bool let_bounds_decide();
   void solve_rows();
   void solve_kept_rows();
+  void load_softness();
   static Real slight(Real scale);
   bool misses_rows(std::vector<Real>& missed);
   bool misses_rate(int row) const;
