@@ -308,8 +308,7 @@ void note_gaps(const Island<S>& island) {
   each_end(island, [](Batch<S>& batch, int i, const auto& guard) { batch.rate[i] = guard.gap(); });
 }
 
-// True if a body meets an end: its gap was open at the start, and the drift closed it. In an island without loads it is
-// enough that the drift closed half of it: there the end already slows the body.
+// True if the drift closed a gap that was open at the start. Without loads half of it is enough: the end slows the body.
 template <class S>
 bool is_struck(const Island<S>& island) {
   using T = typename S::Scalar;

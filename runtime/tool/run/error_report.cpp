@@ -45,6 +45,14 @@ std::string of_slip(const Scene& scene, const TurnedSlip& slip) {
       slip.time, joint_name(scene, slip.joint), row_of(scene.settings.integrator).name);
 }
 
+std::string of_yield(const Scene& scene, const YieldingMotor& motor) {
+  return fmt::format(
+      "a motor of unlimited force on joint {} goes backwards at {:.2g} rad/s or m/s by t = {:.6g} s. Equal steps of {} "
+      "let "
+      "it yield at an end that it presses, and a blow may push it back: the motion after it is not sure",
+      joint_name(scene, motor.joint), motor.speed, motor.time, row_of(scene.settings.integrator).name);
+}
+
 std::string of_turn(const Scene& scene, const SharpTurn& turn) {
   return fmt::format(
       "within one step {} changes its velocity by {:.2g} % by t = {:.6g} s, where row {} of {} nearly loses rank. Two "
@@ -77,6 +85,7 @@ std::string decision_warning(const Scene& scene, const RunResult& result) {
         name_in(scene.joints, static_cast<int>(result.counts.undecided_joint)));
   if (result.blow.joint >= 0) return of_blow(scene, result.blow);
   if (result.turned_slip.joint >= 0) return of_slip(scene, result.turned_slip);
+  if (result.yielding_motor.joint >= 0) return of_yield(scene, result.yielding_motor);
   if (result.sharp_turn.body >= 0) return of_turn(scene, result.sharp_turn);
   if (const NearBreak& near = result.near_break; near.joint >= 0)
     return fmt::format(

@@ -198,6 +198,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   BreakWatch breaks(scene.settings);
   BlowWatch blows;
   SlipWatch slips;
+  YieldWatch<S> yields;
   TurnWatch<S> turns;
   const bool leads_stages = works_on_accelerations(scene.settings.integrator) && !(scene.settings.local_error > 0);
   WorstStepWatch<S> worst_step(told_share(scene), steps.count());
@@ -206,6 +207,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     judge(scene, after, result);
     if (k > 0) rank.look(after.time, world.weakest_row());
     if (k > 0) breaks.look(world, after.time), blows.look(world, after.time), slips.look(world, after.time);
+    if (k > 0) yields.look(world, after.time);
     if (leads_stages) turns.look(world, after.time - before.time, after.time);
     if (!result.finite) break;
     if (k == 0) worst_step.begin(world, energy, result.balance);
@@ -259,6 +261,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   result.rank_losses = rank.found();
   result.near_break = breaks.found(world), result.blow = blows.found();
   result.sharp_turn = turns.found(), result.turned_slip = slips.found();
+  result.yielding_motor = yields.found();
   result.worst_step = worst_step.found();
   error.finish(after, result.steps);
   result.error = error.error();

@@ -17,8 +17,8 @@
 #include "runtime/tool/scene/scene.hpp"
 #include "runtime/tool/watch/blow_watch.hpp"
 #include "runtime/tool/watch/near_break.hpp"
+#include "runtime/tool/watch/parted_blows.hpp"
 #include "runtime/tool/watch/rank_watch.hpp"
-#include "runtime/tool/watch/slip_watch.hpp"
 #include "runtime/tool/watch/turn_watch.hpp"
 #include "runtime/tool/watch/worst.hpp"
 #include "runtime/tool/watch/worst_step.hpp"
@@ -100,6 +100,7 @@ struct RunResult {
   NearBreak near_break;
   BlowOnJoint blow;
   TurnedSlip turned_slip;
+  YieldingMotor yielding_motor;
   SharpTurn sharp_turn;
   bool may_break = false;          // joints may, by their loads
   double first_undecided = -1;     // [s] end of the step in which a blow was first undecided; below 0: none

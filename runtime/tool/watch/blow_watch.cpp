@@ -18,6 +18,10 @@ namespace {
 // Without the blow a load grows by at most so many times as much as in the step before.
 constexpr double usual_growth = 2;
 
+// A joint holds a blow for sure that is less than this share of its strength: how hard it is depends on when an end is
+// met, which equal steps know less well than forces.
+constexpr double surely_held = 0.5;
+
 constexpr double broken = std::numeric_limits<double>::infinity();
 
 // The mean over the last step.
@@ -86,7 +90,7 @@ void BlowWatch::note_break(int joint, const Loads& loads, double time) {
 }
 
 void BlowWatch::note_hold(int joint, double share, double time) {
-  if (found_.joint < 0 && share >= 1) found_ = {joint, true, share, time};
+  if (found_.joint < 0 && share >= surely_held) found_ = {joint, true, share, time};
 }
 
 void BlowWatch::Loads::add(const Forces& now, double share_now, bool struck) {

@@ -61,7 +61,7 @@ TEST(BlowWatch, IsToldOfNoOtherBreak) {
 }
 
 // The stop turns the rod by a torque alone, so the pin takes its momentum m w / 2 = 1.9 N s, by w^2 = 3 g sin(0.5) / l:
-// 1900 N over 1 ms, and 94 N over 20 ms.
+// 1900 N over 1 ms, and 94 N over 20 ms. A blow of half the strength is not sure either.
 TEST(BlowWatch, IsToldWhereItHoldsByTheLengthOfTheStepAlone) {
   const TemporaryFolder folder;
   for (const std::string method : {"rattle", "implicit"}) {
@@ -69,6 +69,8 @@ TEST(BlowWatch, IsToldWhereItHoldsByTheLengthOfTheStepAlone) {
     EXPECT_EQ(holds.summary["broken_joints"].size(), 0u) << method;
     EXPECT_EQ(warning_of(holds).find("joint \"pin\" holds a blow by t = 0."), 0u)
         << method << ": " << warning_of(holds);
+    const Ran nearly = run(folder, rod_on_a_stop(3000), "--step 0.02 --integrator " + method);
+    EXPECT_EQ(warning_of(nearly).find("joint \"pin\" holds a blow by t = 0."), 0u) << method;
     const Ran strong = run(folder, rod_on_a_stop(5000), "--step 0.02 --integrator " + method);
     EXPECT_EQ(warning_of(strong), "") << method;
   }

@@ -1,4 +1,5 @@
-// Blows that turn round the slip of a pin whose friction they load: Euler's steps and those of the midpoint rule tell.
+// Blows that equal steps take in two parts: where these turn round the slip of a pin whose friction they load, or push
+// back a motor of unlimited force, the run tells.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -6,7 +7,7 @@
 #include "tests/runtime/tool/followed_advice.hpp"
 #include "tests/runtime/tool/support.hpp"
 
-namespace cdot::test::slip_watch_test {
+namespace cdot::test::parted_blows_test {
 namespace {
 
 // An arm of two rods falls from level onto an end at -0.1 rad. The elbow has bent upwards, and then bends down. The
@@ -44,5 +45,20 @@ TEST(SlipWatch, TellsABlowInTwoParts) {
   }
 }
 
+// dop853 and rk4 locate the blow, and the motor stays.
+TEST(YieldWatch, TellsAMotorThatABlowPushesBack) {
+  const std::string arm =
+      text::read_file((source_dir() / "tests/runtime/tool/search/arms/motor_at_its_end.toml").string());
+  for (const double step : {4e-4, 1e-4}) {
+    const std::string told = warning_of(arm, "rattle", step);
+    EXPECT_EQ(told.find("a motor of unlimited force on joint \"joint1\" goes backwards at 0.3"), 0u)
+        << step << ": " << told;
+    EXPECT_NE(told.find(" by t = 0.75"), told.npos) << told;
+    EXPECT_NE(warning_of(arm, "euler", step).find("goes backwards"), std::string::npos) << step;
+    for (const std::string method : {"rk4", "dop853"})
+      EXPECT_EQ(warning_of(arm, method, step), "") << method << " " << step;
+  }
+}
+
 }  // namespace
-}  // namespace cdot::test::slip_watch_test
+}  // namespace cdot::test::parted_blows_test
