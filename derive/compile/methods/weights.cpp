@@ -117,8 +117,7 @@ constexpr const char* settles_euler_joints = R"(    T drawn[rows];
     for (int i = 0; i < rows; ++i) drawn[i] = h * s.drawn[i];
 )";
 
-// Loads are those of the whole step. The other half of what they bound acts at the start of the next one. After a blow
-// of motors at the start, which has taken its friction, they are those of the end alone.
+// Loads are those of the whole step. The other half of what they bound acts at the start of the next one.
 constexpr const char* settles_rattle = R"(    T of_first[bounded], load[bounded];
     for (int i = 0; i < bounded; ++i) {{
       of_first[i] = {0}half * s.repeats[i], load[i] = h * magnitude(s.force[i]);
