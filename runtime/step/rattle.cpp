@@ -308,8 +308,7 @@ void note_gaps(const Island<S>& island) {
   each_end(island, [](Batch<S>& batch, int i, const auto& guard) { batch.rate[i] = guard.gap(); });
 }
 
-// True if the drift closed a gap that was open at the start. Without loads half of it is enough: the end slows the
-// body.
+// True if the drift closed a gap that was open at the start, or half of it without loads: there the end slows a body.
 template <class S>
 bool is_struck(const Island<S>& island) {
   using T = typename S::Scalar;
