@@ -43,7 +43,7 @@ void on_rows(const Diagnosis::Island& island, const Names& names, std::vector<Co
           {true,
            fmt::format("{} contradict each other: row {} of {} differs by {:.3g} m or rad; steps solve them "
                        "in the sense of least squares",
-                       listed(redundant.joints, names), redundant.row.row, names.joint(redundant.row.joint),
+                       listed(redundant.joints, names), redundant.row.row + 1, names.joint(redundant.row.joint),
                        std::abs(redundant.missed)),
            "correct the anchors or the lengths of one of them, or remove it"});
   for (const Diagnosis::NearlyRedundant& nearly : island.nearly_redundant)
@@ -52,7 +52,7 @@ void on_rows(const Diagnosis::Island& island, const Names& names, std::vector<Co
           {true,
            fmt::format("the structure is rigid but for {:.1g} m or rad per m: row {} of {} is nearly redundant, and "
                        "without it {} would move; it cannot follow",
-                       nearly.per_way, nearly.row.row, names.joint(nearly.row.joint), names.body(nearly.body)),
+                       nearly.per_way, nearly.row.row + 1, names.joint(nearly.row.joint), names.body(nearly.body)),
            "if it should move, make axes parallel, lengths equal or anchors fit exactly, or remove that joint's row"});
   for (const Diagnosis::Redundant& redundant : island.redundant)
     if (redundant.undecided != 0)
@@ -61,7 +61,7 @@ void on_rows(const Diagnosis::Island& island, const Names& names, std::vector<Co
            fmt::format(
                "branches of the motion cross in this pose, and the velocities follow none of them: row {} of {} "
                "is redundant here only, and no acceleration keeps it, by {:.3g} m/s^2 or rad/s^2",
-               redundant.row.row, names.joint(redundant.row.joint), std::abs(redundant.undecided)),
+               redundant.row.row + 1, names.joint(redundant.row.joint), std::abs(redundant.undecided)),
            "give the velocities of one branch, or start beside this pose"});
   const int harmless =
       static_cast<int>(std::count_if(island.redundant.begin(), island.redundant.end(),

@@ -38,7 +38,7 @@ std::string rows_text(const Scene& scene, const WorstOfIsland& worst) {
     std::string others;
     for (int joint : row.joints)
       if (joint != row.row.joint) others += (others.empty() ? "" : ", ") + joint_name(scene, joint);
-    text += fmt::format("  {:15} row {} of {}: {} {}\n", row.conflicting ? "conflicting" : "redundant", row.row.row,
+    text += fmt::format("  {:15} row {} of {}: {} {}\n", row.conflicting ? "conflicting" : "redundant", row.row.row + 1,
                         joint_name(scene, row.row.joint), row.conflicting ? "contradicts" : "follows from",
                         others.empty() ? "the other rows of that joint" : others);
   }
@@ -58,7 +58,7 @@ std::string island_text(const Scene& scene, const WorstOfIsland& worst, int numb
   if (island.rows > 0) {
     text += rows_text(scene, worst);
     text += fmt::format("  condition of K  {:.3g}{}; the smallest pivot is {:.2g} of its row's, in row {} of {}\n",
-                        island.condition, at_time(worst.condition_time), island.smallest_pivot, island.weakest.row,
+                        island.condition, at_time(worst.condition_time), island.smallest_pivot, island.weakest.row + 1,
                         joint_name(scene, island.weakest.joint));
   }
   if (island.heaviest > 0)
@@ -80,7 +80,7 @@ std::string island_text(const Scene& scene, const WorstOfIsland& worst, int numb
 
 Json row_json(const Scene& scene, const Diagnosis::Row& row) {
   if (row.joint < 0) return nullptr;
-  return {{"joint", scene.joints[static_cast<std::size_t>(row.joint)].name}, {"row", row.row}};
+  return {{"joint", scene.joints[static_cast<std::size_t>(row.joint)].name}, {"row", row.row + 1}};
 }
 
 Json redundant_json(const Scene& scene, const Diagnosis::Redundant& redundant) {
@@ -127,7 +127,7 @@ std::string losses_text(const Scene& scene, const std::vector<RankLoss>& losses)
   std::string text = fmt::format("rank over the whole run: {}\n", rank_losses_text(scene, losses));
   for (std::size_t k = 0; k < losses.size() && k < most_rows_listed; ++k)
     text += fmt::format("  t = {:.4g} s      pivot {:.1e}, row {} of {}\n", losses[k].time, losses[k].row.share,
-                        losses[k].row.row, joint_name(scene, losses[k].row.joint));
+                        losses[k].row.row + 1, joint_name(scene, losses[k].row.joint));
   if (losses.size() > most_rows_listed)
     text += fmt::format("  and {} more, all in --json\n", losses.size() - most_rows_listed);
   return text;

@@ -53,12 +53,21 @@ std::string of_yield(const Scene& scene, const YieldingMotor& motor) {
       joint_name(scene, motor.joint), motor.speed, motor.time, row_of(scene.settings.integrator).name);
 }
 
+std::string of_break(const Scene& scene, const BreakAtLoss& at) {
+  return fmt::format(
+      "joint {} breaks by t = {:.6g} s, where row {} of {} nearly loses rank. Loads grow there without bound, and "
+      "where "
+      "equal steps of {} fall decides how far: whether the joint holds is not sure",
+      joint_name(scene, at.joint), at.time, at.row.row + 1, joint_name(scene, at.row.joint),
+      row_of(scene.settings.integrator).name);
+}
+
 std::string of_turn(const Scene& scene, const SharpTurn& turn) {
   return fmt::format(
       "within one step {} changes its velocity by {:.2g} % by t = {:.6g} s, where row {} of {} nearly loses rank. Two "
       "branches of the motion cross in that pose, and where the steps fall may decide which one the run takes: the "
       "motion after it is not sure",
-      body_name(scene, turn.body), 100 * turn.share, turn.time, turn.row.row, joint_name(scene, turn.row.joint));
+      body_name(scene, turn.body), 100 * turn.share, turn.time, turn.row.row + 1, joint_name(scene, turn.row.joint));
 }
 
 }  // namespace
@@ -86,6 +95,7 @@ std::string decision_warning(const Scene& scene, const RunResult& result) {
   if (result.blow.joint >= 0) return of_blow(scene, result.blow);
   if (result.turned_slip.joint >= 0) return of_slip(scene, result.turned_slip);
   if (result.yielding_motor.joint >= 0) return of_yield(scene, result.yielding_motor);
+  if (result.break_at_loss.joint >= 0) return of_break(scene, result.break_at_loss);
   if (result.sharp_turn.body >= 0) return of_turn(scene, result.sharp_turn);
   if (const NearBreak& near = result.near_break; near.joint >= 0)
     return fmt::format(

@@ -241,7 +241,7 @@ text::Json rank_losses_json(const Scene& scene, const std::vector<RankLoss>& los
     json.push_back({{"time", one.time},
                     {"pivot", one.row.share},
                     {"joint", name_in(scene.joints, one.row.joint)},
-                    {"row", one.row.row}});
+                    {"row", one.row.row + 1}});
   return json;
 }
 

@@ -259,7 +259,8 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   if (std::isnan(result.energy_end)) result.without_energy = effect_without_energy(data);
   rank.end();
   result.rank_losses = rank.found();
-  result.near_break = breaks.found(world), result.blow = blows.found();
+  result.near_break = breaks.found(world), result.break_at_loss = breaks.at_loss();
+  result.blow = blows.found();
   result.sharp_turn = turns.found(), result.turned_slip = slips.found();
   result.yielding_motor = yields.found();
   result.worst_step = worst_step.found();

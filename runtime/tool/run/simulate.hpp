@@ -98,6 +98,7 @@ struct RunResult {
   double first_rescue = -1;  // [s] end of the step that an implicit method first had to finish; below 0: none
   LargestForce at_rescue;    // of a joint, there
   NearBreak near_break;
+  BreakAtLoss break_at_loss;
   BlowOnJoint blow;
   TurnedSlip turned_slip;
   YieldingMotor yielding_motor;

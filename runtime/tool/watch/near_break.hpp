@@ -1,4 +1,5 @@
-// Joints that hold, though the error of their load may be all that keeps them from breaking.
+// Joints that hold, though the error of their load may be all that keeps them from breaking; and joints that break
+// where K nearly loses rank.
 #pragma once
 
 #include <string>
@@ -17,6 +18,13 @@ struct NearBreak {
   double share() const { return error / distance; }
 };
 
+// By a method of equal steps: loads grow without bound towards a loss of rank, and where steps fall decides how far.
+struct BreakAtLoss {
+  int joint = -1;   // -1: none
+  WeakestRow row;   // by which K nearly loses rank
+  double time = 0;  // [s], of the step's end
+};
+
 // The load of a joint or a row as a share of its strength. Its distance from breaking is (strength - load) / (strength
 // + load); infinite for a joint that is broken.
 double share_of_strength(double distance);
@@ -30,11 +38,15 @@ class BreakWatch {
   // The least sure of the joints that hold at the end.
   template <class S>
   NearBreak found(const BasicWorld<S>& world) const;
+  // The first one.
+  const BreakAtLoss& at_loss() const { return at_loss_; }
 
  private:
   double local_error_;
   std::vector<double> before_;      // load after the last step, by bond
   std::vector<NearBreak> nearest_;  // by bond
+  WeakestRow weakest_;              // after the last step
+  BreakAtLoss at_loss_;
 };
 
 }  // namespace cdot

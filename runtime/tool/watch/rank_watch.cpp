@@ -44,7 +44,7 @@ std::string rank_losses_text(const Scene& scene, const std::vector<RankLoss>& lo
   return fmt::format(
       "nearly lost {} time{}, first at t = {:.4g} s; nearest at t = {:.4g} s, where the pivot of row {} of "
       "{} is {:.1e} of its diagonal",
-      losses.size(), losses.size() == 1 ? "" : "s", losses.front().time, nearest.time, nearest.row.row,
+      losses.size(), losses.size() == 1 ? "" : "s", losses.front().time, nearest.time, nearest.row.row + 1,
       joint_name(scene, nearest.row.joint), nearest.row.share);
 }
 
