@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "derive/compile/methods/bonds.hpp"
 #include "derive/compile/methods/weights.hpp"
 
 namespace cdot::compile {
