@@ -6,6 +6,7 @@
 
 #include "derive/compile/arithmetic.hpp"
 #include "derive/compile/bodies.hpp"
+#include "derive/compile/bounded/active_set.hpp"
 #include "derive/compile/equations.hpp"
 #include "derive/compile/foresight/foresight.hpp"
 #include "derive/compile/gyroscopes.hpp"
