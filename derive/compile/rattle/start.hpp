@@ -7,7 +7,8 @@
 
 namespace cdot::compile {
 
-// What the impulses mu of rows with bounds add to `pull` and lambda: by B, and `again` what the next step repeats.
+// The part of the impulses mu of rows with bounds in `pull` and lambda, by B; `again`: the impulse that the next step
+// repeats.
 inline constexpr const char* sums_pulls = R"(    for (int e = 0; e < bounded; ++e) {{
       const T again = {3};
       for (int i = 0; i < bodies; ++i) {0}{2}pull[i] = {2}pull[i] + mu[e] * B.p[e][i] + again * B.u[e][i];
