@@ -16,8 +16,6 @@ namespace {
 // Errors of loads in local errors, where a method chooses its steps and locates what breaks.
 constexpr double errors_of_loads = 1e4;
 
-bool is_near_loss(const WeakestRow& row) { return row.joint >= 0 && row.share < near_loss * near_loss; }
-
 template <class S>
 bool locates(const WorldData<S>& world, const Bond& bond) {
   return world.islands[island_of_joint(world, bond.joint)].flow.locates;

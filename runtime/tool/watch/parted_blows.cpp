@@ -37,6 +37,15 @@ double largest_speed(const WorldData<S>& world, const Island<S>& island) {
   return most;
 }
 
+// True if ends may stop a motor of unlimited force, and nothing that moves in time may push it back.
+template <class S>
+bool motor_may_press(const Island<S>& island) {
+  const auto moves = [](const Segment<S>& segment) {
+    return segment.batch->driven() && (!segment.batch->law || segment.batch->law->error);
+  };
+  return has_unlimited_motor_beside_ends(island) && std::ranges::none_of(island.segments, moves);
+}
+
 }  // namespace
 
 template <class S>
@@ -74,16 +83,7 @@ void YieldWatch<S>::look(BasicWorld<S>& world, double time) {
   const WorldData<S>& data = world.data();
   if (works_on_accelerations(data.settings.integrator) || !(data.last_step > 0)) return;
   for (const Island<S>& island : data.islands)
-    if (found_.joint < 0 && !island.asleep && presses(island)) look_at(data, island, time);
-}
-
-// A joint or an end that moves in time may push a motor back.
-template <class S>
-bool YieldWatch<S>::presses(const Island<S>& island) const {
-  const auto moves = [](const Segment<S>& segment) {
-    return segment.batch->driven() && (!segment.batch->law || segment.batch->law->error);
-  };
-  return has_unlimited_motor_beside_ends(island) && std::ranges::none_of(island.segments, moves);
+    if (found_.joint < 0 && !island.asleep && motor_may_press(island)) look_at(data, island, time);
 }
 
 template <class S>

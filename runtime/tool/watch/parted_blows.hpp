@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include <cdot/world.hpp>
@@ -55,7 +56,6 @@ class YieldWatch {
   const YieldingMotor& found() const { return found_; }
 
  private:
-  bool presses(const Island<S>& island) const;
   void look_at(const WorldData<S>& world, const Island<S>& island, double time);
 
   std::vector<typename S::Scalar> rates_;  // of a batch

@@ -17,8 +17,7 @@ constexpr double dip = 5;
 void RankWatch::note(bool falls_only) {
   const bool fell = dip * dip * least_.row.share < peak_, began_in_it = first_ && !falls_only;
   first_ = false;
-  if (least_.row.joint >= 0 && least_.row.share < near_loss * near_loss && (fell || began_in_it))
-    found_.push_back(least_);
+  if (is_near_loss(least_.row) && (fell || began_in_it)) found_.push_back(least_);
 }
 
 void RankWatch::look(double time, const WeakestRow& now) {

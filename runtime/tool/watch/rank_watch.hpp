@@ -12,7 +12,10 @@ namespace cdot {
 
 // The square root of a pivot's share is the distance from the loss of rank, in rad or in arms. Below this one K nearly
 // loses rank.
-inline constexpr double near_loss = 0.05;
+inline bool is_near_loss(const WeakestRow& row) {
+  constexpr double near = 0.05;
+  return row.joint >= 0 && row.share < near * near;
+}
 
 struct RankLoss {
   double time = 0;  // [s], of the nearest step's end

@@ -64,7 +64,7 @@ void TurnWatch<S>::look(BasicWorld<S>& world, double h, double time) {
     const bool redundant = island.redundant_rows > course.redundant, was_near = course.near;
     const WeakestRow before = course.row;
     if (!redundant) course.row = weakest_row(island.system);
-    course.near = redundant || course.row.share < near_loss * near_loss;
+    course.near = redundant || is_near_loss(course.row);
     const double share = change.amount / course.most;
     const bool turns = share > least_share && change.amount > times_as_quick * course.usual * h;
     const bool passes = (course.near || was_near) && course.usual >= 0 && course.steps > settled;
