@@ -9,6 +9,7 @@
 // small system; each product needs one solve with the factor and one multiplication by K.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <cdot/spaces.hpp>
 
@@ -24,6 +25,8 @@ template <class T>
 constexpr double least_share = by_precision<T>(1e-4, 1e-9);
 
 constexpr double solved = 1e-24;  // share of the square of the first error
+// Squares below that have lost their digits, or are 0 beside others that are not.
+constexpr double least_square = std::numeric_limits<double>::min() / solved;
 
 template <class Real>
 Real product(const std::vector<Real>& x, const std::vector<Real>& y) {
@@ -80,7 +83,7 @@ void System<S>::divide_by_null_space(std::vector<Real>& rest, std::vector<Real>&
   std::fill(y.begin(), y.end(), 0.0);
   step = rest;
   Real left = product(rest, rest);
-  const Real enough = solved * left;
+  const Real enough = std::max(solved * left, Real(least_square));
   for (int round = 0; round < rows_ && left > enough; ++round) {
     expand(step, image);
     contract(image);

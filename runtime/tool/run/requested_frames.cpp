@@ -41,38 +41,38 @@ void RequestedFrames<S>::before_step(const BasicWorld<S>& run, const Frame& at, 
 }
 
 template <class S>
-void RequestedFrames<S>::after_step(const Frame& before, const Frame& after) {
+StepResult RequestedFrames<S>::after_step(const Frame& before, const Frame& after) {
   for (; next_ < requests_.size() && requests_[next_].time <= after.time + slack_; ++next_) {
     const double time = requests_[next_].time;
     const bool at_end = time >= after.time - slack_;
-    Frame frame = at_end ? after : inside(before, after, time);
+    Frame frame = after;
+    if (!at_end && !takes_parts_) frame = between(before, after, time);
+    if (!at_end && takes_parts_) {
+      if (const StepResult part = go_to(before, time); !part) return part;
+      frame = *last_;
+    }
     frame.time = time;
     takes_[requests_[next_].take](frame);
   }
+  return {};
 }
 
 template <class S>
-Frame RequestedFrames<S>::inside(const Frame& before, const Frame& after, double time) {
-  if (!takes_parts_) return between(before, after, time);
-  if (!last_ || last_->time != time) last_ = part_of_step(before, after, time);
-  return *last_;
-}
-
-template <class S>
-Frame RequestedFrames<S>::part_of_step(const Frame& before, const Frame& after, double time) {
+StepResult RequestedFrames<S>::go_to(const Frame& before, double time) {
+  if (last_ && last_->time == time) return {};
   if (!part_) {
     part_ = build_world_in<S>(scene_);
     part_->data().paced_by = paced_by_, part_->data().paces = paces_ ? &*paces_ : nullptr;
+    part_->on_failure(OnFailure::retry);  // the step itself succeeded
   }
   part_->data().settings.local_error = allowed_;
   const bool goes_on = adaptive_ && last_;
-  const Frame& start = goes_on ? *last_ : before;
+  const Frame start = goes_on ? *last_ : before;
   if (!goes_on) part_->restore(start_);
-  // The step itself succeeded, so a part of it hardly ever fails.
-  if (!part_->step(time - start.time)) return between(before, after, time);
-  Frame frame = frame_of(*part_, time, static_cast<int>(before.bodies.size()));
-  read_sensors(scene_, *part_, start, frame);
-  return frame;
+  if (const StepResult part = part_->step(time - start.time); !part) return part;
+  last_ = frame_of(*part_, time, static_cast<int>(before.bodies.size()));
+  read_sensors(scene_, *part_, start, *last_);
+  return {};
 }
 
 #define CDOT_INSTANTIATE(S) template class RequestedFrames<S>;

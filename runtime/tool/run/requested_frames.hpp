@@ -29,12 +29,13 @@ class RequestedFrames {
   void request(const std::vector<double>& times, Take take);
   // Call before a step from the frame `at` to the time `end`: notes the state of the run if a request lies inside.
   void before_step(const BasicWorld<S>& run, const Frame& at, double end);
-  // Call after it with the frames of its ends; at the start of the run they are equal.
-  void after_step(const Frame& before, const Frame& after);
+  // Call after it with the frames of its ends; at the start of the run they are equal. If a part of the step fails,
+  // says why: nothing knows the frame there.
+  StepResult after_step(const Frame& before, const Frame& after);
 
  private:
-  Frame inside(const Frame& before, const Frame& after, double time);
-  Frame part_of_step(const Frame& before, const Frame& after, double time);
+  // Leads last_ to a time inside the step that began at `before`.
+  StepResult go_to(const Frame& before, double time);
 
   struct Request {
     double time;

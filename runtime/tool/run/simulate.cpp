@@ -203,6 +203,11 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   const bool leads_stages = works_on_accelerations(scene.settings.integrator) && !(scene.settings.local_error > 0);
   WorstStepWatch<S> worst_step(told_share(scene), steps.count());
   ErrorEstimate<S> error(scene, steps.count());
+  const auto fail = [&](const StepResult& step) {
+    result.failed_step = step;
+    if (options.save_at && result.state.empty()) result.state = world.snapshot();
+    if (!options.diagnose_times.empty()) look(scene, world, result);
+  };
   for (long long k = 0;; ++k) {
     judge(scene, after, result);
     if (k > 0) rank.look(after.time, world.weakest_row());
@@ -217,7 +222,10 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     if (result.first_undecided < 0 && world.step_counts().undecided > 0) result.first_undecided = after.time;
     if (result.first_contradicted < 0 && world.step_counts().contradicted > 0) result.first_contradicted = after.time;
     if (every_step) options.row(after);
-    requested.after_step(before, after);
+    if (const StepResult part = requested.after_step(before, after); !part) {
+      fail(part);
+      break;
+    }
     if (k > 0 && options.estimates_error) error.after_step(world, before, after, k);
     if (options.save_at && result.state.empty() && after.time >= *options.save_at * (1 - 1e-12))
       result.state = world.snapshot();
@@ -239,9 +247,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     const StepResult step = world.step(steps.length(k + 1));
     result.cpu += cpu_now() - start;
     if (!step) {
-      result.failed_step = step;
-      if (options.save_at && result.state.empty()) result.state = world.snapshot();
-      if (!options.diagnose_times.empty()) look(scene, world, result);
+      fail(step);
       break;
     }
     result.steps = k + 1;

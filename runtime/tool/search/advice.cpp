@@ -144,7 +144,11 @@ double distance_from_finer(Scene scene, RunOptions options, const RunResult& run
 // Takes `most` work. `off`: the trajectory was, so a cure has to be near the true one.
 Trial try_out(const Scene& scene, RunOptions options, double most, bool off) {
   const bool own_steps = off && scene.settings.local_error > 0 && !chooses_method(scene);
-  if (own_steps) options.film_times = equal_times(scene.duration, compared_times, 1);
+  if (own_steps) {
+    const std::vector<double> compared = equal_times(scene.duration, compared_times, 1);
+    options.film_times.insert(options.film_times.end(), compared.begin(), compared.end());
+    std::sort(options.film_times.begin(), options.film_times.end());
+  }
   // A finer run costs no less; a search judges its runs itself.
   options.most_evaluations = most / work_of_evaluation(scene) / (own_steps ? 2 : 1);
   options.is_trial = !chooses_method(scene);
@@ -208,6 +212,8 @@ std::optional<TriedFix> find_advice(const Scene& scene, const RunOptions& option
   const double share = own_work > own_work_of_a_trial ? own_work_of_a_trial / own_work : 1;
   RunOptions trial_options;
   trial_options.from = options.from;
+  // It may have been part of a step, to a frame that was asked for.
+  if (result.failed_step) trial_options.film_times = {result.failed_step->time + result.failed_step->length};
   if (share < 1) {
     if (result.failed_step) return advice;  // shorter trials would not reach the step that failed
     advice.until = result.start + share * (result.time - result.start);
