@@ -248,14 +248,14 @@ TEST(Redundancy, ARopeAlongARigidTrianglePullsAtMostItsShare) {
 // Conjugate gradients share the loads. Their squares may lose all digits where loads themselves have theirs.
 TEST(Redundancy, SharesLoadsWhoseSquaresVanish) {
   for (const IntegratorRow& row : integrator_rows)
-    for (double g = 1e-150; g > 1e-170; g *= 0.67) {
+    for (double g = 1e-150; g > 1e-170; g *= 0.93) {
       Settings s = settings(Solver::direct, Drift::projection, -g);
       s.integrator = row.integrator;
       World<double> world(s);
       const int rod = world.add_body({.x = 0.5, .mass = 1, .inertia = 1.0 / 12});
       for (int k = 0; k < 2; ++k) set_breaking_load(world, revolute(world, world.ground(), rod, 0, 0, -0.5, 0), 1);
-      for (int k = 0; k < 50; ++k) ASSERT_TRUE(world.step(0.01)) << row.name << " under " << g << " m/s^2, step " << k;
-      EXPECT_NEAR(world.velocity(rod).w / (-1.5 * g * 0.5), 1, 1e-6) << row.name << " under " << g << " m/s^2";
+      for (int k = 0; k < 2; ++k) ASSERT_TRUE(world.step(0.01)) << row.name << " under " << g << " m/s^2, step " << k;
+      EXPECT_NEAR(world.velocity(rod).w / (-1.5 * g * 0.02), 1, 1e-6) << row.name << " under " << g << " m/s^2";
     }
 }
 
