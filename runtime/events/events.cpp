@@ -48,20 +48,24 @@ bool has_strong_motor(Island<S>& island) {
   return any;
 }
 
-// Sets the bounds of each row's force and a first mode. True if the forces must decide about some rows.
+// Sets the bounds of each row's force and a first mode. True if the forces must decide about some rows. A row that has
+// just met its rate misses it by the resolution of the step before. Its own is found without the forces of effects and
+// joints, and may be much finer.
 template <class S>
 bool offer_bounds(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   bool open = false;
   find_rates(world, island);
   clear_laws(island);
+  auto met = island.flow.met_rates.begin();
   each_guarded_row(
       island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
+        const T rate = std::max(*met++, resolution.rate);
         if (batch.law->cone_rows > 0) return;
         const T missing = missing_of(batch, i, guard);
         const bool hops = guard.one_sided() && missing * missing <= resolution.hop;
         const Mode noted = std::exchange(batch.mode[i], Mode::held);  // held: it has struck
-        const bool slow = std::abs(missing) <= T(4) * resolution.rate || hops || noted == Mode::held;
+        const bool slow = std::abs(missing) <= T(4) * rate || hops || noted == Mode::held;
         batch.lower[i] = guard.lower;
         batch.upper[i] = guard.upper;
         if (guard.one_sided() && !(slow && guard.gap() <= resolution.C)) {
@@ -162,7 +166,8 @@ void count_guarded_rows(Island<S>& island) {
   for (auto* margins : {&flow.margins, &flow.margins_chosen}) margins->assign(rows + bonds, infinite<T>);
   for (auto* margins : {&flow.low, &flow.high}) margins->assign(rows + bonds, infinite<T>);
   flow.ways.assign(rows, {});
-  flow.resolution.resize(rows);
+  flow.resolution.assign(rows, Resolution<T>{});
+  flow.met_rates.resize(rows);
 }
 
 namespace {
@@ -213,6 +218,7 @@ bool forces_make_events(WorldData<S>& world, Island<S>& island) {
 template <class S>
 void choose_modes(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   Blow blow;
+  for (size_t k = 0; k < island.flow.met_rates.size(); ++k) island.flow.met_rates[k] = island.flow.resolution[k].rate;
   while (!choose_modes_once(world, island, time, h, blow) ||
          (island.flow.guarded > 0 && forces_make_events(world, island)) ||
          break_by_lambda(world, island, time, typename S::Scalar(1))) {

@@ -55,6 +55,7 @@ struct FlowWorkspace {
   std::vector<T> now;               // numbers of a stage, laid out like FlowState::start
   std::vector<T> low, high;         // margins at the start of a step, then on both sides of an event
   std::vector<StartOfWay<T>> ways;  // [guarded]
+  std::vector<T> met_rates;         // [guarded], Resolution::rate by which the last event was met
   std::vector<T> stage_forces;      // of held rows, [guarded][stage]
   std::vector<double> first_kick;   // of rows with bounds: [J] in the first of two kicks
   int guarded = 0;                  // number of guarded rows

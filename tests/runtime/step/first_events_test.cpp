@@ -85,5 +85,24 @@ TEST(FirstEvent, IsNoneWhereAForceIsSteady) {
   EXPECT_NEAR(one.world.coordinate(one.joint, "angle"), 1, 1e-12);
 }
 
+// A push speeds a slide up. A pin on it carries no torque, and its brake grips from time 0 on: with nothing at first,
+// so that the pin slips by round-off. Then the brake holds it.
+TEST(FirstEvent, IsTheLastOfABrakeWithoutALoad) {
+  for (const IntegratorRow& row : integrator_rows)
+    for (const double local_error : {0.0, 1e-8}) {
+      if (row.level != Level::acceleration) continue;
+      World<double> world(chosen_by_error(row.integrator, local_error));
+      const int slider = world.add_body(rod(0, 0, 0)), tip = world.add_body(rod(1, 0, 0));
+      world.add_joint({"prismatic", {slider, world.ground()}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0, 1}}}, {}});
+      const int pin = revolute(world, slider, tip, 0.5, 0, -0.5, 0);
+      add_effect(world, pin, "angle", SpecEffect{"air_brake", {{"torque", {0.5}}, {"rise", {0.5}}}});
+      world.add_joint({"push", {slider}, {{"pa", {0, 0}}, {"F", {10, 0}}}, {}});
+      for (int k = 0; k < 20; ++k) ASSERT_TRUE(world.step(1e-3)) << row.name;
+      EXPECT_EQ(world.step_counts().rescued, 0) << row.name << ", local error " << local_error;
+      EXPECT_LE(world.step_counts().events, 2) << row.name << ", local error " << local_error;
+      EXPECT_NEAR(world.velocity(tip).x, 0.1, 1e-12) << row.name;
+    }
+}
+
 }  // namespace
 }  // namespace cdot::test::first_events_test
