@@ -203,6 +203,14 @@ bool choose_modes_once(WorldData<S>& world, Island<S>& island, typename S::Scala
   return true;
 }
 
+// Of rows that have passed their events at the end of the last step.
+template <class S>
+void note_met_rates(Island<S>& island) {
+  Flow<S>& flow = island.flow;
+  for (size_t k = 0; k < flow.met_rates.size(); ++k)
+    flow.met_rates[k] = double(flow.margins[k]) < event_threshold(flow, k) ? flow.resolution[k].rate : 0;
+}
+
 // True if forces at the present state make events happen: a pin that is too weak from the start.
 template <class S>
 bool forces_make_events(WorldData<S>& world, Island<S>& island) {
@@ -218,7 +226,7 @@ bool forces_make_events(WorldData<S>& world, Island<S>& island) {
 template <class S>
 void choose_modes(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   Blow blow;
-  for (size_t k = 0; k < island.flow.met_rates.size(); ++k) island.flow.met_rates[k] = island.flow.resolution[k].rate;
+  note_met_rates(island);
   while (!choose_modes_once(world, island, time, h, blow) ||
          (island.flow.guarded > 0 && forces_make_events(world, island)) ||
          break_by_lambda(world, island, time, typename S::Scalar(1))) {

@@ -13,6 +13,16 @@ namespace cdot {
 template <class T>
 inline constexpr T slight = T(by_precision<T>(1e-4, 1e-9));
 
+// The threshold for an event that was passed. In units of the resolution, relative to the margin at the choice of the
+// mode: a row that creeps may have chosen its mode many steps ago.
+inline constexpr double passed = -1;
+
+// The same for the k-th of Flow::margins.
+template <class S>
+double event_threshold(const Flow<S>& flow, size_t k) {
+  return std::min(double(flow.margins_chosen[k]), 0.0) + passed;
+}
+
 // f(batch, slot) for all slots with guarded rows, in the order of Flow::margins.
 template <class S, class F>
 void each_guarded_slot(const Island<S>& island, F f) {

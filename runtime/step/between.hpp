@@ -7,10 +7,6 @@
 
 namespace cdot {
 
-// The threshold for an event that was passed. In units of the resolution, relative to the margin at the choice of the
-// mode: a row that creeps may have chosen its mode many steps ago.
-inline constexpr double passed = -1;
-
 // True if a guarded row passed an event in the last step.
 template <class S>
 bool passed_event(const Flow<S>& flow);

@@ -111,11 +111,6 @@ void each_single_row(Island<S>& island, F f) {
   });
 }
 
-template <class S>
-double threshold(const Flow<S>& flow, size_t k) {
-  return std::min(double(flow.margins_chosen[k]), 0.0) + passed;
-}
-
 // Only a way that turns back, or twice, comes back from an end that stands, or from the place of another event.
 template <class S>
 bool may_come_back(const Batch<S>& batch, int i, const Way<typename S::Scalar>& way) {
@@ -138,7 +133,7 @@ bool may_rest(const Batch<S>& batch, int i, const Way<typename S::Scalar>& way) 
 template <class S>
 bool may_come_and_go(const Batch<S>& batch, int i, const Flow<S>& flow, size_t k) {
   const bool meets = batch.mode[i] == Mode::off || batch.law->distance || slips(batch, i);
-  return meets && moves(batch, i) && double(flow.margins[k]) >= threshold(flow, k);
+  return meets && moves(batch, i) && double(flow.margins[k]) >= event_threshold(flow, k);
 }
 
 template <class S>
@@ -206,7 +201,7 @@ bool may_let_go(const Batch<S>& batch, int i) {
 template <class S>
 bool may_have_let_go(const Batch<S>& batch, int i, const Flow<S>& flow, size_t k) {
   const double margin = double(flow.margins[k]);
-  return may_let_go(batch, i) && margin >= threshold(flow, k) && std::isfinite(margin);
+  return may_let_go(batch, i) && margin >= event_threshold(flow, k) && std::isfinite(margin);
 }
 
 // The stage nearest to this share of a step.
@@ -281,7 +276,8 @@ bool passes_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S
       const T C = batch.C[i];
       batch.ops->evaluate(batch, i, i + 1, world.bodies, time + at(look));  // dC/dt, which gamma has replaced
       batch.ops->velocity(batch, i, i + 1, world.bodies.velocity.data(), batch.rate.data());
-      any |= double(margin_of_row(batch, i, flow.resolution[k], batch.rate[i] + batch.bias[i])) < threshold(flow, k);
+      any |=
+          double(margin_of_row(batch, i, flow.resolution[k], batch.rate[i] + batch.bias[i])) < event_threshold(flow, k);
       batch.C[i] = C;
     });
   }
@@ -320,7 +316,7 @@ void note_forces(Island<S>& island, int stage, double share) {
     const double margin = double(margin_of_row(batch, i, flow.resolution[k], typename S::Scalar(0)));
     way.least = stage == 1 ? margin : std::min(way.least, margin);
     flow.stage_forces[k * most_stages + static_cast<size_t>(stage)] = batch.lambda[i];
-    if (margin < threshold(flow, k)) way.past = std::min(way.past, share);
+    if (margin < event_threshold(flow, k)) way.past = std::min(way.past, share);
   });
 }
 
@@ -344,11 +340,11 @@ bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
     const Way<T> way = cubic.known_to(flow.resolution[k].C);
     start.near = false;
     const auto look = [&](const Dip& dip) {
-      any |= dip.leaps(threshold(flow, k)), start.near |= dip.comes_near(threshold(flow, k));
+      any |= dip.leaps(event_threshold(flow, k)), start.near |= dip.comes_near(event_threshold(flow, k));
     };
     any |= leaps_over_bound(batch, i, way, time + h, h);
     const bool bounded = may_have_let_go(batch, i, flow, k);
-    any |= bounded && (start.least < threshold(flow, k) || (!shares && is_unresolved(flow, method, k)));
+    any |= bounded && (start.least < event_threshold(flow, k) || (!shares && is_unresolved(flow, method, k)));
     if (may_come_back(batch, i, way) || may_come_and_go(batch, i, flow, k))
       look(dip_of_way(batch, i, way, flow.resolution[k], time + h, h));
     else if (may_rest(batch, i, way)) look(dip_of_rate(batch, i, way, flow.resolution[k], h));
