@@ -26,11 +26,23 @@ void disturb_masses(SceneBody& body, Shares& shares) {
     *number *= factor;
 }
 
+// That which a body has without the coordinates of joints.
+void start_as_written(SceneBody& body) {
+  const BodyDefinition& d = body.definition;
+  const SpatialBodyDefinition& s = body.spatial;
+  body.planar_start = {{d.x, d.y, d.angle}, {d.vx, d.vy, d.w}};
+  body.spatial_start = {{s.x, s.y, s.z, s.e0, s.e1, s.e2, s.e3}, {s.vx, s.vy, s.vz, s.wx, s.wy, s.wz}};
+  body.started = true;
+}
+
+// The written pose stays: defaults of joints follow from it. Beside it the direction between two points that coincide
+// would be any.
 void disturb_pose(SceneBody& body, Shares& shares) {
-  const auto planar = [&](auto& at) { shares.disturb(at.x, at.y, at.angle); };
-  const auto spatial = [&](auto& at) { shares.disturb(at.x, at.y, at.z, at.e0, at.e1, at.e2, at.e3); };
-  planar(body.definition), planar(body.planar_start.place);
-  spatial(body.spatial), spatial(body.spatial_start.place);
+  if (!body.started) start_as_written(body);
+  auto& planar = body.planar_start.place;
+  auto& spatial = body.spatial_start.place;
+  shares.disturb(planar.x, planar.y, planar.angle);
+  shares.disturb(spatial.x, spatial.y, spatial.z, spatial.e0, spatial.e1, spatial.e2, spatial.e3);
 }
 
 }  // namespace
