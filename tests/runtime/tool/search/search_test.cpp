@@ -141,7 +141,8 @@ TEST(SearchedAccuracy, IsWhatTheRunClaims) {
 Scene chaotic() {
   Scene scene = scene_named("double_pendulum");
   scene.bodies[0].definition.x = 0, scene.bodies[0].definition.y = 0.5, scene.bodies[0].definition.angle = 1.5707963;
-  scene.bodies[1].definition.x = 0.5, scene.bodies[1].definition.y = 1, scene.bodies[1].definition.angle = 0;
+  scene.bodies[1].definition.x = 0.5 * std::cos(0.4), scene.bodies[1].definition.y = 1 + 0.5 * std::sin(0.4);
+  scene.bodies[1].definition.angle = 0.4;
   scene.project = true;
   scene.duration = 60;
   return scene;
