@@ -57,10 +57,10 @@ bool offer_bounds(WorldData<S>& world, Island<S>& island) {
   bool open = false;
   find_rates(world, island);
   clear_laws(island);
-  auto met = island.flow.met_rates.begin();
+  auto start = island.flow.ways.begin();
   each_guarded_row(
       island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
-        const T rate = std::max(*met++, resolution.rate);
+        const T met = (start++)->met, rate = guard.one_sided() ? resolution.rate : std::max(met, resolution.rate);
         if (batch.law->cone_rows > 0) return;
         const T missing = missing_of(batch, i, guard);
         const bool hops = guard.one_sided() && missing * missing <= resolution.hop;
@@ -167,13 +167,12 @@ void count_guarded_rows(Island<S>& island) {
   for (auto* margins : {&flow.low, &flow.high}) margins->assign(rows + bonds, infinite<T>);
   flow.ways.assign(rows, {});
   flow.resolution.assign(rows, Resolution<T>{});
-  flow.met_rates.resize(rows);
 }
 
 namespace {
 
-// A row that forces decided to hold, though it lacks this much of them, in units of its resolution: events are found up
-// to 3 late. Where joints nearly imply the row, the solver made it slightly soft to decide. It lets go: True if any did.
+// A row that forces decided to hold lets go where it lacks some of them, in units of its resolution; events are found
+// up to 3 late. Where joints nearly imply the row, the solver made it slightly soft to decide. True if any row lets go.
 template <class S>
 bool let_go_of_overloaded(Island<S>& island) {
   using T = typename S::Scalar;
@@ -229,8 +228,8 @@ bool choose_modes_once(WorldData<S>& world, Island<S>& island, typename S::Scala
 template <class S>
 void note_met_rates(Island<S>& island) {
   Flow<S>& flow = island.flow;
-  for (size_t k = 0; k < flow.met_rates.size(); ++k)
-    flow.met_rates[k] = double(flow.margins[k]) < event_threshold(flow, k) ? flow.resolution[k].rate : 0;
+  for (size_t k = 0; k < flow.ways.size(); ++k)
+    flow.ways[k].met = double(flow.margins[k]) < event_threshold(flow, k) ? flow.resolution[k].rate : 0;
 }
 
 // True if forces at the present state make events happen: a pin that is too weak from the start.

@@ -40,6 +40,7 @@ struct StartOfWay {
   bool near = false;                                  // the way comes near an event
   double least = std::numeric_limits<double>::max();  // margin of a held row's force at the stages
   double past = 1;  // share of the step, at the earliest stage whose force is beyond the event
+  T met = T(0);     // Resolution::rate by which its event was met at the end of the step before; 0: it was not
 };
 
 template <class S>
@@ -55,7 +56,6 @@ struct FlowWorkspace {
   std::vector<T> now;               // numbers of a stage, laid out like FlowState::start
   std::vector<T> low, high;         // margins at the start of a step, then on both sides of an event
   std::vector<StartOfWay<T>> ways;  // [guarded]
-  std::vector<T> met_rates;         // [guarded], Resolution::rate by which the last event was met
   std::vector<T> stage_forces;      // of held rows, [guarded][stage]
   std::vector<double> first_kick;   // of rows with bounds: [J] in the first of two kicks
   int guarded = 0;                  // number of guarded rows
