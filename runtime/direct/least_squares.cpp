@@ -125,10 +125,20 @@ typename System<S>::Part System<S>::part_within_bounds(const std::vector<Real>& 
   return part;
 }
 
-// lambda - Z y with Z^T Z y = Z^T lambda: the same motion by the least sum of squares, or on the way to it as far as
-// the bounds allow. Loads are shared where joints may break, and where an end holds: by elimination alone the impulse
-// of a rope along a rigid frame would be infinite in poses where the frame without the dropped row is none. Returns the
-// row whose bound is met on the way; -1: none.
+// image = Z y with Z^T Z y = Z^T lambda: lambda - image moves the bodies alike, with the least sum of squares.
+template <class S>
+const std::vector<typename System<S>::Real>& System<S>::idle_loads() {
+  auto &rest = shared_[0], &image = shared_[2], &y = shared_[3];
+  for (int r = 0; r < rows_; ++r) rest[r] = out_[r] ? Real(0) : lambda[r];
+  contract(rest);
+  divide_by_null_space(rest, y);
+  expand(y, image);
+  return image;
+}
+
+// Takes them away, or as many as the bounds allow. Loads are shared where joints may break, and where an end holds: by
+// elimination alone the impulse of a rope along a rigid frame would be infinite in poses where the frame without the
+// dropped row is none. Returns the row whose bound is met on the way; -1: none.
 template <class S>
 int System<S>::share_redundant_loads(Bounds bounds) {
   if (dependent_ == 0 || softened_ != Softened::no) return -1;
@@ -138,15 +148,65 @@ int System<S>::share_redundant_loads(Bounds bounds) {
     under_laws = true, holds_ends |= batch.law->error != nullptr;
   });
   if (!holds_ends && (!shares_loads_ || (bounds == Bounds::unknown && under_laws))) return -1;
-  auto &rest = shared_[0], &image = shared_[2], &y = shared_[3];
-  for (int r = 0; r < rows_; ++r) rest[r] = out_[r] ? Real(0) : lambda[r];
-  contract(rest);
-  divide_by_null_space(rest, y);
-  expand(y, image);
-  const Part part = bounds == Bounds::known ? part_within_bounds(image) : Part{Real(1), -1};
+  const std::vector<Real>& idle = idle_loads();
+  const Part part = bounds == Bounds::known ? part_within_bounds(idle) : Part{Real(1), -1};
   for (int r = 0; r < rows_; ++r)
-    if (!out_[r]) lambda[r] -= part.share * image[r];
+    if (!out_[r]) lambda[r] -= part.share * idle[r];
   return part.row;
+}
+
+// Of rows that are held at acceleration level. Bounds that loads move are only assumed.
+template <class S>
+void System<S>::load_held_bounds() {
+  Guard<T> guards[most_rows];
+  each_row([&](int row, const Batch<S>& batch, int i) {
+    lower[row] = -std::numeric_limits<Real>::infinity(), upper[row] = -lower[row];
+    if (!batch.law || batch.mode[i] != Mode::held || batch.law->by_load || batch.law->cone_rows > 0) return;
+    batch.law->guard(batch, i / batch.ops->rows, guards);
+    lower[row] = guards[i % batch.ops->rows].lower, upper[row] = guards[i % batch.ops->rows].upper;
+  });
+}
+
+// The free row whose lambda is furthest beyond a bound; -1: none.
+template <class S>
+int System<S>::row_beyond_bounds() const {
+  int row = -1;
+  Real most = 0;
+  for (int r = 0; r < rows_; ++r) {
+    if (out_[r]) continue;
+    const Real beyond = std::max(lower[r] - lambda[r], lambda[r] - upper[r]);
+    if (beyond > slight(std::abs(lambda[r])) && beyond > most) row = r, most = beyond;
+  }
+  return row;
+}
+
+// Rows beyond their bounds stay there one by one, if the others then give them their rates all the same. An event that
+// was passed within a step needs what is beyond.
+template <class S>
+bool System<S>::share_held_loads() {
+  if (!shares_loads_ || dependent_ == 0 || softened_ != Softened::no) return false;
+  const auto share = [&] {
+    const std::vector<Real>& idle = idle_loads();
+    for (int r = 0; r < rows_; ++r)
+      if (!out_[r]) lambda[r] -= idle[r];
+  };
+  const auto solve_again = [&] { factor(), solve_rows(); };
+  bool any = false;
+  load_held_bounds();
+  share();
+  for (int r = row_beyond_bounds(); r >= 0; r = row_beyond_bounds()) {
+    fixed[r] = lambda[r] < lower[r] ? at_lower : at_upper;
+    lambda[r] = fixed[r] == at_lower ? lower[r] : upper[r];
+    solve_again(), find_excess();
+    const bool moves = std::abs(excess(r)) > slight(largest_b(Of::all_rows));
+    if (moves || softened_ != Softened::no || (dependent_ > 0 && misses_rows(shared_[0]))) {
+      lower[r] = -std::numeric_limits<Real>::infinity(), upper[r] = -lower[r], fixed[r] = free;
+      solve_again();
+    }
+    any = true;
+    if (softened_ == Softened::no && dependent_ > 0) share();
+  }
+  return any;
 }
 
 // Frees rows at a bound whose rate is met: the load of a pin may rest on a brake that has not slipped.
@@ -181,6 +241,8 @@ void System<S>::share_within_bounds() {
   template bool System<S>::misses_rows(std::vector<Real>&); \
   template void System<S>::share_contradictions();          \
   template int System<S>::share_redundant_loads(Bounds);    \
+  template void System<S>::load_held_bounds();              \
+  template bool System<S>::share_held_loads();              \
   template void System<S>::share_within_bounds();
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -129,6 +129,9 @@ class System {
   // lambda of the free rows from b and from lambda of the fixed rows. Contradicting rows are satisfied in the sense of
   // least squares.
   void solve();
+  // After solve() at acceleration level, where joints may break: shares the forces among redundant rows, held ones
+  // under a law within [lower, upper]. True if some of these are in `fixed` now, so that the factor is of fewer rows.
+  bool share_held_loads();
   // The error of a row after the last solve(); 0 unless rows contradict each other.
   Real unmet(int row) const { return contradicted_ ? unmet_[static_cast<size_t>(row)] : Real(0); }
   // Of the last solve() or solve_bounded(): a motor of unlimited force without its rate, since another one has a
@@ -226,7 +229,10 @@ class System {
   bool misses_rate(int row) const;
   void share_contradictions();
   enum class Bounds : char { unknown, known };
+  const std::vector<Real>& idle_loads();
   int share_redundant_loads(Bounds bounds);
+  void load_held_bounds();
+  int row_beyond_bounds() const;
   void free_idle_rows();
   void share_within_bounds();
   struct Part {

@@ -180,13 +180,19 @@ void refine(WorldData<S>& world, Island<S>& island, System<S>& system, typename 
   }
 }
 
+template <class S>
+void solve_held(Island<S>& island, System<S>& system) {
+  system.solve();
+  if (system.share_held_loads()) island.factored = false;
+}
+
 // The same, where rows at a bound follow their load.
 template <class S>
 void solve_known_loads(WorldData<S>& world, Island<S>& island, System<S>& system) {
   begin_loads(world, island);
   const auto solve = [&] {
-    system.give([](const Batch<S>& batch, int i) { return batch.law ? batch.lower[i] : typename S::Scalar(0); });
-    system.solve();
+    system.give([](const Batch<S>& batch, int i) { return is_held(batch, i) ? batch.lambda[i] : batch.lower[i]; });
+    solve_held(island, system);
     system.store([](Batch<S>& batch, int i, auto lambda) { batch.lambda[i] = typename S::Scalar(lambda); });
   };
   const auto known = [](const LoadedRow<S>&) { return RowSolution<typename S::Scalar>{}; };  // directions are known
@@ -208,7 +214,7 @@ void solve_accelerations(WorldData<S>& world, Island<S>& island) {
   }
   if (!island.factored) island.redundant_rows = system.factor();
   island.factored = true;
-  if (island.loads.empty()) system.solve();
+  if (island.loads.empty()) solve_held(island, system);
   else solve_known_loads(world, island, system);
   exert_solution(world, island, system, rate);
   refine(world, island, system, rate);

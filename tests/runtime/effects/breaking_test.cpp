@@ -136,63 +136,6 @@ TEST(BreakingLoad, TheSpringsOfABrokenJointHaveNoEnergy) {
   }
 }
 
-// A weight on two pins at one place. Each carries half of it. Without one of them the other carries all.
-struct WeightOnTwoPins {
-  WeightOnTwoPins(Integrator integrator, double load_1, double load_2)
-      : WeightOnTwoPins(method(integrator), load_1, load_2) {}
-  WeightOnTwoPins(const Settings& settings, double load_1, double load_2) : world(settings) {
-    body = world.add_body({.mass = 1, .inertia = 1});
-    for (double load : {load_1, load_2})
-      set_breaking_load(world, revolute(world, world.ground(), body, 0, 0, 0, 0), load);
-    run(world, 0.2, 0.01);
-  }
-  static Settings method(Integrator integrator) {
-    Settings s = settings(Solver::direct, Drift::projection, -10);
-    s.integrator = integrator;
-    return s;
-  }
-  World<double> world;
-  int body;
-};
-
-TEST(BreakingLoad, RedundantJointsShareTheLoad) {
-  for (const IntegratorRow& row : integrator_rows) {
-    WeightOnTwoPins both_hold(row.integrator, 6, 6);
-    EXPECT_FALSE(both_hold.world.broken(0)) << row.name;
-    EXPECT_FALSE(both_hold.world.broken(1)) << row.name;
-    for (int joint : {0, 1}) EXPECT_NEAR(both_hold.world.reaction(joint, both_hold.body).force_y, 5, 1e-9) << row.name;
-    EXPECT_NEAR(both_hold.world.pose(both_hold.body).y, 0, 1e-9);
-  }
-}
-
-TEST(BreakingLoad, OneJointBreaksWhereTheOtherCarriesAll) {
-  for (const IntegratorRow& row : integrator_rows) {
-    for (int weak : {0, 1}) {
-      WeightOnTwoPins one_holds(row.integrator, weak == 0 ? 4 : 11, weak == 0 ? 11 : 4);
-      EXPECT_EQ(one_holds.world.broken(0), weak == 0) << row.name;
-      EXPECT_EQ(one_holds.world.broken(1), weak == 1) << row.name;
-      EXPECT_NEAR(one_holds.world.pose(one_holds.body).y, 0, 1e-9);
-      WeightOnTwoPins none_holds(row.integrator, weak == 0 ? 4 : 9, weak == 0 ? 9 : 4);
-      EXPECT_TRUE(none_holds.world.broken(0) && none_holds.world.broken(1)) << row.name;
-    }
-  }
-}
-
-// Sweeps load the first of two pins alone.
-TEST(BreakingLoad, BySweepsRedundantJointsShareTheLoadToo) {
-  for (Drift drift : {Drift::soft, Drift::baumgarte, Drift::projection, Drift::none})
-    for (const IntegratorRow& row : integrator_rows) {
-      Settings s = settings(Solver::iterative, drift, -10);
-      s.integrator = row.integrator;
-      if (mistake_in_methods(s)) continue;
-      for (double load : {9.0, 11.0}) {  // what both can carry
-        WeightOnTwoPins pins(s, load / 2, load / 2);
-        EXPECT_EQ(pins.world.broken(0) && pins.world.broken(1), load < 10) << row.name;
-        EXPECT_EQ(pins.world.broken(0), pins.world.broken(1)) << row.name;
-      }
-    }
-}
-
 // A crank that turns with time, and drives a disc through a spring: after its first step, which may break it.
 World<double> driven_by_a_spring(const Settings& s, double load) {
   World<double> world(s);

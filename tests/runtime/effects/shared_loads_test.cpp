@@ -1,9 +1,14 @@
 // Brakes, pins, ropes and joints that hold one motion together: which of them breaks is the same by every method.
+#include <algorithm>
 #include <numeric>
 #include <string>
 #include <vector>
 
+#include <cdot/methods.hpp>
+
+#include "runtime/state/world_data.hpp"
 #include "tests/runtime/effects/generated_effects.hpp"
+#include "tests/runtime/sines.hpp"
 
 namespace cdot::test {
 namespace {
@@ -90,6 +95,125 @@ TEST(SharedLoads, AMotorThatStartsAtOnceShearsAPin) {
       for (int k = 0; k < 400; ++k) ASSERT_TRUE(world.step(0.002));
       if (strength < 1e3) EXPECT_NEAR(world.velocity(load).w, 0, 1e-6) << row.name;
       else EXPECT_NEAR(world.velocity(load).w, 2, 1e-6) << row.name;
+    }
+}
+
+// A weight on two pins at one place. Each carries half of it. Without one of them the other carries all.
+struct WeightOnTwoPins {
+  WeightOnTwoPins(Integrator integrator, double load_1, double load_2)
+      : WeightOnTwoPins(method(integrator), load_1, load_2) {}
+  WeightOnTwoPins(const Settings& settings, double load_1, double load_2) : world(settings) {
+    body = world.add_body({.mass = 1, .inertia = 1});
+    for (double load : {load_1, load_2})
+      set_breaking_load(world, revolute(world, world.ground(), body, 0, 0, 0, 0), load);
+    run(world, 0.2, 0.01);
+  }
+  static Settings method(Integrator integrator) {
+    Settings s = settings(Solver::direct, Drift::projection, -10);
+    s.integrator = integrator;
+    return s;
+  }
+  World<double> world;
+  int body;
+};
+
+TEST(BreakingLoad, RedundantJointsShareTheLoad) {
+  for (const IntegratorRow& row : integrator_rows) {
+    WeightOnTwoPins both_hold(row.integrator, 6, 6);
+    EXPECT_FALSE(both_hold.world.broken(0)) << row.name;
+    EXPECT_FALSE(both_hold.world.broken(1)) << row.name;
+    for (int joint : {0, 1}) EXPECT_NEAR(both_hold.world.reaction(joint, both_hold.body).force_y, 5, 1e-9) << row.name;
+    EXPECT_NEAR(both_hold.world.pose(both_hold.body).y, 0, 1e-9);
+  }
+}
+
+// After steps of h at acceleration level, in ascending order.
+std::vector<double> forces_under_laws(World<double>& world, double h) {
+  std::vector<double> forces;
+  world.data().islands.at(0).system.each_row([&](int, const auto& batch, int i) {
+    if (batch.law && batch.law->guard) forces.push_back(std::abs(batch.lambda[i]) / h);
+  });
+  std::ranges::sort(forces);
+  return forces;
+}
+
+// Two brakes of 1 and 100 N m hold the weight 0.5 m beside the pins. An equal share would be 2.5 N m. The weak one
+// slips at none, so it carries all that it can.
+TEST(BreakingLoad, RedundantJointsShareTheLoadBesideBrakes) {
+  for (const IntegratorRow& row : integrator_rows)
+    for (const double strong : {100.0, 3.0}) {
+      World<double> world(WeightOnTwoPins::method(row.integrator));
+      const int body = world.add_body({.x = 0.5, .mass = 1, .inertia = 1});
+      for (const double torque : {1.0, strong}) {
+        const int pin = revolute(world, world.ground(), body, 0, 0, -0.5, 0);
+        set_breaking_load(world, pin, 1e3);
+        add_effect(world, pin, "angle", SpecEffect{"friction", {{"max", {torque}}}});
+      }
+      run(world, 0.1, 0.01);
+      const bool holds = strong == 100;
+      EXPECT_NEAR(world.pose(body).angle, holds ? 0 : -0.5 * 1 / 1.25 * 0.01, holds ? 1e-9 : 5e-4) << row.name;
+      const double y = world.reaction(0, body).force_y;
+      EXPECT_NEAR(y, world.reaction(1, body).force_y, 1e-6) << row.name << " beside " << strong << " N m";
+      EXPECT_NEAR(y, holds ? 5 : y, 1e-9) << row.name;
+      if (row.level != Level::acceleration) continue;  // the others keep impulses of parts of the step
+      const std::vector<double> brakes = forces_under_laws(world, 0.01);
+      ASSERT_EQ(brakes.size(), 2u);
+      EXPECT_NEAR(brakes[0], 1, 1e-6) << row.name << " beside " << strong << " N m";
+      EXPECT_NEAR(brakes[1], holds ? 4 : 3, 1e-6) << row.name << " beside " << strong << " N m";
+    }
+}
+
+// The load grows from 0. First both brakes carry half of it, then the weak one all that it can.
+TEST(BreakingLoad, RedundantBrakesShareALoadThatGrows) {
+  for (const IntegratorRow& row : integrator_rows) {
+    if (row.level != Level::acceleration) continue;
+    Settings s = WeightOnTwoPins::method(row.integrator);
+    s.gravity_y = 0;
+    World<double> world(s);
+    const int body = world.add_body({.mass = 1, .inertia = 1});
+    for (const double torque : {1.0, 100.0}) {
+      const int pin = revolute(world, world.ground(), body, 0, 0, 0, 0);
+      set_breaking_load(world, pin, 1e3);
+      add_effect(world, pin, "angle", SpecEffect{"friction", {{"max", {torque}}}});
+    }
+    add_effect(world, 0, "angle", SpecEffect{"load", {in_time("push", {sine(0, 5, 10)})}});
+    for (int k = 1; k <= 20; ++k) {
+      ASSERT_TRUE(world.step(0.005));
+      const double whole = 5 * std::sin(10 * world.time());
+      const std::vector<double> brakes = forces_under_laws(world, 0.005);
+      ASSERT_EQ(brakes.size(), 2u);
+      EXPECT_NEAR(brakes[0], std::min(whole / 2, 1.0), 1e-6) << row.name << " at " << world.time() << " s";
+      EXPECT_NEAR(brakes[0] + brakes[1], whole, 1e-6) << row.name << " at " << world.time() << " s";
+    }
+    EXPECT_EQ(world.step_counts().events, 0) << row.name;
+  }
+}
+
+TEST(BreakingLoad, OneJointBreaksWhereTheOtherCarriesAll) {
+  for (const IntegratorRow& row : integrator_rows) {
+    for (int weak : {0, 1}) {
+      WeightOnTwoPins one_holds(row.integrator, weak == 0 ? 4 : 11, weak == 0 ? 11 : 4);
+      EXPECT_EQ(one_holds.world.broken(0), weak == 0) << row.name;
+      EXPECT_EQ(one_holds.world.broken(1), weak == 1) << row.name;
+      EXPECT_NEAR(one_holds.world.pose(one_holds.body).y, 0, 1e-9);
+      WeightOnTwoPins none_holds(row.integrator, weak == 0 ? 4 : 9, weak == 0 ? 9 : 4);
+      EXPECT_TRUE(none_holds.world.broken(0) && none_holds.world.broken(1)) << row.name;
+    }
+  }
+}
+
+// Sweeps load the first of two pins alone.
+TEST(BreakingLoad, BySweepsRedundantJointsShareTheLoadToo) {
+  for (Drift drift : {Drift::soft, Drift::baumgarte, Drift::projection, Drift::none})
+    for (const IntegratorRow& row : integrator_rows) {
+      Settings s = settings(Solver::iterative, drift, -10);
+      s.integrator = row.integrator;
+      if (mistake_in_methods(s)) continue;
+      for (double load : {9.0, 11.0}) {  // what both can carry
+        WeightOnTwoPins pins(s, load / 2, load / 2);
+        EXPECT_EQ(pins.world.broken(0) && pins.world.broken(1), load < 10) << row.name;
+        EXPECT_EQ(pins.world.broken(0), pins.world.broken(1)) << row.name;
+      }
     }
 }
 
