@@ -292,7 +292,8 @@ int System<S>::solve_bounded() {
   }
   share_within_bounds();
   std::copy(fixed.begin(), fixed.end(), active_set_.begin());
-  for (int r = 0; r < rows_; ++r) lambda[r] = std::clamp(lambda[r], lower[r], upper[r]);
+  for (int r = 0; r < rows_; ++r)  // those of a broken joint keep the bounds that they had
+    if (!broken[r]) lambda[r] = std::clamp(lambda[r], lower[r], upper[r]);
   return dependent;
 }
 
