@@ -25,6 +25,8 @@ template <class T>
 constexpr double least_share = by_precision<T>(1e-4, 1e-9);
 
 constexpr double solved = 1e-24;  // share of the square of the first error
+template <class Real>
+constexpr Real infinite = std::numeric_limits<Real>::infinity();
 // Squares below that have lost their digits, or are 0 beside others that are not.
 constexpr double least_square = std::numeric_limits<double>::min() / solved;
 
@@ -33,6 +35,13 @@ Real product(const std::vector<Real>& x, const std::vector<Real>& y) {
   Real sum = 0;
   for (size_t i = 0; i < x.size(); ++i) sum += x[i] * y[i];
   return sum;
+}
+
+// from -= share part, in the rows that take part.
+template <class Real>
+void take_away(const std::vector<Real>& part, Real share, const std::vector<char>& out, std::vector<Real>& from) {
+  for (size_t r = 0; r < from.size(); ++r)
+    if (!out[r]) from[r] -= share * part[r];
 }
 
 }  // namespace
@@ -150,8 +159,7 @@ int System<S>::share_redundant_loads(Bounds bounds) {
   if (!holds_ends && (!shares_loads_ || (bounds == Bounds::unknown && under_laws))) return -1;
   const std::vector<Real>& idle = idle_loads();
   const Part part = bounds == Bounds::known ? part_within_bounds(idle) : Part{Real(1), -1};
-  for (int r = 0; r < rows_; ++r)
-    if (!out_[r]) lambda[r] -= part.share * idle[r];
+  take_away(idle, part.share, out_, lambda);
   return part.row;
 }
 
@@ -160,7 +168,7 @@ template <class S>
 void System<S>::load_held_bounds() {
   Guard<T> guards[most_rows];
   each_row([&](int row, const Batch<S>& batch, int i) {
-    lower[row] = -std::numeric_limits<Real>::infinity(), upper[row] = -lower[row];
+    lower[row] = -infinite<Real>, upper[row] = infinite<Real>;
     if (!batch.law || batch.mode[i] != Mode::held || batch.law->by_load || batch.law->cone_rows > 0) return;
     batch.law->guard(batch, i / batch.ops->rows, guards);
     lower[row] = guards[i % batch.ops->rows].lower, upper[row] = guards[i % batch.ops->rows].upper;
@@ -185,11 +193,7 @@ int System<S>::row_beyond_bounds() const {
 template <class S>
 bool System<S>::share_held_loads() {
   if (!shares_loads_ || dependent_ == 0 || softened_ != Softened::no) return false;
-  const auto share = [&] {
-    const std::vector<Real>& idle = idle_loads();
-    for (int r = 0; r < rows_; ++r)
-      if (!out_[r]) lambda[r] -= idle[r];
-  };
+  const auto share = [&] { take_away(idle_loads(), Real(1), out_, lambda); };
   const auto solve_again = [&] { factor(), solve_rows(); };
   bool any = false;
   load_held_bounds();
@@ -200,7 +204,7 @@ bool System<S>::share_held_loads() {
     solve_again(), find_excess();
     const bool moves = std::abs(excess(r)) > slight(largest_b(Of::all_rows));
     if (moves || softened_ != Softened::no || (dependent_ > 0 && misses_rows(shared_[0]))) {
-      lower[r] = -std::numeric_limits<Real>::infinity(), upper[r] = -lower[r], fixed[r] = free;
+      lower[r] = -infinite<Real>, upper[r] = infinite<Real>, fixed[r] = free;
       solve_again();
     }
     any = true;

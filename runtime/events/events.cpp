@@ -57,10 +57,10 @@ bool offer_bounds(WorldData<S>& world, Island<S>& island) {
   bool open = false;
   find_rates(world, island);
   clear_laws(island);
-  auto start = island.flow.ways.begin();
+  auto way = island.flow.ways.begin();
   each_guarded_row(
       island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
-        const T met = (start++)->met, rate = guard.one_sided() ? resolution.rate : std::max(met, resolution.rate);
+        const T met = (way++)->met, rate = guard.one_sided() ? resolution.rate : std::max(met, resolution.rate);
         if (batch.law->cone_rows > 0) return;
         const T missing = missing_of(batch, i, guard);
         const bool hops = guard.one_sided() && missing * missing <= resolution.hop;
