@@ -188,15 +188,47 @@ int System<S>::row_beyond_bounds() const {
   return row;
 }
 
+// The least sum of squares is w'w for lambda = J w in the free rows:
+//
+//   lambda_F = K_FF x,  (J w)_r = K_rF x  for every other row r.
+//
+// A row at a bound makes the sum smaller inside if (J w)_r lies there, and it is free to go there if its rate is met
+// and it depends on the free ones. Frees the first such row. False if there is none.
+template <class S>
+bool System<S>::leaves_bound() {
+  std::vector<Real>& may_leave = shared_[0];
+  find_excess();
+  const Real few = slight(largest_b(Of::all_rows));
+  Real largest = 0;
+  for (int r = 0; r < rows_; ++r) {
+    may_leave[r] = fixed[r] && !broken[r] && lower[r] < upper[r] && std::isfinite(lambda[r]) &&
+                   (lambda[r] == lower[r] || lambda[r] == upper[r]) && std::abs(excess(r)) <= few;
+    right_side_[r] = kept(r) ? lambda[r] : Real(0);
+    if (!out_[r] || may_leave[r]) largest = std::max(largest, std::abs(lambda[r]));
+  }
+  ldlt_.solve(right_side_.data(), right_side_.data());
+  ldlt_.multiply(right_side_.data(), product_.data());
+  const int before = dependent_;
+  bool changed = false;
+  for (int r = 0; r < rows_; ++r) {
+    const Real inside = fixed[r] == at_lower ? product_[r] - lambda[r] : lambda[r] - product_[r];
+    if (!may_leave[r] || !(inside > slight(largest))) continue;
+    const char bound = fixed[r];
+    fixed[r] = free, changed = true;
+    if (factor() > before && softened_ == Softened::no) return true;
+    fixed[r] = bound;
+  }
+  if (changed) factor();
+  return false;
+}
+
 // Rows beyond their bounds stay there one by one, if the others then give them their rates all the same. An event that
 // was passed within a step needs what is beyond.
 template <class S>
-bool System<S>::share_held_loads() {
-  if (!shares_loads_ || dependent_ == 0 || softened_ != Softened::no) return false;
+bool System<S>::hold_at_bounds() {
   const auto share = [&] { take_away(idle_loads(), Real(1), out_, lambda); };
   const auto solve_again = [&] { factor(), solve_rows(); };
   bool any = false;
-  load_held_bounds();
   share();
   for (int r = row_beyond_bounds(); r >= 0; r = row_beyond_bounds()) {
     fixed[r] = lambda[r] < lower[r] ? at_lower : at_upper;
@@ -213,6 +245,15 @@ bool System<S>::share_held_loads() {
   return any;
 }
 
+template <class S>
+bool System<S>::share_held_loads() {
+  if (!shares_loads_ || dependent_ == 0 || softened_ != Softened::no) return false;
+  load_held_bounds();
+  if (!hold_at_bounds()) return false;
+  for (int turns = rows_; turns > 0 && softened_ == Softened::no && leaves_bound(); --turns) hold_at_bounds();
+  return true;
+}
+
 // Frees rows at a bound whose rate is met: the load of a pin may rest on a brake that has not slipped.
 template <class S>
 void System<S>::free_idle_rows() {
@@ -226,18 +267,40 @@ void System<S>::free_idle_rows() {
   if (any) factor();
 }
 
-// Where something breaks by its load, that must not depend on the order of elimination: rows at a bound whose rate is
-// met have a share, too, and a row that meets its bound stays there while the others go on.
+// Rows whose bounds contradict are slightly soft until these have decided. If the others then agree, they are rigid
+// again: among soft rows, the softness would share the loads.
 template <class S>
-void System<S>::share_within_bounds() {
-  if (!shares_loads_ || softened_ != Softened::no) return void(share_redundant_loads(Bounds::known));
-  free_idle_rows();
+void System<S>::stiffen() {
+  auto& soft = shared_[3];
+  std::copy(softness.begin(), softness.end(), soft.begin());
+  load_softness();
+  if (softened_ != Softened::no || soft == softness) return;
+  factor(), solve_rows();
+  if (softened_ == Softened::no && !(dependent_ > 0 && misses_rows(shared_[0]))) return;
+  std::copy(soft.begin(), soft.end(), softness.begin());
+  factor(), solve_rows();
+}
+
+// Shares until no row passes its bound: one that meets it stays there while the others go on.
+template <class S>
+void System<S>::stay_at_bounds() {
   for (int met = share_redundant_loads(Bounds::known); met >= 0; met = share_redundant_loads(Bounds::known)) {
     const bool low = lambda[met] - lower[met] < upper[met] - lambda[met];
     fixed[met] = low ? at_lower : at_upper;
     lambda[met] = low ? lower[met] : upper[met];
     factor();
   }
+}
+
+// Where something breaks by its load, that must not depend on the order of elimination: rows at a bound whose rate is
+// met have a share, too.
+template <class S>
+void System<S>::share_within_bounds() {
+  if (shares_loads_) stiffen();
+  if (!shares_loads_ || softened_ != Softened::no) return void(share_redundant_loads(Bounds::known));
+  free_idle_rows();
+  stay_at_bounds();
+  for (int turns = rows_; turns > 0 && leaves_bound(); --turns) stay_at_bounds();
 }
 
 #define CDOT_INSTANTIATE(S)                                 \

@@ -153,6 +153,8 @@ class System {
   void solve_factored(Real* x) { ldlt_.solve(x, x); }
   // J v + bias after the forces of the last solve_bounded(): find_excess() first.
   void find_excess() { ldlt_.multiply(lambda.data(), product_.data()); }
+  // True if that is 0, to round-off.
+  bool has_rate(int row) const { return std::abs(excess(row)) <= slight(largest_b(Of::all_rows)); }
   Real excess(int row) const { return product_[row] + softness[row] * lambda[row] - b[row]; }
   // y = K x over all rows.
   void multiply(const Real* x, Real* y) const { ldlt_.multiply(x, y); }
@@ -234,6 +236,10 @@ class System {
   void load_held_bounds();
   int row_beyond_bounds() const;
   void free_idle_rows();
+  void stiffen();
+  bool leaves_bound();
+  bool hold_at_bounds();
+  void stay_at_bounds();
   void share_within_bounds();
   struct Part {
     Real share;

@@ -18,12 +18,12 @@ template <class T>
 constexpr T noticed = T(by_precision<T>(1e-3, 1e-6));
 constexpr double golden = 0.6180339887498949;  // its multiples spread evenly
 
-// f(row, batch, i) for the ends that the last solution held.
+// f(row, batch, i) for the ends that the last solution held. A pin, with both ends at one place, does not let go.
 template <class S, class F>
 void each_held_end(System<S>& system, F f) {
   system.each_row([&](int row, Batch<S>& batch, int i) {
     if (has_ends(batch) && batch.mode[i] == Mode::held && !system.broken[row] &&
-        std::isinf(batch.upper[i] - batch.lower[i]))
+        std::isinf(batch.lower[i]) != std::isinf(batch.upper[i]))
       f(row, batch, i);
   });
 }
@@ -77,10 +77,30 @@ double bend_beside_others(System<S>& system, int row) {
 // By a motion, about an end that was held; kept in Batch::impulse.
 enum Tells : int { nothing = 0, closes = 1, opens = 2 };
 
+// True if the joints allow the motion with v = dv/dt: round-off, as at rest, is none. By Cauchy and Schwarz,
+// |J_r v| <= sqrt(K_rr v'Mv).
+template <class S>
+bool joints_allow_motion(const WorldData<S>& world, Island<S>& island) {
+  const auto& motion = world.bodies.velocity_rate;
+  System<S>& system = island.at_work();
+  double twice_energy = 0;
+  for (int i : island.bodies) twice_energy += S::dot(S::force(world.bodies.inverse_mass[i], motion[i]), motion[i]);
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    batch->ops->velocity(*batch, begin, end, motion.data(), batch->rate.data());
+  bool allow = twice_energy > 0;
+  const double most = std::pow(double(noticed<typename S::Scalar>), 2) * twice_energy;
+  system.each_row([&](int row, const Batch<S>& batch, int i) {
+    if (batch.law || batch.explicit_time() || system.broken[row]) return;
+    allow = allow && double(batch.rate[i]) * double(batch.rate[i]) <= most * double(system.diagonal(row));
+  });
+  return allow;
+}
+
 // Asks the motion with v = dv/dt about the ends of which nothing is told.
 template <class S>
 void look_along(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   using T = typename S::Scalar;
+  if (!joints_allow_motion(world, island)) return;
   System<S>& system = island.at_work();
   const double least = double(noticed<T>) * find_bends(world, island, time);
   Guard<T> guards[most_rows];
