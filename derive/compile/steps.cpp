@@ -305,7 +305,7 @@ long state_bytes_of(const Mechanism& mechanism, const Equations& equations, cons
          (1 + of_bodies + of_rows + long(mechanism.bounded.size()) +
           (has.midpoint || has.weighs ? long(mechanism.bounded.size()) : 0) +
           (has.carries_over() ? 2 * long(mechanism.bounded.size()) + long(equations.rows.size()) : 0) +
-          (long{has.repeats()} + long{has.cones}) * long(mechanism.bounded.size()) +
+          (long{has.sticks()} + long{has.repeats()} + long{has.cones}) * long(mechanism.bounded.size()) +
           long(equations.constants.inputs.size()) + 2 * mechanism.angles);
 }
 

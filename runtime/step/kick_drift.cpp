@@ -101,6 +101,39 @@ void note_grips(Island<S>& island) {
   });
 }
 
+// f(row, batch, i) for motors and friction that act both ways, by bounds that no load moves.
+template <class S, class F>
+void each_two_way_row(System<S>& system, F f) {
+  system.each_row([&](int row, Batch<S>& batch, int i) {
+    const bool plain = acts_by_force(batch) && !batch.law->by_load && batch.law->cone_rows == 0;
+    if (plain && !system.broken[row] && !drives_one_way(batch, i)) f(row, batch, i);
+  });
+}
+
+// Those that forces bring to their rates.
+template <class S>
+void note_sticking_rows(Island<S>& island) {
+  System<S>& system = island.at_work();
+  each_two_way_row(system, [&](int row, Batch<S>& batch, int i) {
+    if (!system.fixed[row]) batch.mode[i] = Mode::gripped;
+  });
+}
+
+// Notes which of them have their rates at the end, within their bounds or just at one. True if one has it that had not
+// at the start: its force has jumped.
+template <class S>
+bool begins_to_stick(Island<S>& island) {
+  System<S>& system = island.at_work();
+  bool begins = false, known = false;
+  each_two_way_row(system, [&](int row, Batch<S>& batch, int i) {
+    if (system.fixed[row] && !known) system.find_excess(), known = true;
+    const bool sticks = batch.lower[i] < batch.upper[i] && (!system.fixed[row] || system.has_rate(row));
+    begins |= sticks && batch.mode[i] != Mode::gripped;
+    batch.mode[i] = sticks ? Mode::gripped : Mode::bounded;
+  });
+  return begins;
+}
+
 // True if a motor of unlimited force misses more of its rate than round-off, and these accelerations bring it there in
 // the time t, as they do not where an end holds it.
 template <class S>
@@ -140,7 +173,7 @@ void exert_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h
     for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i)
       batch.lambda[i] *= acts ? h / 2 : T(0);
   }
-  if (island.solver->exact) note_grips(island);
+  if (island.solver->exact) note_grips(island), note_sticking_rows(island);
   evaluate_anew(world, island, time);  // restores dC/dt, which gamma replaced
 }
 
@@ -313,7 +346,7 @@ bool settle_clutches(Island<S>& island) {
     start = whole - end;
   });
   note_grips(island);
-  return anew;
+  return begins_to_stick(island) || anew;
 }
 
 #define CDOT_INSTANTIATE(S)                                                  \

@@ -49,8 +49,9 @@ void calm_sticking_rows(Island<S>& island);
 
 // A clutch that drives one way may take back at the end of a step what it gave at the start. One that holds repeats
 // half of its impulse over the last step, if it held before; one that slips repeats its bound; one that lets go repeats
-// nothing. Where one has just met or stopped, the next step finds the forces at its start anew: settle_clutches() is
-// true then. Call it after a direct solver. Batch::mode keeps which ones hold.
+// nothing. Where one has just met or stopped, or a motor or friction that acts both ways has just reached its rate, the
+// next step finds the forces at its start anew: settle_clutches() is true then. Call it after a direct solver.
+// Batch::mode keeps which ones hold.
 template <class S>
 bool settle_clutches(Island<S>& island);
 

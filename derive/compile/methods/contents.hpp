@@ -46,6 +46,7 @@ struct Contents {
   bool projects() const { return (rows || modes) && !open; }                  // velocities
   bool strikes() const { return exerts && ends; }                             // impacts end what the next step repeats
   bool starts_motors() const { return rattle && loads && strong; }            // by blows that load friction
+  bool sticks() const { return rattle && exerts && bounded; }                 // rows may reach their rates in a step
   bool repeats() const { return (weighs || clutches) && exerts && bounded; }  // forces of rows that prescribe a rate
   bool corrects_loads() const { return loads && (weighs || midpoint); }       // by impulses beside those found
   bool carries_over() const { return loads && weighs && !rattle; }            // impulses of the last corrections

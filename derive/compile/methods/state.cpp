@@ -60,6 +60,7 @@ std::string of_rows(const Mechanism& mechanism, const Contents& has) {
     if (has.rows) text += "    T drawn[rows];      // of the joints\n";
   }
   if (has.cones) text += "    T share[bounded];  // directions of forces along several coordinates\n";
+  if (has.sticks()) text += "    T stuck[bounded];  // 1: has its rate, 0: slips\n";
   if (has.repeats()) text += "    T repeats[bounded];  // forces that they repeat\n";
   return text;
 }
@@ -73,6 +74,7 @@ std::string reset_of(const Contents& has) {
   };
   if (has.gyroscopes) text += "    for (Pose& of_body : s.q) of_body.I = {};\n";  // those that do not turn stay so
   set(has.bounded, "of_row", "hold", 0);
+  set(has.sticks(), "of_row", "stuck", 0);
   set(has.events, "of_row", "events.began", 0), set(has.events, "of_row", "events.ended", 0);
   if (has.bonds) text += "    s.bonds = {};\n";
   set(has.bonds, "of_joint", "bonds.holds", 1);

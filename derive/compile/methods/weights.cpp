@@ -80,6 +80,24 @@ constexpr const char* settles_clutches = R"(      if (is_rate[e]) {
         begins = select(one_way[e] && magnitude(mu[e]) > T(0) && !goes_on, T(1), begins);
       }
 )";
+// As the World does it: begins_to_stick() in runtime/step/kick_drift.cpp.
+constexpr const char* notes_sticking = R"(    for (int e = 0; e < bounded; ++e) {{
+      if (!is_rate[e]{0}) continue;
+      T missed = -B.c[e];
+      for (int i = 0; i < bounded; ++i) missed = missed + entry(B.S, e, i) * mu[i];
+      const T slight = larger(T(single ? 1e-5 : 1e-11), T(single ? 1e-4 : 1e-9) * largest(B.c));
+      const Mask has_rate = !(magnitude(s.hold[e]) > T(0)) || magnitude(missed) <= slight;
+      const Mask sticks = {1}B.low[e] < B.high[e] && has_rate;
+      T& begins = s.begins[group_of_bound[e]];
+      begins = select(sticks && !(s.stuck[e] > T(0)), T(1), begins);
+      s.stuck[e] = select(sticks, T(1), T(0));
+    }}
+)";
+constexpr const char* notes_sticking_at_start = R"(    for (int e = 0; e < bounded; ++e) {{
+      const Mask sticks = {}begins[group_of_bound[e]] && !(magnitude(hold[e]) > T(0));
+      if (is_rate[e]) s.stuck[e] = select(sticks, T(1), s.stuck[e]);
+    }}
+)";
 // Else round-off alternates, and may grow: calm_sticking_rows() in runtime/step/kick_drift.hpp.
 constexpr const char* calms_repeats =
     R"(      const T few = T(1e-3) * (B.high[e] - B.low[e]), first = half * s.repeats[e], change = mu[e] - first;
@@ -210,6 +228,16 @@ std::string weighs_failures(const Contents& has) {
 
 std::string bounds_of_clutches(const Contents& has) {
   return has.clutches ? fmt::format(bounds_clutches, has.loads ? "!is_loaded(B, e) && " : "") : "";
+}
+
+std::string sticking_rows(const Contents& has) {
+  const std::string plain =
+      std::string(has.clutches ? "!one_way[e] && " : "") + (has.loads ? "!is_loaded(B, e) && " : "");
+  return has.sticks() ? fmt::format(notes_sticking, has.cones ? " || cone_of[e] >= 0" : "", plain) : "";
+}
+
+std::string sticking_rows_at_start(const Contents& has) {
+  return has.sticks() ? fmt::format(notes_sticking_at_start, has.loads ? "!is_loaded(B, e) && " : "") : "";
 }
 
 std::string weighs_bounds(const Contents& has) {

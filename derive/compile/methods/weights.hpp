@@ -27,6 +27,8 @@ std::string euler_weighs(const Contents& has);
 std::string weighs_first_half(const Contents& has);
 std::string weighs_end_changes(const Contents& has);
 std::string weighs_failures(const Contents& has);
+std::string sticking_rows(const Contents& has);
+std::string sticking_rows_at_start(const Contents& has);
 std::string bounds_of_clutches(const Contents& has);
 std::string weighs_bounds(const Contents& has);
 std::string rattle_weighs(const Contents& has);

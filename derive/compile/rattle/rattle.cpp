@@ -320,7 +320,7 @@ std::string finishing(double tolerance, const Contents& has) {
     if (has.strikes() && has.loads) text += fmt::format(waits_for_ends, tolerance);
     text += bounds_of_clutches(has);
     text += has.loads ? settles_end_with_loads(has) : "    settle(B, s.hold, mu);\n";
-    text += weighs_bounds(has);
+    text += sticking_rows(has) + weighs_bounds(has);
     text += fmt::format(sums_pulls, "next[i] = next[i] + mu[e] * B.g[e][i], ",
                         has.rows ? fmt::format(sums_lambda, "s.") : "", "s.",
                         has.repeats() ? "repeated[e]" : repeats_of_start(has));

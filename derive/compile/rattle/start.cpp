@@ -70,7 +70,7 @@ std::string start_of(const Contents& has) {
         fmt::format(start_with_bounds, has.rows ? "    T lambda[rows];\n" : "", has.rows ? "s.J, h, lambda, " : "h, ",
                     has.loads ? settles_start_with_loads(has) : "    settle(B, hold, mu);\n") +
         fmt::format(sums_pulls, "", has.rows ? fmt::format(sums_lambda, "") : "", "", repeats_of_start(has)) +
-        start_holds;
+        start_holds + sticking_rows_at_start(has);
   else text += start_by_joints;
   if (motors)
     text += fmt::format(finds_started, has.rows ? "    T unused[rows];\n" : "",
