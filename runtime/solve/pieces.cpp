@@ -57,20 +57,20 @@ double begin_pieces(WorldData<S>& world, double time, double h) {
 }
 
 template <class S>
-bool leaves_its_range(const Island<S>& island) {
+int joint_out_of_range(const Island<S>& island) {
   for (const auto& [batch, begin, end, whole] : island.segments) {
     if (!batch->driven()) continue;
     for (int slot = begin; slot < end; ++slot)
       for (const Drive& drive : batch->drives_of(slot))
-        if (!(drive.above < drive.now.value && drive.now.value < drive.below)) return true;
+        if (!(drive.above < drive.now.value && drive.now.value < drive.below)) return batch->joint[slot];
   }
-  return false;
+  return -1;
 }
 
 #define CDOT_INSTANTIATE(S)                                                    \
   template double begin_piece(WorldData<S>&, Island<S>&, double, double, int); \
   template double begin_pieces(WorldData<S>&, double, double);                 \
-  template bool leaves_its_range(const Island<S>&);
+  template int joint_out_of_range(const Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -28,8 +28,8 @@ double one_time(double time, double h) {
   return std::max(1e-9 * h, 4 * double(std::numeric_limits<T>::epsilon()) * std::abs(time));
 }
 
-// True if a number of the island has left its range, or is not finite.
+// The joint with a number that has left its range, or is not finite; -1: none.
 template <class S>
-bool leaves_its_range(const Island<S>& island);
+int joint_out_of_range(const Island<S>& island);
 
 }  // namespace cdot

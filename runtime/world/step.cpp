@@ -25,8 +25,10 @@ StepResult advance(WorldData<S>& world, double h) {
     Island<S>& island = world.islands[index];
     island.flow.locates = false;
     stepper_of<S>(world.settings.integrator).step(world, island, dt);
-    const bool lost = !finite(world, island) || (world.driven && leaves_its_range(island));
-    if (island.trouble == StepProblem::none && lost) island.trouble = StepProblem::not_finite;
+    if (island.trouble == StepProblem::none && !finite(world, island)) island.trouble = StepProblem::not_finite;
+    // NaN instead of the number may have made the trouble.
+    if (world.driven) result.joint = joint_out_of_range(island);
+    if (result.joint >= 0) island.trouble = StepProblem::out_of_range;
     if (island.trouble == StepProblem::none) continue;
     result.problem = island.trouble;
     result.island = index;
@@ -78,13 +80,6 @@ bool finite(const std::vector<T>& numbers, int begin, int end) {
   return std::all_of(numbers.begin() + begin, numbers.begin() + end, [](T number) { return std::isfinite(number); });
 }
 
-template <class S>
-bool in_range(const Batch<S>& batch, int slot) {
-  const auto drives = batch.driven() ? batch.drives_of(slot) : std::span<const Drive>();
-  return std::ranges::all_of(
-      drives, [](const Drive& drive) { return drive.above < drive.now.value && drive.now.value < drive.below; });
-}
-
 // False where an effect has no energy, as a gas spring shorter than 0.
 template <class S>
 bool has_energy(const Batch<S>& batch, int slot) {
@@ -101,8 +96,7 @@ void blame_joint(WorldData<S>& world, Island<S>& island, StepResult& result) {
     batch.ops->evaluate(batch, segment.begin, segment.end, world.bodies, typename S::Scalar(world.time));
     for (int slot = segment.begin; slot < segment.end; ++slot) {
       const int rows = batch.ops->rows, width = batch.ops->jacobian_size;
-      const bool sound =
-          finite(batch.jacobian, slot * width, (slot + 1) * width) && in_range(batch, slot) && has_energy(batch, slot);
+      const bool sound = finite(batch.jacobian, slot * width, (slot + 1) * width) && has_energy(batch, slot);
       for (int i = slot * rows; i < (slot + 1) * rows; ++i) {
         const double off = batch.law ? 0 : std::abs(double(batch.C[i]));
         const double pull = std::abs(double(batch.lambda[i])) + std::abs(double(batch.correction[i]));
@@ -119,6 +113,7 @@ void blame_joint(WorldData<S>& world, Island<S>& island, StepResult& result) {
 
 template <class S>
 void blame(WorldData<S>& world, StepResult& result) {
+  if (result.problem == StepProblem::out_of_range) return;
   Island<S>& island = world.islands[result.island];
   if (result.problem == StepProblem::moved_far) {
     result.misfit = island.misfit, result.moved = island.moved, result.body = island.moved_body;

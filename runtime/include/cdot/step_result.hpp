@@ -12,6 +12,7 @@ enum class StepProblem : char {
   joints_apart,  // Newton did not converge, or left a larger C than the motion had
   moved_far,     // the projection moves a body by more than the error of the joints explains
   jams,          // friction grows with the load that it causes, and no step finds a balance
+  out_of_range,  // a number in time left its range, or is not finite
   too_large,     // radau5 takes islands of at most 600 velocity components: 200 bodies in the plane, 100 in space
 };
 
@@ -26,7 +27,7 @@ struct StepResult {
   double time = 0, length = 0;  // [s] begin and length of the step
   int island = -1;              // whose step failed
   int body = -1;                // the fastest in that step
-  int joint = -1, row = -1;     // the likely culprit; -1: none
+  int joint = -1, row = -1;     // the likely culprit; -1: none; out_of_range: row -1, the joint whose number it is
   double misfit = 0;            // [m, rad] moved_far: error of the joints,
   double moved = 0;             // [m] and the way of `body` that its projection takes; a rotation by its arc
   // How the step succeeded: number of parts; whether the direct solver replaced the iterative one.

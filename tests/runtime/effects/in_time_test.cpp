@@ -351,7 +351,10 @@ TEST(InTime, ANumberOutsideItsRangeFailsTheStep) {
   while (steps < 200 && world.step(0.01)) ++steps;
   EXPECT_GT(steps, 100);
   EXPECT_LT(steps, 125);  // 1 + 2 sin(3 t) = 0 at 1.22 s
-  EXPECT_EQ(world.step(0.01).problem, StepProblem::not_finite);
+  const StepResult failed = world.step(0.01);
+  EXPECT_EQ(failed.problem, StepProblem::out_of_range);
+  EXPECT_EQ(failed.joint, 1);
+  EXPECT_NE(in_words(failed, "", "the brake").find("leaves its range; it belongs to the brake"), std::string::npos);
 }
 
 template <class World>
