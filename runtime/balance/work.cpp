@@ -46,9 +46,10 @@ void work_of_bounded(const Batch<S>& batch, int slot, const typename S::Scalar* 
   const bool ends_move = has_ends && batch.driven() && !batch.drives_of(slot).empty();
   const bool in_time = batch.explicit_time() || (!has_ends && batch.law->in_time);
   Guard<typename S::Scalar> guards[most];
-  if (!in_time) batch.law->guard(batch, slot, guards);
+  if (!in_time || !has_ends) batch.law->guard(batch, slot, guards);
   for (int r = 0; r < rows; ++r) {
-    if (ends_move) work.give(batch.source, done[r]);
+    // A rate in time may be 0 for a moment: then this is no friction.
+    if (ends_move || (in_time && !has_ends && guards[r].rate == 0)) work.give(batch.source, done[r]);
     else if (in_time) work.put(batch.source, done[r]);
     else if (!has_ends) work_of_rate(batch, guards[r], done[r], work);  // a motor or dry friction
     else if (guards[r].one_sided()) work.take(batch.source, done[r]);

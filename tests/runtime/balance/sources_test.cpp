@@ -4,6 +4,7 @@
 #include <cdot/methods.hpp>
 
 #include "tests/runtime/balance/method.hpp"
+#include "tests/runtime/sines.hpp"
 #include "tests/runtime/spatial_support.hpp"
 
 namespace cdot::test {
@@ -206,6 +207,20 @@ TEST(WorkBySource, SnapshotsKeepIt) {
     EXPECT_NE(work_of(world, "motor"), there) << method.name();
     for (int k = 0; k < 50; ++k) ASSERT_TRUE(world.step(0.01));
     EXPECT_EQ(work_of(world, "motor"), there) << method.name();
+  }
+}
+
+// Friction only takes, whether its bounds follow time or not.
+TEST(WorkBySource, ABrakeInTimeTakes) {
+  for (const Method& method : methods()) {
+    World<double> world(method.settings());
+    const int body = world.add_body({.w = 5, .mass = 1, .inertia = 1});
+    revolute(world, world.ground(), body, 0, 0, 0, 0);
+    world.add_joint({"brake", {body, world.ground()}, {in_time("torque", {sine(2, 1, 3)})}, {}});
+    for (int k = 0; k < 50; ++k) ASSERT_TRUE(world.step(0.01));
+    EXPECT_EQ(world.balance().put_in, 0) << method.name();
+    EXPECT_GT(world.balance().taken, 5) << method.name();
+    expect_sum(world, method.name());
   }
 }
 
