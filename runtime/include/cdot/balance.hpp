@@ -64,12 +64,15 @@ class BalanceWatch {
   Worst risen;  // the largest energy that appeared without a source
   Balance last;
 
+  // The scale without the work: a motor and an end that press on each other may do any amount [J].
+  double of_motion() const { return kinetic_ + (highest_ - lowest_) + small_; }
+
   void look(const Balance& now) {
     last = now;
     kinetic_ = std::max(kinetic_, now.kinetic);
     lowest_ = std::min(lowest_, now.potential), highest_ = std::max(highest_, now.potential);
     small_ = std::max(small_, now.small);
-    energy.scale = risen.scale = kinetic_ + (highest_ - lowest_) + std::abs(now.put_in) + now.taken + small_;
+    energy.scale = risen.scale = of_motion() + std::abs(now.put_in) + now.taken;
     const double method = now.method();
     keep(energy, method, now.time, -1);
     if (!(method <= 0)) keep(risen, method, now.time, -1);

@@ -53,6 +53,17 @@ Wrong wrong_with(const Scene& scene, const RunResult& result, double limit) {
   return wrong;
 }
 
+// Where a motor presses bodies against an end in a pose that gives it any leverage, their work may exceed the motion's
+// energy by far. Then a small share of it is more than the balance may miss.
+std::string hidden_words(const RunResult& result) {
+  const BalanceWatch& seen = result.balance;
+  const WorstStep& step = result.worst_step;
+  if (!(std::abs(step.most) > seen.of_motion())) return {};
+  return fmt::format("the method {} {:.3g} J in the step to t = {:.6g} s, {:.3g} times the energy of the motion",
+                     step.most < 0 ? "lost" : "made up", std::abs(step.most), step.most_time,
+                     std::abs(step.most) / seen.of_motion());
+}
+
 std::string if_any(const BalanceWatch::Worst& worst, const char* what) {
   if (worst.scale == 0) return {};
   return fmt::format("{} within {:.2g} of its size", what, worst.share());
@@ -86,7 +97,8 @@ std::string balance_failure(const Scene& scene, const RunResult& result) {
 
 std::string balance_warning(const Scene& scene, const RunResult& result) {
   if (!balance_failure(scene, result).empty()) return {};
-  return wrong_with(scene, result, told_share(scene)).what;
+  const std::string wrong = wrong_with(scene, result, told_share(scene)).what;
+  return wrong.empty() ? hidden_words(result) : wrong;
 }
 
 std::string balance_text(const RunResult& result) {

@@ -84,8 +84,9 @@ void WorstStepWatch<S>::look(BasicWorld<S>& world, const Energy& energy, long lo
     balance.look(balance_of(data, energy, k % steps_of_momenta == 0));
     told_ = least_ * balance.energy.scale;
   }
+  if (change > std::abs(worst_.most)) worst_.most = method - method_, worst_.most_time = data.time;
   if (change > told_ && change > larger * std::abs(worst_.change))
-    worst_ = {method - method_, data.time, largest_force(world)};
+    worst_.change = method - method_, worst_.time = data.time, worst_.largest = largest_force(world);
   method_ = method;
 }
 

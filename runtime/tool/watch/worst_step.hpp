@@ -22,6 +22,7 @@ struct WorstStep {
   double change = 0;  // of Balance::method() [J]
   double time = 0;    // [s] at its end
   LargestForce largest;
+  double most = 0, most_time = 0;  // the same of all steps, also of those that queried no joints
 };
 
 template <class S>
