@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs random arms (arms.py) by methods that share no steps, and compares their motions.
+"""Runs random arms and loops (arms.py) by methods that share no steps, and compares their motions.
 
 Two runs that both end without a warning must agree. Without arguments: 40 arms of each kind, in seconds. The exit
 status is 0 if all agree, 1 if some do not, 2 if a run does not end as runs do."""

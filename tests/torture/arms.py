@@ -1,11 +1,13 @@
-"""Random arms of one to three rods, as scenes: scene(kind, seed).
+"""Random arms of one to three rods, and loops, as scenes: scene(kind, seed).
 
 `rods`: motors, limits, friction, springs, dampers and loads on their coordinates, many of them functions of time.
 `effects`: effects of specs beside fewer of these, and ropes and springs between their points. `space`: the same on
-hinges, sliders, universal and spherical joints."""
+hinges, sliders, universal and spherical joints. `loops`: a rod on two to four cranks of equal length, of which two
+would do, with motors that contradict each other beside brakes; pins and joints break."""
+import math
 import random
 
-KINDS = ("rods", "effects", "space")
+KINDS = ("rods", "effects", "space", "loops")
 DURATION = 1.5
 
 
@@ -116,8 +118,45 @@ def joint_of(draw, kind, slides):
     return name, frame, {"hinge": ["angle"], "slider": ["slide"], "cylindrical": ["slide"]}.get(name, [])
 
 
+def effects_in_loops(draw):
+    """Of a joint, each with a chance of its own."""
+    lines = []
+    if draw.random() < 0.4:
+        lines.append(f"breaking = {draw.choice([5, 10, 20, 40])}")
+    if draw.random() < 0.5:
+        lines.append(f"angle.motor = {{ speed = {draw.choice([-2, -1, 1, 1, 2])}, max = {draw.choice([1, 3, 10, 30])} }}")
+    if draw.random() < 0.3:
+        lines.append(f"angle.friction = {draw.choice([0.5, 2, 5])}")
+    if draw.random() < 0.2:
+        lines.append(f"angle.brake = {{ torque = {draw.choice([1, 4, 10])} }}")
+    if draw.random() < 0.25:
+        lines.append(f"angle.shear_pin = {{ strength = {draw.choice([3, 6, 12, 20])} }}")
+    if draw.random() < 0.2:
+        lines.append(f"angle.spring = {{ stiffness = {draw.choice([5, 50])}, damping = {draw.choice([0, 1])} }}")
+    return lines
+
+
+def loop(draw, seed):
+    cranks, lean = draw.choice([2, 3, 3, 4]), draw.choice([0, 0, 0.4, 0.6])
+    high = math.sqrt(1 - lean * lean)
+    lines = [f'title = "agree {seed}"', f"gravity = [0, {draw.choice([0, -9.81, -9.81])}]", f"duration = {DURATION}"]
+    for k in range(cranks):
+        lines += ["[[body]]", f'name = "crank{k}"', f"mass = {draw.choice([0.5, 1, 2])}", "shape = { rod = 1 }",
+                  f"position = [{k + lean / 2}, {high / 2}]", f"angle = {math.atan2(high, lean)}"]
+    lines += ["[[body]]", 'name = "coupler"', f"mass = {draw.choice([1, 3, 5])}", f"shape = {{ rod = {cranks - 1} }}",
+              f"position = [{(cranks - 1) / 2 + lean}, {high}]"]
+    for k in range(cranks):
+        for name, bodies, at in (("foot", f'["world", "crank{k}"]', f"[{k}, 0]"),
+                                 ("head", f'["crank{k}", "coupler"]', f"[{k + lean}, {high}]")):
+            lines += ["[[joint]]", f'name = "{name}{k}"', 'type = "revolute"', f"bodies = {bodies}", f"at = {at}",
+                      *effects_in_loops(draw)]
+    return "\n".join(lines) + "\n"
+
+
 def scene(kind, seed):
     draw = random.Random(seed if kind == "rods" else f"{kind} {seed}")
+    if kind == "loops":
+        return loop(draw, seed)
     further = ", 0" if kind == "space" else ""
     lines = [f'title = "agree {seed}"', f"gravity = [0, {draw.choice([0, -9.81, -9.81])}{further}]",
              f"duration = {DURATION}", *(["dimension = 3"] if kind == "space" else [])]
