@@ -225,10 +225,12 @@ bool System<S>::leaves_bound() {
 // Rows beyond their bounds stay there one by one, if the others then give them their rates all the same. An event that
 // was passed within a step needs what is beyond.
 template <class S>
-bool System<S>::hold_at_bounds() {
+bool System<S>::share_held_loads() {
+  if (!shares_loads_ || dependent_ == 0 || softened_ != Softened::no) return false;
   const auto share = [&] { take_away(idle_loads(), Real(1), out_, lambda); };
   const auto solve_again = [&] { factor(), solve_rows(); };
   bool any = false;
+  load_held_bounds();
   share();
   for (int r = row_beyond_bounds(); r >= 0; r = row_beyond_bounds()) {
     fixed[r] = lambda[r] < lower[r] ? at_lower : at_upper;
@@ -243,15 +245,6 @@ bool System<S>::hold_at_bounds() {
     if (softened_ == Softened::no && dependent_ > 0) share();
   }
   return any;
-}
-
-template <class S>
-bool System<S>::share_held_loads() {
-  if (!shares_loads_ || dependent_ == 0 || softened_ != Softened::no) return false;
-  load_held_bounds();
-  if (!hold_at_bounds()) return false;
-  for (int turns = rows_; turns > 0 && softened_ == Softened::no && leaves_bound(); --turns) hold_at_bounds();
-  return true;
 }
 
 // Frees rows at a bound whose rate is met: the load of a pin may rest on a brake that has not slipped.

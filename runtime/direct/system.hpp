@@ -238,7 +238,6 @@ class System {
   void free_idle_rows();
   void stiffen();
   bool leaves_bound();
-  bool hold_at_bounds();
   void stay_at_bounds();
   void share_within_bounds();
   struct Part {

@@ -191,11 +191,34 @@ TEST(SharedLoads, AtRestNoStopAndNoPinLetsGo) {
     }
 }
 
-// The least sum of squares is one solution, wherever its search begins.
+// A crank, a rod and a slide in line, with a pin on the slide: its row follows from those of the joints. Each of these
+// three carries x of the slide's 10 N, and the pin p = 10 - x. 3 x^2 + p^2 is least for x = 2.5 N. The slide bends away
+// from the end of its way, but a pin holds it there on both sides.
+TEST(SharedLoads, APinAtADeadCentreHasItsShare) {
+  for (const Integrator integrator : of_whole_loads) {
+    World<double> world(with(integrator));
+    const int crank = world.add_body(rod(0, 0, 0)), bar = world.add_body(rod(1, 0, 0));
+    const int slide = world.add_body({.x = 2, .mass = 1, .inertia = 1});
+    const int foot = revolute(world, world.ground(), crank, 0, 0, -0.5, 0);
+    revolute(world, crank, bar, 0.5, 0, -0.5, 0);
+    revolute(world, bar, slide, 0.5, 0, 0, 0);
+    const int rail =
+        world.add_joint({"prismatic", {world.ground(), slide}, {{"pa", {2, 0}}, {"pb", {0, 0}}, {"t", {0, 1}}}, {}});
+    set_breaking_load(world, foot, 1e4);
+    add_effect(world, rail, "slide", {"shear_pin", {{"strength", {1e3}}}});
+    world.set_force(slide, {10, 0, 0});
+    for (int k = 0; k < 2; ++k) ASSERT_TRUE(world.step(0.01));
+    EXPECT_NEAR(std::abs(world.reaction(foot, crank).force_x), 2.5, 1e-6) << name_of(integrators, integrator);
+  }
+}
+
+// The least sum of squares is one solution, wherever its search begins. In short steps the bounds of motors that
+// contradict each other are met at once; in long ones they are soft for a while.
 TEST(SharedLoads, EveryMethodSharesAlike) {
   std::mt19937 draw(7);
   const auto one_of = [&](const std::vector<double>& values) { return values[draw() % values.size()]; };
-  for (int mechanism = 0; mechanism < 60; ++mechanism) {
+  for (int mechanism = 0; mechanism < 120; ++mechanism) {
+    const double h = mechanism % 2 == 0 ? 1e-7 : 1e-4;
     const int count = 2 + static_cast<int>(draw() % 3);
     std::vector<double> masses, first;
     for (int k = 0; k <= count; ++k) masses.push_back(one_of({0.5, 1, 2, 5}));
@@ -210,9 +233,9 @@ TEST(SharedLoads, EveryMethodSharesAlike) {
           if (draw() % 3 == 0) cranks.brake(joint, one_of({1, 4, 10}));
           if (draw() % 3 == 0) add_effect(cranks.world, joint, "angle", {"shear_pin", {{"strength", {1e3}}}});
         }
-      ASSERT_TRUE(cranks.world.step(1e-7));
+      ASSERT_TRUE(cranks.world.step(h));
       if (first.empty()) first = cranks.loads();
-      EXPECT_LT(largest_difference(cranks.loads(), first), 1e-4)
+      EXPECT_LT(largest_difference(cranks.loads(), first), 500 * h + 1e-4)
           << name_of(integrators, integrator) << ", mechanism " << mechanism;
     }
   }
