@@ -100,32 +100,6 @@ TEST(SharedLoads, AMotorThatStartsAtOnceShearsAPin) {
     }
 }
 
-// A motor of 1 N m for 1 rad/s on a wheel that two strong motors turn at -1 rad/s against 5 N m: one of them on this
-// wheel, with B, the other with C over a gear of C_gear = q1 + 2 q2. With the gear's force x,
-//
-//   5 + 1 + B + x = 0,   C + 2 x = 0,   B^2 + C^2 + x^2 is least:   x = -1,   B = -5,   C = 2.
-//
-// Rows that contradict each other are slightly soft until their bounds have decided. Then B = -4.8 and x = -1.2.
-TEST(SharedLoads, MotorsThatAgreeShareTheLoadOnceAnotherHasGivenWay) {
-  for (const IntegratorRow& row : integrator_rows) {
-    World<double> world(with(row.integrator));
-    const int one = world.add_body({.w = -1, .mass = 1, .inertia = 1});
-    const int two = world.add_body({.x = 1, .w = 0.5, .mass = 1, .inertia = 1});
-    const int first = revolute(world, world.ground(), one, 0, 0, 0, 0);
-    const int second = revolute(world, world.ground(), two, 1, 0, 0, 0);
-    const int gear = world.add_joint({"gear", {one, two}, {{"ratio", {2}}}, {}});
-    world.set_force(one, {0, 0, 5});
-    set_breaking_load(world, first, 1e3);
-    add_motor(world, first, "angle", {.speed = 1, .max_force = 1});
-    add_motor(world, first, "angle", {.speed = -1, .max_force = 30});
-    add_motor(world, second, "angle", {.speed = 0.5, .max_force = 30});
-    for (int k = 0; k < 10; ++k) ASSERT_TRUE(world.step(0.01));
-    EXPECT_NEAR(world.velocity(one).w, -1, 1e-9) << row.name;
-    EXPECT_NEAR(world.reaction(gear, one).torque, -1, 1e-6) << row.name;
-    EXPECT_NEAR(world.reaction(gear, two).torque, -2, 1e-6) << row.name;
-  }
-}
-
 // Up to four cranks of 1 m, upright and level at their feet, and a rod on their heads: three of them are one too many.
 struct Cranks {
   Cranks(Integrator integrator, const std::vector<double>& masses) : world(with(integrator, -9.81)) {
@@ -203,22 +177,21 @@ TEST(SharedLoads, APinAtADeadCentreHasItsShare) {
     revolute(world, crank, bar, 0.5, 0, -0.5, 0);
     revolute(world, bar, slide, 0.5, 0, 0, 0);
     const int rail =
-        world.add_joint({"prismatic", {world.ground(), slide}, {{"pa", {2, 0}}, {"pb", {0, 0}}, {"t", {0, 1}}}, {}});
+        world.add_joint({"prismatic", {slide, world.ground()}, {{"pa", {0, 0}}, {"pb", {2, 0}}, {"t", {0, 1}}}, {}});
     set_breaking_load(world, foot, 1e4);
     add_effect(world, rail, "slide", {"shear_pin", {{"strength", {1e3}}}});
+    add_friction(world, foot, "angle", {.max_force = 1});  // forces decide about it
     world.set_force(slide, {10, 0, 0});
     for (int k = 0; k < 2; ++k) ASSERT_TRUE(world.step(0.01));
     EXPECT_NEAR(std::abs(world.reaction(foot, crank).force_x), 2.5, 1e-6) << name_of(integrators, integrator);
   }
 }
 
-// The least sum of squares is one solution, wherever its search begins. In short steps the bounds of motors that
-// contradict each other are met at once; in long ones they are soft for a while.
+// The least sum of squares is one solution, wherever its search begins.
 TEST(SharedLoads, EveryMethodSharesAlike) {
   std::mt19937 draw(7);
   const auto one_of = [&](const std::vector<double>& values) { return values[draw() % values.size()]; };
   for (int mechanism = 0; mechanism < 120; ++mechanism) {
-    const double h = mechanism % 2 == 0 ? 1e-7 : 1e-4;
     const int count = 2 + static_cast<int>(draw() % 3);
     std::vector<double> masses, first;
     for (int k = 0; k <= count; ++k) masses.push_back(one_of({0.5, 1, 2, 5}));
@@ -233,9 +206,9 @@ TEST(SharedLoads, EveryMethodSharesAlike) {
           if (draw() % 3 == 0) cranks.brake(joint, one_of({1, 4, 10}));
           if (draw() % 3 == 0) add_effect(cranks.world, joint, "angle", {"shear_pin", {{"strength", {1e3}}}});
         }
-      ASSERT_TRUE(cranks.world.step(h));
+      ASSERT_TRUE(cranks.world.step(1e-7));
       if (first.empty()) first = cranks.loads();
-      EXPECT_LT(largest_difference(cranks.loads(), first), 500 * h + 1e-4)
+      EXPECT_LT(largest_difference(cranks.loads(), first), 1e-4)
           << name_of(integrators, integrator) << ", mechanism " << mechanism;
     }
   }

@@ -116,6 +116,14 @@ TEST(Arms, LetGoOfARatchetBesideBrakes) {
   EXPECT_LT(largest_apart(scene, recorded(scene, between_rows).rows, rows), 2e-3);
 }
 
+TEST(Arms, BreakTheSamePinsByEveryMethod) {
+  const Scene scene = arm("soft_motors");
+  const std::vector<Frame> truth = rows_by(scene, Integrator::dop853, 1e-9);
+  for (const Integrator integrator : {Integrator::rattle, Integrator::euler, Integrator::rk4})
+    EXPECT_LT(largest_apart(scene, rows_by(scene, integrator, 0, 5e-4), truth), 1e-3)
+        << name_of(integrators, integrator);
+}
+
 // The share of all work was small enough for silence, though runs at different accuracies differ by 0.3 rad.
 TEST(Arms, TellAnErrorThatOnlyTheirWorkHides) {
   const Scene scene = arm("any_leverage");
