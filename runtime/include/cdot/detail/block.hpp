@@ -87,7 +87,7 @@ enum class Mode : char {
   pushed,   // the force is known: its upper bound
   pulled,   // the same at the lower bound
   pressed,  // an end that a motor of unlimited force presses on: held, by a force of any sign
-  gripped,  // by RATTLE: a clutch that drives one way held at the end of the last step
+  gripped,  // by RATTLE: a motor, clutch or friction held at the end of the last step
 };
 
 // True if the rate is prescribed.
