@@ -38,7 +38,8 @@ void BreakWatch::look(BasicWorld<S>& world, double time) {
     const double load = share_of_strength(distance_from_break(data, data.bonds[k], time));
     const double error = local_error_ > 0 ? errors_of_loads * local_error_ : std::abs(load - before_[k]);
     const bool breaks = std::isinf(load) && std::isfinite(before_[k]);
-    if (breaks && at_loss_.joint < 0 && is_near_loss(weakest) && !locates(data, data.bonds[k]))
+    const bool by_equal_steps = local_error_ == 0 || !locates(data, data.bonds[k]);
+    if (breaks && at_loss_.joint < 0 && is_near_loss(weakest) && by_equal_steps)
       at_loss_ = {data.bonds[k].joint, weakest, time};
     const NearBreak now{data.bonds[k].joint, std::max(0.0, 1 - load), error, time};
     const NearBreak& most = nearest_[k];

@@ -76,5 +76,14 @@ TEST(NearBreak, TellsAPinThatBreaksWhereLoadsHaveNoBound) {
   EXPECT_EQ(simulated(cranks, "--integrator dop853 --local-error 1e-9").summary["decision_warning"], "");
 }
 
+// RK4 locates the break, but its equal steps still decide how near to the pose they look.
+TEST(NearBreak, TellsAPinThatBreaksByEqualStepsOfRk4) {
+  const std::string linkage = (source_dir() / "tests/runtime/tool/watch/past_a_flat_pose.toml").string();
+  const std::string warning = simulated(linkage, "--integrator rk4 --step 0.0005").summary["decision_warning"];
+  EXPECT_EQ(warning.find("joint \"foot1\" breaks by t = 0.89"), 0u) << warning;
+  EXPECT_EQ(simulated(linkage, "--integrator rk4 --step 0.0001").summary["decision_warning"], "");
+  EXPECT_EQ(simulated(linkage, "").summary["decision_warning"], "");
+}
+
 }  // namespace
 }  // namespace cdot::test::near_break_test
