@@ -188,12 +188,12 @@ int System<S>::row_beyond_bounds() const {
   return row;
 }
 
-// The least sum of squares is w'w for lambda = J w in the free rows:
+// Where lambda' lambda of the free rows F is least, it has no idle part: lambda_F = J_F w, with w = M^-1 J_F' x.
 //
-//   lambda_F = K_FF x,  (J w)_r = K_rF x  for every other row r.
+//   lambda_F = K_FF x,  J_r w = K_rF x  for every other row r.
 //
-// A row at a bound makes the sum smaller inside if (J w)_r lies there, and it is free to go there if its rate is met
-// and it depends on the free ones. Frees the first such row. False if there is none.
+// A row at a bound makes the sum smaller inside if J_r w lies there, and it is free to go there if its rate is met and
+// it depends on the free ones. Frees the first such row. False if there is none.
 template <class S>
 bool System<S>::leaves_bound() {
   std::vector<Real>& may_leave = shared_[0];
