@@ -93,7 +93,7 @@ void System<S>::build(const std::vector<Segment<S>>& segments, const Bodies<S>& 
   jacobian_.assign(static_cast<size_t>(numbers), 0.0);
   weighted_ = jacobian_;
   const auto n = static_cast<size_t>(rows_);
-  for (auto* vector : {&b, &lambda, &softness, &right_side_, &product_, &unmet_}) vector->assign(n, 0.0);
+  for (auto* vector : {&b, &lambda, &softness, &right_side_, &product_, &unmet_, &before_}) vector->assign(n, 0.0);
   for (auto& vector : shared_) vector.assign(n, 0.0);
   lower.assign(n, -std::numeric_limits<Real>::infinity());
   upper.assign(n, std::numeric_limits<Real>::infinity());

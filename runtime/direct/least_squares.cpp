@@ -138,7 +138,7 @@ typename System<S>::Part System<S>::part_within_bounds(const std::vector<Real>& 
 template <class S>
 const std::vector<typename System<S>::Real>& System<S>::idle_loads() {
   auto &rest = shared_[0], &image = shared_[2], &y = shared_[3];
-  for (int r = 0; r < rows_; ++r) rest[r] = out_[r] ? Real(0) : lambda[r];
+  for (int r = 0; r < rows_; ++r) rest[r] = out_[r] ? Real(0) : whole(r);
   contract(rest);
   divide_by_null_space(rest, y);
   expand(y, image);
@@ -203,15 +203,15 @@ bool System<S>::leaves_bound() {
   for (int r = 0; r < rows_; ++r) {
     may_leave[r] = fixed[r] && !broken[r] && lower[r] < upper[r] && std::isfinite(lambda[r]) &&
                    (lambda[r] == lower[r] || lambda[r] == upper[r]) && std::abs(excess(r)) <= few;
-    right_side_[r] = kept(r) ? lambda[r] : Real(0);
-    if (!out_[r] || may_leave[r]) largest = std::max(largest, std::abs(lambda[r]));
+    right_side_[r] = kept(r) ? whole(r) : Real(0);
+    if (!out_[r] || may_leave[r]) largest = std::max(largest, std::abs(whole(r)));
   }
   ldlt_.solve(right_side_.data(), right_side_.data());
   ldlt_.multiply(right_side_.data(), product_.data());
   const int before = dependent_;
   bool changed = false;
   for (int r = 0; r < rows_; ++r) {
-    const Real inside = fixed[r] == at_lower ? product_[r] - lambda[r] : lambda[r] - product_[r];
+    const Real inside = fixed[r] == at_lower ? product_[r] - whole(r) : whole(r) - product_[r];
     if (!may_leave[r] || !(inside > slight(largest))) continue;
     const char bound = fixed[r];
     fixed[r] = free, changed = true;
@@ -261,15 +261,20 @@ void System<S>::free_idle_rows() {
 }
 
 // Rows whose bounds contradict are slightly soft until these have decided. If the others then agree, they are rigid
-// again: among soft rows, the softness would share the loads.
+// again: among soft rows, the softness would share the loads. What the soft solution lacks of their rates is slight, so
+// it moves no row beyond its bound.
 template <class S>
 void System<S>::stiffen() {
   auto& soft = shared_[3];
   std::copy(softness.begin(), softness.end(), soft.begin());
   load_softness();
   if (softened_ != Softened::no || soft == softness) return;
-  factor(), solve_rows();
-  if (softened_ == Softened::no && !(dependent_ > 0 && misses_rows(shared_[0]))) return;
+  factor(), find_excess();
+  for (int r = 0; r < rows_; ++r) right_side_[r] = kept(r) ? -excess(r) : Real(0);
+  ldlt_.solve(right_side_.data(), right_side_.data());
+  for (int r = 0; r < rows_; ++r)
+    if (kept(r)) lambda[r] += right_side_[r];
+  if (!(dependent_ > 0 && misses_rows(shared_[0]))) return;
   std::copy(soft.begin(), soft.end(), softness.begin());
   factor(), solve_rows();
 }
@@ -289,9 +294,11 @@ void System<S>::stay_at_bounds() {
 // met have a share, too.
 template <class S>
 void System<S>::share_within_bounds() {
+  shared_some_ = false;
   if (shares_loads_) stiffen();
   if (!shares_loads_ || softened_ != Softened::no) return void(share_redundant_loads(Bounds::known));
   free_idle_rows();
+  shared_some_ = dependent_ > 0;
   stay_at_bounds();
   for (int turns = rows_; turns > 0 && leaves_bound(); --turns) stay_at_bounds();
 }

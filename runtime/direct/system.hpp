@@ -62,6 +62,18 @@ class System {
   // From now on solve() shares forces among redundant rows: among equal motions the least sum of squares. So it does
   // anyhow while an end holds.
   void share_loads() { shares_loads_ = true; }
+  bool shares_loads() const { return shares_loads_; }
+  // True if the last solve_bounded() shared some.
+  bool shared() const { return shared_some_; }
+  // Where lambda adds to other impulses, it is their sum whose squares are least: from before(batch, i), until it is
+  // forgotten.
+  template <class F>
+  void add_to(F before) {
+    if (!shares_loads_) return;
+    adds_ = true;
+    each_row([&](int row, const Batch<S>& batch, int i) { before_[row] = before(batch, i); });
+  }
+  void forget_before() { adds_ = false; }
 
   // b of every row from value(batch, i), i numbering the batch's rows.
   template <class F>
@@ -231,6 +243,7 @@ class System {
   bool misses_rate(int row) const;
   void share_contradictions();
   enum class Bounds : char { unknown, known };
+  Real whole(int row) const { return adds_ ? before_[row] + lambda[row] : lambda[row]; }
   const std::vector<Real>& idle_loads();
   int share_redundant_loads(Bounds bounds);
   void load_held_bounds();
@@ -256,6 +269,7 @@ class System {
   void expand(const std::vector<Real>& y, std::vector<Real>& to);
 
   bool built_ = false, shares_loads_ = false, lawful_ = false, taut_ = false, any_out_ = false, contradicted_ = false;
+  bool adds_ = false, shared_some_ = false;
   bool multiplies_own_ = false;  // blocks of K on its diagonal, rather than take those of the kernels
   Real forgiven_share_ = 0, forgiven_ = 0;
   bool yields_ = false, eased_ = false;  // within solve_bounded(): part_and_settle()
@@ -267,6 +281,7 @@ class System {
   std::vector<Real> right_side_, product_;
   std::array<std::vector<Real>, 4> shared_;  // by row, scratch of least_squares.cpp and regularise.cpp
   std::vector<Real> unmet_;                  // by row
+  std::vector<Real> before_;                 // by row, while adds_
   Rivals rivals_;                            // before they are known to miss their rates
   std::vector<int> tension_of_;              // index into `blocks`
   std::vector<char> out_, passing_;          // passing_: rows under a law, which may leave

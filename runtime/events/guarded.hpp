@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "runtime/solve/direct.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/state/world_data.hpp"
@@ -41,6 +42,14 @@ void each_guarded_row(Island<S>& island, F f) {
     batch.law->guard(batch, slot, guards);
     for (int r = 0; r < batch.ops->rows; ++r) f(batch, slot * batch.ops->rows + r, guards[r], *resolution++);
   });
+}
+
+// At the present C.
+template <class S>
+Guard<typename S::Scalar> guard_of(const Batch<S>& batch, int i) {
+  Guard<typename S::Scalar> guards[most_rows];
+  batch.law->guard(batch, i / batch.ops->rows, guards);
+  return guards[i % batch.ops->rows];
 }
 
 template <class S>

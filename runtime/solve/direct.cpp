@@ -36,7 +36,7 @@ template <class S>
 bool has_error(const Batch<S>& batch, int i) {
   constexpr auto round_off = 8 * std::numeric_limits<typename S::Scalar>::epsilon();
   const bool acts = !is_held(batch, i) && batch.law->error && batch.correction[i] != 0;
-  return is_held(batch, i) || (batch.mode[i] == Mode::bounded && (std::abs(batch.error[i]) > round_off || acts));
+  return is_held(batch, i) || (within_bounds(batch.mode[i]) && (std::abs(batch.error[i]) > round_off || acts));
 }
 
 template <class S>

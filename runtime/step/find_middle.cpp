@@ -207,6 +207,7 @@ typename S::Scalar improve(WorldData<S>& world, Island<S>& island, typename S::S
   });
   system.load_tensions(world.bodies.increment.data());
   if (renew) system.assemble(world.bodies);
+  system.add_to([](const Batch<S>& batch, int i) { return T(0.5) * batch.correction[i]; });
   if (!island.loads.empty()) {
     begin_loads(world, island);
     std::ranges::fill(system.lambda, typename System<S>::Real(0));  // loads start from the present impulses
@@ -234,6 +235,7 @@ typename S::Scalar improve(WorldData<S>& world, Island<S>& island, typename S::S
     }
     system.solve();
   }
+  system.forget_before();
   system.store([&](Batch<S>& batch, int i, auto y) {
     batch.rate[i] = T(y);
     batch.correction[i] += T(2 * y);

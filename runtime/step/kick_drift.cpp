@@ -30,6 +30,12 @@ bool has_rows(const Island<S>& island, bool (*are)(const Batch<S>&)) {
                      [&](const Segment<S>& s) { return s.begin < s.end && are(*s.batch); });
 }
 
+// True where ends may take a share of loads.
+template <class S>
+bool shares_with_ends(const Island<S>& island) {
+  return island.solver->exact && island.system.shares_loads() && has_rows(island, has_ends<S>);
+}
+
 // True for a freewheel, a ratchet or a motor that only pushes or only pulls.
 template <class S>
 bool drives_one_way(const Batch<S>& batch, int i) {
@@ -37,6 +43,15 @@ bool drives_one_way(const Batch<S>& batch, int i) {
   Guard<typename S::Scalar> guard;
   batch.law->guard(batch, i, &guard);
   return (guard.lower == 0) != (guard.upper == 0);
+}
+
+template <class S>
+void offer_ends(const Island<S>& island, Batch<S>& batch, int begin, int end) {
+  each_row(batch, begin, end, [&](int i) {
+    if (!holds_at_start(island, batch, i)) return;
+    const auto guard = guard_of(batch, i);
+    batch.lower[i] = guard.lower, batch.upper[i] = guard.upper;
+  });
 }
 
 // Limits that are met carry the load of friction. Their own impulses are dropped afterwards.
@@ -55,13 +70,14 @@ void offer_load(const Island<S>& island, Batch<S>& batch, int begin, int end) {
   }
 }
 
-// Bounds of the force at the start, and into Batch::impulse the rate that a motor or friction misses. Others under a
-// law do not act.
+// Bounds of the force at the start, and into Batch::impulse the rate that a motor or friction misses. Of others under a
+// law, only those of holds_at_start() act.
 template <class S>
 void offer_bounds(WorldData<S>& world, const Island<S>& island, Batch<S>& batch, int begin, int end) {
   using T = typename S::Scalar;
   each_row(batch, begin, end, [&](int i) { batch.softness[i] = batch.lower[i] = batch.upper[i] = T(0); });
   if (!acts_by_force(batch)) {
+    offer_ends(island, batch, begin, end);
     if (!island.loads.empty()) offer_load(island, batch, begin, end);
     return;
   }
@@ -85,6 +101,28 @@ void reach_rates(WorldData<S>& world, Island<S>& island, typename S::Scalar t) {
   island.solver->renew(world, island);
   island.solver->velocities(world, island, world.bodies.velocity_rate.data(), typename S::Scalar(0));
   island.factored = false;
+}
+
+template <class S>
+void find_start(WorldData<S>& world, Island<S>& island, typename S::Scalar t) {
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    if (batch->law) offer_bounds(world, island, *batch, begin, end);
+  if (has_rows(island, acts_by_force<S>) || shares_with_ends(island)) reach_rates(world, island, t);
+  else accelerate(world, island, typename S::Scalar(world.time));
+}
+
+// With the ends if loads are shared then, else without.
+template <class S>
+void share_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar t) {
+  const auto let_ends = [&](Mode mode) {
+    each_row(island, [mode](Batch<S>& batch, int i) {
+      if (has_ends(batch) && within_bounds(batch.mode[i])) batch.mode[i] = mode;
+    });
+  };
+  let_ends(Mode::gripped), find_start(world, island, t);
+  if (island.at_work().shared()) return;
+  evaluate_anew(world, island, typename S::Scalar(world.time));
+  let_ends(Mode::bounded), find_start(world, island, t);
 }
 
 // True if the clutch pushes, and its force is no bound.
@@ -161,17 +199,15 @@ bool reaches_rate_by_blow(WorldData<S>& world, Island<S>& island, typename S::Sc
 template <class S>
 void exert_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
-  for (const auto& [batch, begin, end, whole] : island.segments)
-    if (batch->law) offer_bounds(world, island, *batch, begin, end);
   const T time = T(world.time);
-  if (has_rows(island, acts_by_force<S>)) reach_rates(world, island, h / 2);
-  else accelerate(world, island, time);
+  if (shares_with_ends(island)) share_at_start(world, island, h / 2);
+  else find_start(world, island, h / 2);
   island.flow.motors_struck = !island.loads.empty() && reaches_rate_by_blow(world, island, h / 2);
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     const bool acts = !batch.law || acts_by_force(batch);
     for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i)
-      batch.lambda[i] *= acts ? h / 2 : T(0);
+      batch.lambda[i] *= acts || holds_at_start(island, batch, i) ? h / 2 : T(0);
   }
   if (island.solver->exact) note_grips(island), note_sticking_rows(island);
   evaluate_anew(world, island, time);  // restores dC/dt, which gamma replaced
@@ -256,7 +292,7 @@ void drift_and(WorldData<S>& world, Island<S>& island, typename S::Scalar h, F f
 
 template <class S>
 bool repeats_impulses(const Island<S>& island) {
-  return has_rows(island, has_velocity_rows<S>) || has_rows(island, acts_by_force<S>);
+  return has_rows(island, has_velocity_rows<S>) || has_rows(island, acts_by_force<S>) || shares_with_ends(island);
 }
 
 template <class S>

@@ -1,13 +1,14 @@
 // Stages that RATTLE and the implicit midpoint rule share: their steps are kicks by impulses and drifts by velocities.
 #pragma once
 
+#include "runtime/events/guarded.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/state/world_data.hpp"
 
 namespace cdot {
 
 // True if it has velocity rows, motors or friction, whose impulses of the end act once more at the start of the next
-// step.
+// step, or ends that share loads.
 template <class S>
 bool repeats_impulses(const Island<S>& island);
 
@@ -60,6 +61,15 @@ template <class S>
 bool acts_at_start(const Island<S>& island, const Batch<S>& batch, int i) {
   if (island.solver->exact || !batch.law || batch.law->error || batch.law->by_load) return true;
   return batch.lower[i] != 0 && batch.upper[i] != 0;
+}
+
+// True for a pin, or an end that is met, which presses at the start of a step and repeats its impulse: where loads are
+// shared among redundant rows. Else the drift finds it.
+template <class S>
+bool holds_at_start(const Island<S>& island, const Batch<S>& batch, int i) {
+  if (!has_ends(batch) || batch.mode[i] != Mode::gripped) return false;
+  const auto guard = guard_of(batch, i);
+  return guard.bilateral() || (guard.one_sided() && !(guard.gap() > foreign<typename S::Scalar> * island.scale));
 }
 
 }  // namespace cdot

@@ -65,9 +65,11 @@ void guess_impulses(WorldData<S>& world, Island<S>& island, typename S::Scalar s
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     const int rows = batch.ops->rows;
-    const T repeated = batch.law && (batch.law->error || is_force(batch)) ? T(0) : share;
-    for (int i = segment.begin * rows; i < segment.end * rows; ++i)
-      batch.correction[i] = batch.impulse[i] = acts_at_start(island, batch, i) ? repeated * batch.lambda[i] : T(0);
+    const bool of_end = batch.law && (batch.law->error || is_force(batch));
+    for (int i = segment.begin * rows; i < segment.end * rows; ++i) {
+      const bool acts = of_end ? holds_at_start(island, batch, i) : acts_at_start(island, batch, i);
+      batch.correction[i] = batch.impulse[i] = acts ? share * batch.lambda[i] : T(0);
+    }
     batch.ops->apply(batch, segment.begin, segment.end, world.bodies, batch.impulse.data(),
                      world.bodies.velocity.data());
   }
@@ -77,13 +79,7 @@ void guess_impulses(WorldData<S>& world, Island<S>& island, typename S::Scalar s
 // would decide how far inside a body stops.
 template <class S>
 bool end_acts(const Batch<S>& batch, int i) {
-  return has_ends(batch) && batch.mode[i] == Mode::bounded && (batch.error[i] != 0 || batch.correction[i] != 0);
-}
-template <class S>
-Guard<typename S::Scalar> guard_of(const Batch<S>& batch, int i) {
-  Guard<typename S::Scalar> guards[most_rows];
-  batch.law->guard(batch, i / batch.ops->rows, guards);
-  return guards[i % batch.ops->rows];
+  return has_ends(batch) && within_bounds(batch.mode[i]) && (batch.error[i] != 0 || batch.correction[i] != 0);
 }
 
 // The errors of ends that hold count inside, too. True if there are some.
@@ -208,7 +204,9 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
     astray |= vain > 0;
     load_errors(system, T(-1) / h);
     choose_rows_of_drift(system, round == 0 && rolls(island), round);
+    system.add_to([](const Batch<S>& batch, int i) { return batch.correction[i]; });
     system.solve();
+    system.forget_before();
     if (at_ends) {  // updates would not know which ends hold
       let_go_of_pulling_ends(system);
       begin_search(island);

@@ -84,11 +84,29 @@ void ReleaseWatch<S>::wait_on(const WorldData<S>& world, double h) {
       one.after = now;
       continue;
     }
-    const BodyError after = smaller(one.after, now);
-    subtract(release.error.velocity, after.velocity), subtract(release.error.spin, after.spin);
-    found_.push_back(release);
+    one.after = smaller(one.after, now);
+    note(one);
   }
   std::erase_if(waiting_, [](const Waiting& one) { return one.steps == 2; });
+}
+
+template <class S>
+void ReleaseWatch<S>::note(Waiting one) {
+  BodyError& error = one.release.error;
+  subtract(error.velocity, one.after.velocity), subtract(error.spin, one.after.spin);
+  scale(error, one.late / one.length);
+  found_.push_back(one.release);
+}
+
+template <class S>
+double ReleaseWatch<S>::end_wait(int body) {
+  const auto one = std::ranges::find_if(
+      waiting_, [&](const Waiting& other) { return other.release.body == body && other.steps == 1; });
+  if (one == waiting_.end()) return 0;
+  const double late = one->late;
+  note(*one);
+  waiting_.erase(one);
+  return late;
 }
 
 template <class S>
@@ -118,12 +136,13 @@ void ReleaseWatch<S>::add_island_of(const WorldData<S>& world, int joint, double
   if (steps_ <= 2 && has_unlimited_motor(island)) return;
   for (const int body : island.bodies) {
     BodyError change = change_of(body, before_, world.bodies.velocity);
-    if (!earlier_.empty()) {
+    const double late = end_wait(body);
+    if (!earlier_.empty() && late == 0) {
       BodyError earlier = change_of(body, earlier_, before_);
       scale(earlier, h / length_);
       change = smaller(earlier, change);
     }
-    waiting_.push_back({{time, body, is_free(world, body), change}, h, {}});
+    waiting_.push_back({{time, body, is_free(world, body), change}, h, late + h, {}});
   }
 }
 

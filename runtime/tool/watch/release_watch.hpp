@@ -3,8 +3,10 @@
 // Such steps know a load by its mean over a step, which is that in the middle of the step. A force that ends at a
 // strength, found in step k, has ended between the middle of step k - 1 and that of step k. It acts until the end of
 // step k: by h too long, give or take h/2. The velocities err by h (a- - a+), where a- and a+ are the accelerations
-// before and after: in step k - 1 or k, and k + 1 or k + 2, of each pair the smaller, as the other may hold a blow. In
-// the first two steps of a run a motor of unlimited force may have given one: then there is no telling.
+// before and after: in step k - 1 or k, and k + 1 or k + 2, of each pair the smaller, as the other may hold a blow. A
+// force that ends in step k + 1 because of that would have ended with the first one: it acts by one h more than that,
+// and a- and a+ are those of the steps k + 1 and k + 2 alone. In the first two steps of a run a motor of unlimited
+// force may have given a blow: then there is no telling.
 #pragma once
 
 #include <vector>
@@ -37,11 +39,15 @@ class ReleaseWatch {
   struct Waiting {
     Release release;
     double length;    // of step k [s]
+    double late;      // [s]
     BodyError after;  // the change in step k + 1, over that length
     int steps = 0;    // taken since
   };
 
   void wait_on(const WorldData<S>& world, double h);
+  void note(Waiting one);
+  // Notes what the body waits for since the step before. Returns by how much that force ended too late [s]; 0: none.
+  double end_wait(int body);
   // Bodies of islands in which a force has ended in this step wait for the next ones.
   void find_ends(const WorldData<S>& world, double h, double time);
   void add_island_of(const WorldData<S>& world, int joint, double h, double time);

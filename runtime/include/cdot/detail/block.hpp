@@ -87,11 +87,14 @@ enum class Mode : char {
   pushed,   // the force is known: its upper bound
   pulled,   // the same at the lower bound
   pressed,  // an end that a motor of unlimited force presses on: held, by a force of any sign
-  gripped,  // by RATTLE: a motor, clutch or friction held at the end of the last step
+  gripped,  // by RATTLE: a motor, clutch or friction held at the end of the last step; an end presses at its start, too
 };
 
 // True if the rate is prescribed.
 constexpr bool holds(Mode mode) { return mode == Mode::held || mode == Mode::pressed; }
+
+// True if every step solves within the bounds.
+constexpr bool within_bounds(Mode mode) { return mode == Mode::bounded || mode == Mode::gripped; }
 
 // The events of a row so far: it acts after `began`, if its law waits for that, and until `ended`.
 enum class Event : char { none = 0, began = 1, ended = 2, both = 3 };

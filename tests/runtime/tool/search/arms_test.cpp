@@ -124,6 +124,22 @@ TEST(Arms, BreakTheSamePinsByEveryMethod) {
         << name_of(integrators, integrator);
 }
 
+TEST(Arms, ShearTheSamePinsWhereABrakeHolds) {
+  const Scene scene = arm("held_brakes");
+  const std::vector<Frame> truth = rows_by(scene, Integrator::dop853, 1e-9);
+  for (const Integrator integrator : {Integrator::rattle, Integrator::implicit, Integrator::rk4})
+    EXPECT_LT(largest_apart(scene, rows_by(scene, integrator, 0, 5e-4), truth), 1e-12)
+        << name_of(integrators, integrator);
+}
+
+TEST(Arms, ShearTheSamePinsWhereSharesTurn) {
+  const Scene scene = arm("turning_shares");
+  const std::vector<Frame> truth = rows_by(scene, Integrator::dop853, 1e-9);
+  for (const Integrator integrator : {Integrator::rattle, Integrator::implicit})
+    EXPECT_LT(largest_apart(scene, rows_by(scene, integrator, 0, 5e-4), truth), 0.01)
+        << name_of(integrators, integrator);
+}
+
 // The share of all work was small enough for silence, though runs at different accuracies differ by 0.3 rad.
 TEST(Arms, TellAnErrorThatOnlyTheirWorkHides) {
   const Scene scene = arm("any_leverage");

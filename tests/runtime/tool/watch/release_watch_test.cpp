@@ -54,6 +54,19 @@ TEST(ReleaseWatch, KnowsTheErrorOfALoadThatIsTooLargeFromTheStart) {
     expect_told(scene_of(rod_on_a_pin(1), integrator, 0.01), std::string(name_of(integrators, integrator)));
 }
 
+// The level rod puts m g / 2 times 1 m on three pins: 1.635 N m each, then 2.45 on two, and 4.905 on the last one. All
+// shear at once, but equal steps know of each overload at the end of a step of its own.
+TEST(ReleaseWatch, KnowsTheErrorOfPinsThatShearOneAfterAnother) {
+  std::string pins = "position = [0.5, 0]\n";
+  for (const double strength : {1.6, 2.4, 4.8})
+    pins += fmt::format(
+        "[[joint]]\ntype = \"revolute\"\nbodies = [\"world\", \"rod\"]\nat = [0, 0]\n"
+        "angle.shear_pin = {{ strength = {} }}\n",
+        strength);
+  for (const Integrator integrator : {Integrator::euler, Integrator::implicit, Integrator::rattle})
+    expect_told(scene_of(pins, integrator, 0.01), std::string(name_of(integrators, integrator)));
+}
+
 // The stop of the upper rod gives the lower one a blow, which shears the pin between them. The blow is no force that
 // ends too late.
 TEST(ReleaseWatch, TakesNoBlowForAForce) {
