@@ -204,9 +204,7 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
     astray |= vain > 0;
     load_errors(system, T(-1) / h);
     choose_rows_of_drift(system, round == 0 && rolls(island), round);
-    system.add_to([](const Batch<S>& batch, int i) { return batch.correction[i]; });
     system.solve();
-    system.forget_before();
     if (at_ends) {  // updates would not know which ends hold
       let_go_of_pulling_ends(system);
       begin_search(island);
