@@ -5,11 +5,9 @@
 
 #include <cdot/spaces.hpp>
 
-#include "runtime/events/guarded.hpp"
 #include "runtime/events/resolution.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/loads.hpp"
-#include "runtime/solve/misfits.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
@@ -103,6 +101,7 @@ void reach_rates(WorldData<S>& world, Island<S>& island, typename S::Scalar t) {
   island.factored = false;
 }
 
+// The forces at the start, and the accelerations by which motors and friction reach their rates in the time t.
 template <class S>
 void find_start(WorldData<S>& world, Island<S>& island, typename S::Scalar t) {
   for (const auto& [batch, begin, end, whole] : island.segments)
@@ -111,7 +110,7 @@ void find_start(WorldData<S>& world, Island<S>& island, typename S::Scalar t) {
   else accelerate(world, island, typename S::Scalar(world.time));
 }
 
-// With the ends if loads are shared then, else without.
+// With the ends that are met, if loads are shared then; else without.
 template <class S>
 void share_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar t) {
   const auto let_ends = [&](Mode mode) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/events/guarded.hpp"
+#include "runtime/solve/misfits.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/state/world_data.hpp"
 

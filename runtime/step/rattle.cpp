@@ -57,8 +57,9 @@ void kick(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   }
 }
 
-// First guess: the joints' impulses at the end of the last step. Limits and ropes start from none: the drift finds the
-// impulses that hold them, but it cannot take back that of an impact, which would throw the bodies off again.
+// First guess: the joints' impulses at the end of the last step. Limits and ropes start from none, unless they share
+// loads: the drift finds the impulses that hold them, but it cannot take back that of an impact, which would throw the
+// bodies off again.
 template <class S>
 void guess_impulses(WorldData<S>& world, Island<S>& island, typename S::Scalar share) {
   using T = typename S::Scalar;

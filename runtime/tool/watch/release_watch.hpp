@@ -39,7 +39,7 @@ class ReleaseWatch {
   struct Waiting {
     Release release;
     double length;    // of step k [s]
-    double late;      // [s]
+    double late;      // by so much the force has ended too late [s]
     BodyError after;  // the change in step k + 1, over that length
     int steps = 0;    // taken since
   };
