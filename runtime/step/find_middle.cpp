@@ -291,7 +291,7 @@ bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     island.at_work().forgive(turn, (turn * island.residual + round_off_of(world, island)) / h);
     const T change = improve(world, island, h, renew),
             miss = std::max(change / settled<T>, (island.residual - misfit) / goal);
-    if (!(change < furthest<T>)) return false;
+    if (!(change < furthest<T>) || island.trouble != StepProblem::none) return false;
     const bool stays = change <= settled<T> && island.residual <= shared_error(island, at_start);
     if (stays && miss > T(1) && fitted && island.at_work().doubt_missed_rows()) {
       fitted = false, renew = true;

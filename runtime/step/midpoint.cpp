@@ -341,6 +341,7 @@ void step_midpoint(WorldData<S>& world, Island<S>& island, typename S::Scalar h)
     const T part = h / T(parts);
     const bool last = 2 * parts > most_parts<T>;
     const bool taken = take_part(world, island, part, last);
+    if (island.trouble != StepProblem::none) break;
     if (!taken && !last) {
       done *= 2, parts *= 2;
       continue;

@@ -104,6 +104,59 @@ TEST(Budgets, CountTheSolvesOfFixedSteps) {
   EXPECT_LT(bounded.time, whole.time / 2);
 }
 
+// A drive, a coupling and a slide that contradict each other: no load is found for the friction on the slide. The step
+// has failed by then, and shorter parts of it are not tried.
+TEST(Budgets, StepsThatJamEndAtOnce) {
+  const Scene scene = read_scene(std::string_view(R"(dimension = 3
+duration = 0.003
+step = 0.003
+integrator = "implicit"
+[[body]]
+name = "b1"
+mass = 3114238.8031857572
+inertia = [[2.216e+06, 0, 0], [0, 2.216e+06, 0], [0, 0, 2.216e+06]]
+position = [-0.9128, -1.937, 1.5]
+orientation = [0.03227, 0.656, 0.07226, -0.7506]
+[[body]]
+name = "b2"
+mass = 601.3
+inertia = [[139.3, 0.6572625302565687, -18.459233886781345],
+           [0.6572625302565687, 202.5, 49.52855929591464], [-18.459233886781345, 49.52855929591464, 225.6]]
+position = [0.3531, 0.3322001194365016, 0.2846]
+orientation = [-0.6774, 0.6556, 0.297, -0.152]
+[[joint]]
+name = "j2"
+type = "point_on_plane"
+bodies = ["b2", "b1"]
+fa = [[-0.4517, -0.889, -0.07522], [-0.03407, -0.0670567053013465, 0.9971672077068311]]
+pa = [0.2786, -0.0856, 0.1153]
+slide_y.tearing_rope = { strength = 3.474e+04 }
+slide_z.rail_friction = { mu = 2.251 }
+[[joint]]
+name = "j18"
+type = "driven"
+bodies = ["b1", "b2"]
+pa = [0.06664, 0.3775, 0.3225]
+fa = [[-0.40157330488570014, -0.6986, -0.5922], [0.9158, -0.3063060329958574, -0.2597]]
+rate = 1.4716238008733662
+[[joint]]
+name = "j20"
+type = "constant_velocity"
+bodies = ["b1", "b2"]
+pa = [-0.1515, -0.23032321442975656, 0.2386]
+fa = [[0.7609, 0.3903, 0.5184], [-0.3226, 0.9207, -0.2198]]
+)"),
+                                 "jams.toml");
+  std::string warnings;
+  RunOptions options;
+  options.estimates_error = false;
+  const RunResult result = simulate(scene, options, warnings);
+  ASSERT_TRUE(result.failed_step);
+  EXPECT_EQ(result.failed_step->problem, StepProblem::jams);
+  fmt::print("  {} solves\n", result.solves);
+  EXPECT_LT(result.solves, 5000);
+}
+
 // The same in a search: its first run takes 16 steps of `implicit`, and is stopped.
 TEST(Budgets, PriceFixedStepsByTheirSolves) {
   std::string warnings;
