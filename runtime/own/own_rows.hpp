@@ -69,7 +69,6 @@ class OwnRows {
 
   explicit OwnRows(const void* block) : block_(static_cast<const OwnBlock*>(block)) {}
   const std::vector<OwnTurns>& turns() const { return block_->turns; }
-  bool lacks_position() const { return RowKind(block_->row_kinds[0]) == RowKind::velocity; }
 
   template <class Pose, class P, class T>
   void position(const Pose (&q)[bodies], const P& p, T time, T (&C)[rows]) const {

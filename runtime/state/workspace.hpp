@@ -38,9 +38,9 @@ template <class T>
 struct StartOfWay {
   T C = T(0), rate = T(0);
   bool near = false;                                  // the way comes near an event
-  double least = std::numeric_limits<double>::max();  // margin of a held row's force at the stages
-  double past = 1;  // share of the step, at the earliest stage whose force is beyond the event
-  T met = T(0);     // Resolution::rate by which its event was met at the end of the step before; 0: it was not
+  double least = std::numeric_limits<double>::max();  // margin at the stages, of rows that these tell of
+  double past = 1;                                    // share of the step, at the earliest stage beyond the event
+  T met = T(0);  // Resolution::rate by which its event was met at the end of the step before; 0: it was not
 };
 
 template <class S>
@@ -56,7 +56,7 @@ struct FlowWorkspace {
   std::vector<T> now;               // numbers of a stage, laid out like FlowState::start
   std::vector<T> low, high;         // margins at the start of a step, then on both sides of an event
   std::vector<StartOfWay<T>> ways;  // [guarded]
-  std::vector<T> stage_forces;      // of held rows, [guarded][stage]
+  std::vector<T> at_stages;         // forces of held rows, rates of others, [guarded][stage]
   std::vector<double> first_kick;   // of rows with bounds: [J] in the first of two kicks
   int guarded = 0;                  // number of guarded rows
   float alike = 0;                  // the smaller error estimate of the last attempt, as a share of the other

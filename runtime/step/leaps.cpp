@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <cdot/detail/drives.hpp>
@@ -9,37 +10,13 @@
 
 #include "runtime/events/events.hpp"
 #include "runtime/events/guarded.hpp"
+#include "runtime/number/way.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/step/between.hpp"
 
 namespace cdot {
 namespace {
-
-// Share of a rate. Cubics err by less than that.
-constexpr double slow = 0.25;
-
-// The way of a row's C within a step, as the cubic with its values and rates at both ends.
-template <class T>
-struct Way {
-  T from, change, rate_from, rate_to;  // rates times the length of the step
-  T at(T share) const { return from + share * (rate_from + share * (change - rate_from - (T(1) - share) * bend())); }
-  // Where values known to `noise` do not tell how the way bends, as in short steps: the parabola of the rates.
-  Way known_to(T noise) const {
-    const T mean = T(0.5) * (rate_from + rate_to);
-    return std::abs(bend()) < noise ? Way{from, mean, rate_from, rate_to} : *this;
-  }
-  T bend() const { return rate_from + rate_to - T(2) * change; }
-  T rate_at(T share) const { return rate_from + share * (rate_to - rate_from - T(3) * bend() * (T(1) - share)); }
-  // Where that rate turns back.
-  T turn() const { return T(0.5) + (rate_from - rate_to) / (T(6) * bend()); }
-  bool turns_back() const { return rate_from * rate_to < 0; }
-  // Both ends go the same way, and less than `slow` of that rate is left between them.
-  bool may_turn_twice() const {
-    const T share = turn();
-    return share > 0 && share < 1 && rate_at(share) * rate_from < T(slow) * rate_from * rate_from;
-  }
-};
 
 // A bound that rises and falls is seen at this many points of the way. More than `unseen` of its largest value, up and
 // down again, and the stages of the step may have missed it.
@@ -191,17 +168,18 @@ bool leaps_over_functions(const Island<S>& island, double time, double h, double
 // The state between is looked at in the points between so many parts of the step.
 constexpr int looks_between = 32;
 
-// Where friction grows with a load, its bound is known at the ends of a step only.
+// A row of velocities: only its rates within the step tell whether it came to rest.
 template <class S>
-bool may_let_go(const Batch<S>& batch, int i) {
-  return batch.mode[i] == Mode::held && !batch.law->by_load;
+bool slips_without_place(const Batch<S>& batch, int i) {
+  return batch.ops->lacks_position && slips(batch, i);
 }
 
-// A row that is held at the end, and whose force is bounded.
+// A row whose events the stages tell, that is before them at the end: one that is held by a bounded force, or slips.
 template <class S>
-bool may_have_let_go(const Batch<S>& batch, int i, const Flow<S>& flow, size_t k) {
+bool is_told_by_stages(const Batch<S>& batch, int i, const Flow<S>& flow, size_t k) {
   const double margin = double(flow.margins[k]);
-  return may_let_go(batch, i) && margin >= event_threshold(flow, k) && std::isfinite(margin);
+  const bool told = batch.mode[i] == Mode::held || slips_without_place(batch, i);
+  return told && margin >= event_threshold(flow, k) && std::isfinite(margin);
 }
 
 // The stage nearest to this share of a step.
@@ -213,32 +191,70 @@ int stage_near(const RungeKutta<Real>& method, double share) {
   return nearest;
 }
 
-// The force of a held row is known at the stages. It differs from the cubic through four of them by `differs` at most
-// at the others, and between them by no more than a few times that.
+// What is known at the stages differs from the cubic through four of them by `differs` at most at the others, and
+// between them by no more than a few times that.
 constexpr double times_between = 3;
 constexpr int least_stages = 8;  // that leave some to compare with
 
-// True if that may be more than what is left of its bounds.
+template <class Real>
+bool knows_stages(const RungeKutta<Real>& method) {
+  return !method.implicit && method.stages >= least_stages;
+}
+
+// The cubic through the values at four stages, at this share of a step.
+template <class Real, class T>
+double cubic_through_stages(const RungeKutta<Real>& method, const T* value, double share) {
+  const int nodes[] = {0, stage_near(method, 1.0 / 3), stage_near(method, 2.0 / 3), stage_near(method, 1)};
+  double cubic = 0;
+  for (const int node : nodes) {
+    double weight = double(value[node]);
+    for (const int other : nodes)
+      if (other != node) weight *= (share - double(method.c[other])) / double(method.c[node] - method.c[other]);
+    cubic += weight;
+  }
+  return cubic;
+}
+
+// True if the force of a held row may be further between the stages than what is left of its bounds.
 template <class S>
 bool is_unresolved(const Flow<S>& flow, const RungeKuttaOf<S>& method, size_t k) {
   using T = typename S::Scalar;
-  if (method.implicit || method.stages < least_stages) return false;
-  const T* const force = flow.stage_forces.data() + k * most_stages;
-  const int nodes[] = {0, stage_near(method, 1.0 / 3), stage_near(method, 2.0 / 3), stage_near(method, 1)};
+  if (!knows_stages(method)) return false;
+  const T* const force = flow.at_stages.data() + k * most_stages;
   double differs = 0, most = 0;
   for (int stage = 0; stage < method.stages; ++stage) {
-    double cubic = 0;
-    for (const int node : nodes) {
-      double weight = double(force[node]);
-      for (const int other : nodes)
-        if (other != node)
-          weight *= double(method.c[stage] - method.c[other]) / double(method.c[node] - method.c[other]);
-      cubic += weight;
-    }
+    const double cubic = cubic_through_stages(method, force, double(method.c[stage]));
     differs = std::max(differs, std::abs(double(force[stage]) - cubic));
     most = std::max(most, std::abs(double(force[stage])));
   }
   return flow.ways[k].least * (double(flow.resolution[k].force) + double(slight<T>) * most) < times_between * differs;
+}
+
+// The way of a row within a step of h. That of a row of velocities is the integral of its rates at the stages, by
+// Simpson's rule, where these are known.
+template <class S>
+Way<typename S::Scalar> way_of(const Batch<S>& batch, int i, const Flow<S>& flow, const RungeKuttaOf<S>& method,
+                               size_t k, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  const auto& start = flow.ways[k];
+  Way<T> way{start.C, batch.C[i] - start.C, h * start.rate, h * flow.row_rates[k]};
+  if (!batch.ops->lacks_position) return way.known_to(flow.resolution[k].C);
+  if (!slips(batch, i) || !knows_stages(method)) return way.known_to(std::numeric_limits<T>::infinity());
+  const double middle = cubic_through_stages(method, flow.at_stages.data() + k * most_stages, 0.5);
+  way.change = (way.rate_from + T(4) * h * T(middle) + way.rate_to) / T(6);
+  return way;
+}
+
+// At the present poses and velocities, with the force of the last solution.
+template <class S>
+typename S::Scalar margin_now(const WorldData<S>& world, Batch<S>& batch, int i,
+                              const Resolution<typename S::Scalar>& resolution, typename S::Scalar time) {
+  const auto C = batch.C[i];
+  batch.ops->evaluate(batch, i, i + 1, world.bodies, time);  // dC/dt, which gamma has replaced
+  batch.ops->velocity(batch, i, i + 1, world.bodies.velocity.data(), batch.rate.data());
+  const auto margin = margin_of_row(batch, i, resolution, batch.rate[i] + batch.bias[i]);
+  batch.C[i] = C;
+  return margin;
 }
 
 // Round-off decides how redundant rows share a load. Sweeps factor no K.
@@ -252,7 +268,7 @@ bool shares_loads(const Island<S>& island) {
 }
 
 // True if a row has passed its event at one of the looks 1, 2, ... before the last, at a time of at(look) after the
-// start: by its force a row that is held, otherwise one that comes near. Leaves the end as it was.
+// start: one that stages tell of, by its force, otherwise one that comes near. Leaves the end as it was.
 template <class S, class F>
 bool passes_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                     typename S::Scalar h, bool by_force, int last, F at) {
@@ -272,13 +288,8 @@ bool passes_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S
       accelerate(world, island, time + at(look));
     }
     each_single_row(island, [&](Batch<S>& batch, int i, size_t k) {
-      if (by_force ? !may_have_let_go(batch, i, flow, k) : !flow.ways[k].near) return;
-      const T C = batch.C[i];
-      batch.ops->evaluate(batch, i, i + 1, world.bodies, time + at(look));  // dC/dt, which gamma has replaced
-      batch.ops->velocity(batch, i, i + 1, world.bodies.velocity.data(), batch.rate.data());
-      any |=
-          double(margin_of_row(batch, i, flow.resolution[k], batch.rate[i] + batch.bias[i])) < event_threshold(flow, k);
-      batch.C[i] = C;
+      if (by_force ? !is_told_by_stages(batch, i, flow, k) : !flow.ways[k].near) return;
+      any |= double(margin_now(world, batch, i, flow.resolution[k], time + at(look))) < event_threshold(flow, k);
     });
   }
   take_turns_of_end(), restore_turns(island), take_turns_of_end();
@@ -300,22 +311,28 @@ void note_ways(const WorldData<S>& world, Island<S>& island, typename S::Scalar 
     batch.ops->position(batch, slot, slot + 1, world.bodies, time);
     for (int r = 0; r < batch.ops->rows; ++r, ++k) {
       island.flow.ways[k] = {first[r], island.flow.row_rates[k]};
-      island.flow.stage_forces[k * most_stages] = batch.lambda[slot * batch.ops->rows + r];
+      const int i = slot * batch.ops->rows + r;
+      island.flow.at_stages[k * most_stages] =
+          slips_without_place(batch, i) ? island.flow.row_rates[k] : batch.lambda[i];
     }
     std::copy_n(C, batch.ops->rows, first);
   });
 }
 
 template <class S>
-void note_forces(Island<S>& island, int stage, double share) {
+void note_forces(const WorldData<S>& world, Island<S>& island, int stage, typename S::Scalar time, double share) {
   Flow<S>& flow = island.flow;
   each_single_row(island, [&](Batch<S>& batch, int i, size_t k) {
     auto& way = flow.ways[k];
     if (stage == 1) way.past = 1;
-    if (!may_let_go(batch, i)) return;
-    const double margin = double(margin_of_row(batch, i, flow.resolution[k], typename S::Scalar(0)));
+    const bool slips = slips_without_place(batch, i);
+    if (batch.mode[i] != Mode::held && !slips) return;
+    const auto& resolution = flow.resolution[k];
+    const double margin = double(slips ? margin_now(world, batch, i, resolution, time)
+                                       : margin_of_row(batch, i, resolution, typename S::Scalar(0)));
     way.least = stage == 1 ? margin : std::min(way.least, margin);
-    flow.stage_forces[k * most_stages + static_cast<size_t>(stage)] = batch.lambda[i];
+    flow.at_stages[k * most_stages + static_cast<size_t>(stage)] =
+        slips ? batch.rate[i] + batch.bias[i] : batch.lambda[i];
     if (margin < event_threshold(flow, k)) way.past = std::min(way.past, share);
   });
 }
@@ -332,39 +349,38 @@ bool leaps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method
            typename S::Scalar h) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
-  bool any = false, near = false, held = false;
+  bool any = false, near = false, by_stages = false;
   const bool shares = shares_loads(island);
   each_single_row(island, [&](Batch<S>& batch, int i, size_t k) {
     auto& start = flow.ways[k];
-    const Way<T> cubic{start.C, batch.C[i] - start.C, h * start.rate, h * flow.row_rates[k]};
-    const Way<T> way = cubic.known_to(flow.resolution[k].C);
-    start.near = false;
+    const Way<T> way = way_of(batch, i, flow, method, k, h);
+    start.near = slips_without_place(batch, i) && !knows_stages(method);
     const auto look = [&](const Dip& dip) {
       any |= dip.leaps(event_threshold(flow, k)), start.near |= dip.comes_near(event_threshold(flow, k));
     };
     any |= leaps_over_bound(batch, i, way, time + h, h);
-    const bool bounded = may_have_let_go(batch, i, flow, k);
-    any |= bounded && (start.least < event_threshold(flow, k) || (!shares && is_unresolved(flow, method, k)));
+    const bool told = is_told_by_stages(batch, i, flow, k), unsure = batch.mode[i] == Mode::held && !shares;
+    any |= told && (start.least < event_threshold(flow, k) || (unsure && is_unresolved(flow, method, k)));
     if (may_come_back(batch, i, way) || may_come_and_go(batch, i, flow, k))
       look(dip_of_way(batch, i, way, flow.resolution[k], time + h, h));
     else if (may_rest(batch, i, way)) look(dip_of_rate(batch, i, way, flow.resolution[k], h));
     near |= start.near;
-    held |= bounded;
+    by_stages |= told;
   });
-  const double resolved = held ? resolved_events : resolved_work;
+  const double resolved = by_stages ? resolved_events : resolved_work;
   if (any || (world.driven && leaps_over_functions(island, double(time), double(h), resolved))) return true;
   const auto at_stage = [&](int stage) { return h * T(method.c[stage]); };
-  if (held && method.implicit && passes_between(world, island, method, time, h, true, method.stages - 1, at_stage))
+  if (by_stages && method.implicit && passes_between(world, island, method, time, h, true, method.stages - 1, at_stage))
     return true;
   const auto at_part = [&](int look) { return h * T(look) / T(looks_between); };
   return near && method.further_terms > 0 &&
          passes_between(world, island, method, time, h, false, looks_between, at_part);
 }
 
-#define CDOT_INSTANTIATE(S)                                            \
-  template void note_forces(Island<S>&, int, double);                  \
-  template double earliest_passed_stage(const Flow<S>&);               \
-  template void note_ways(const WorldData<S>&, Island<S>&, S::Scalar); \
+#define CDOT_INSTANTIATE(S)                                                           \
+  template void note_forces(const WorldData<S>&, Island<S>&, int, S::Scalar, double); \
+  template double earliest_passed_stage(const Flow<S>&);                              \
+  template void note_ways(const WorldData<S>&, Island<S>&, S::Scalar);                \
   template bool leaps(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

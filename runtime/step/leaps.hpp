@@ -10,9 +10,10 @@ template <class S>
 void note_ways(const WorldData<S>& world, Island<S>& island, typename S::Scalar time);
 
 // Call after each stage of an explicit step, which is at `share` of it: of rows that are held, how near their forces
-// come to a bound. Newton needs no such forces at the stages of an implicit step: leaps() finds them there.
+// come to a bound; of rows that slip without a place, how near to rest. Newton needs none of these at the stages of an
+// implicit step: leaps() finds them there.
 template <class S>
-void note_forces(Island<S>& island, int stage, double share);
+void note_forces(const WorldData<S>& world, Island<S>& island, int stage, typename S::Scalar time, double share);
 
 // The share of the step at its earliest stage that has passed an event, by these forces; 1: none within the step.
 template <class S>

@@ -184,7 +184,8 @@ bool take_stages(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& 
   if (method.implicit) return collocate(world, island, method, time, h);
   for (int stage = 1; stage < method.stages; ++stage) {
     take_stage(world, island, method, stage, time, h);
-    if (world.settings.local_error > 0) note_forces(island, stage, double(method.c[stage]));
+    if (world.settings.local_error > 0)
+      note_forces(world, island, stage, time + typename S::Scalar(method.c[stage]) * h, double(method.c[stage]));
   }
   combine(island.flow, method.a[method.stages], method.stages, h, island.flow.now.size());
   set_numbers(world, island, island.flow.now.data());
@@ -251,7 +252,7 @@ void prepare_runge_kutta(Island<S>& island, const RungeKuttaOf<S>& method) {
   flow.end_forces.assign(rows, 0);
   if (method.implicit) prepare_collocation(island);
   count_guarded_rows(island);
-  flow.stage_forces.assign(flow.ways.size() * most_stages, 0);
+  flow.at_stages.assign(flow.ways.size() * most_stages, 0);
   prepare_rank_loss(island, method);
 }
 

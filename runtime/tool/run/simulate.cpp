@@ -204,7 +204,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   WorstStepWatch<S> worst_step(told_share(scene), steps.count());
   ErrorEstimate<S> error(scene, steps.count());
   const auto fail = [&](const StepResult& step) {
-    result.failed_step = step, result.solves = data.solves;
+    result.failed_step = step;
     if (options.save_at && result.state.empty()) result.state = world.snapshot();
     if (!options.diagnose_times.empty()) look(scene, world, result);
   };

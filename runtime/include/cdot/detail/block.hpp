@@ -35,6 +35,7 @@ struct BlockOps {
   int parameter_size, jacobian_size;  // in numbers of type T
   int counters;                       // of whole turns, per slot
   bool explicit_time;
+  bool lacks_position;  // rows of velocities: C is 0
 
   // Starts counting the whole turns of one slot at the present poses. Null: no counters.
   void (*start_counting)(Slots, int slot, const Bodies<S>&, T time);

@@ -86,11 +86,7 @@ struct BlockLoops : BlockSlots<S, Joint, Block> {
     });
   }
 
-  // True of rows of velocities. Numbers in time have no others beside these (check_functions()).
-  static bool lacks_position(const Batch<S>& batch) {
-    if constexpr (is_made_by_program<Block>) return block_of<Block>(batch).lacks_position();
-    else return may_lack_position;
-  }
+  // Rows of velocities. Numbers in time have no others beside these (check_functions()).
   static constexpr bool may_lack_position = [] {
     if constexpr (is_made_by_program<Block>) return true;
     else return rows > 0 && Block::row_kinds[0] == RowKind::velocity;
@@ -100,7 +96,7 @@ struct BlockLoops : BlockSlots<S, Joint, Block> {
   static void drift_in_time(Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time) {
     for (int slot = begin; slot < end; ++slot) {
       if (batch.drives_of(slot).empty()) continue;
-      if (lacks_position(batch)) continue;
+      if (batch.ops->lacks_position) continue;
       Pose q[bodies];
       gather(all.pose, bodies_of(batch, slot), q);
       Jet<T> C[rows];
@@ -118,7 +114,7 @@ struct BlockLoops : BlockSlots<S, Joint, Block> {
       gather(all.pose, bodies_of(batch, slot), q);
       gather(all.velocity, bodies_of(batch, slot), v);
       Jet<T> of_rows[rows];
-      const bool of_rates = lacks_position(batch);
+      const bool of_rates = may_lack_position && batch.ops->lacks_position;
       if constexpr (may_lack_position)
         if (of_rates) change_of_rates(batch, slot, q, v, time, of_rows);
       if (!of_rates) motion(batch, slot, q, v, time, of_rows);
@@ -376,6 +372,7 @@ struct BlockLoops : BlockSlots<S, Joint, Block> {
             Slots::template numbers<Jacobian>(),
             Turns::count,
             Block::explicit_time,
+            !is_made_by_program<Block> && Inherited::may_lack_position,
             Inherited::starter(),
             evaluate,
             Inherited::position,

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "runtime/state/world_data.hpp"
 #include "runtime/tool/search/advice.hpp"
 #include "runtime/tool/search/work.hpp"
 #include "tests/runtime/tool/support.hpp"
@@ -147,14 +148,10 @@ pa = [-0.1515, -0.23032321442975656, 0.2386]
 fa = [[0.7609, 0.3903, 0.5184], [-0.3226, 0.9207, -0.2198]]
 )"),
                                  "jams.toml");
-  std::string warnings;
-  RunOptions options;
-  options.estimates_error = false;
-  const RunResult result = simulate(scene, options, warnings);
-  ASSERT_TRUE(result.failed_step);
-  EXPECT_EQ(result.failed_step->problem, StepProblem::jams);
-  fmt::print("  {} solves\n", result.solves);
-  EXPECT_LT(result.solves, 5000);
+  auto world = build_world_in<Spatial<double>>(scene);
+  EXPECT_EQ(world.step(0.003).problem, StepProblem::jams);
+  fmt::print("  {} solves\n", world.data().solves);
+  EXPECT_LT(world.data().solves, 5000);
 }
 
 // The same in a search: its first run takes 16 steps of `implicit`, and is stopped.
