@@ -1,13 +1,14 @@
-"""Random arms of one to three rods, and loops, as scenes: scene(kind, seed).
+"""Random arms of one to three rods, loops and discs, as scenes: scene(kind, seed).
 
 `rods`: motors, limits, friction, springs, dampers and loads on their coordinates, many of them functions of time.
 `effects`: effects of specs beside fewer of these, and ropes and springs between their points. `space`: the same on
 hinges, sliders, universal and spherical joints. `loops`: a rod on two to four cranks of equal length, of which two
-would do, with motors that contradict each other beside brakes; pins and joints break."""
+would do, with motors that contradict each other beside brakes; pins and joints break. `discs`: one to four of them fall,
+roll and slip on a slope and on each other, with rods, ropes and springs between them."""
 import math
 import random
 
-KINDS = ("rods", "effects", "space", "loops")
+KINDS = ("rods", "effects", "space", "loops", "discs")
 DURATION = 1.5
 
 
@@ -153,10 +154,50 @@ def loop(draw, seed):
     return "\n".join(lines) + "\n"
 
 
+def between_discs(draw, radii, a, b, apart):
+    """The contact of two discs, or if they are neighbours perhaps a rod, a rope or a spring."""
+    bodies = [f'bodies = ["disc{a}", "disc{b}"]']
+    points = ["pa = [0, 0]", "pb = [0, 0]"]
+    kind = draw.choice(["none", "contact"] + (["contact", "rod", "rope", "spring"] if b == a + 1 else []))
+    if kind == "contact":
+        return ["[[joint]]", 'type = "disc_on_disc"', *bodies, f"radius_a = {radii[a]}", f"radius_b = {radii[b]}",
+                f"mu = {draw.choice([0, 0.2, 0.5])}"]
+    if kind == "rod":
+        return ["[[joint]]", 'type = "distance"', *bodies, *points]
+    if kind == "rope":
+        return ["[[joint]]", 'type = "max_distance"', *bodies, *points, f"l = {apart + draw.choice([0.01, 0.2])!r}"]
+    if kind == "spring":
+        return ["[[spring]]", *bodies, *points, f"stiffness = {draw.choice([20, 200])}",
+                f"damping = {draw.choice([0, 2])}"]
+    return []
+
+
+def discs(draw, seed):
+    """On a slope through the origin, beside each other, some of them above it; all begin with the same velocity."""
+    radii = [draw.choice([0.1, 0.2, 0.3]) for _ in range(draw.choice([1, 2, 2, 3, 3, 4]))]
+    lean, speed = draw.choice([0, 0, 0.2, 0.5]) * draw.choice([1, -1]), draw.choice([0, 0, 1, -1, 2])
+    along, up = (math.cos(lean), math.sin(lean)), (-math.sin(lean), math.cos(lean))
+    lines = [f'title = "agree {seed}"', "gravity = [0, -9.81]", f"duration = {DURATION}"]
+    places, way = [], 0
+    for k, radius in enumerate(radii):
+        way += radii[k - 1] + radius + draw.choice([1e-9, 0.05, 0.3]) if k else 0
+        high = radius + draw.choice([0, 0, 0.01, 0.3])
+        places.append([way * along[i] + high * up[i] for i in range(2)])
+        lines += ["[[body]]", f'name = "disc{k}"', f"mass = {draw.choice([0.5, 1, 2, 5])}",
+                  f"shape = {{ disc = {radius} }}", f"position = {places[k]}",
+                  f"velocity = [{speed * along[0]}, {speed * along[1]}]", f"spin = {draw.choice([0, 0, 5, -5, 20])}",
+                  "[[joint]]", 'type = "rough_line"', f'bodies = ["disc{k}", "world"]', "pa = [0, 0]", "pb = [0, 0]",
+                  f"n = {list(up)}", f"radius = {radius}", f"mu = {draw.choice([0, 0.1, 0.3, 0.8])}"]
+    for b in range(len(radii)):
+        for a in range(b):
+            lines += between_discs(draw, radii, a, b, math.dist(places[a], places[b]))
+    return "\n".join(lines) + "\n"
+
+
 def scene(kind, seed):
     draw = random.Random(seed if kind == "rods" else f"{kind} {seed}")
-    if kind == "loops":
-        return loop(draw, seed)
+    if kind in ("loops", "discs"):
+        return {"loops": loop, "discs": discs}[kind](draw, seed)
     further = ", 0" if kind == "space" else ""
     lines = [f'title = "agree {seed}"', f"gravity = [0, {draw.choice([0, -9.81, -9.81])}{further}]",
              f"duration = {DURATION}", *(["dimension = 3"] if kind == "space" else [])]
