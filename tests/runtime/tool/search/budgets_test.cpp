@@ -151,7 +151,7 @@ fa = [[0.7609, 0.3903, 0.5184], [-0.3226, 0.9207, -0.2198]]
   auto world = build_world_in<Spatial<double>>(scene);
   EXPECT_EQ(world.step(0.003).problem, StepProblem::jams);
   fmt::print("  {} solves\n", world.data().solves);
-  EXPECT_LT(world.data().solves, 5000);
+  EXPECT_LT(world.data().solves, 1500);
 }
 
 // The same in a search: its first run takes 16 steps of `implicit`, and is stopped.
