@@ -1,14 +1,14 @@
-// The way of a row's C within a step.
+// The cubic by which a row's C moves within a step.
 #pragma once
 
 #include <cmath>
 
 namespace cdot {
 
-// Share of a rate. Cubics err by less than that.
+// A way that keeps less than this share of its first rate may turn twice: cubics err by less than that.
 inline constexpr double slow_turn = 0.25;
 
-// The way of a row's C within a step, as the cubic with its values and rates at both ends.
+// It has the values and rates of C at both ends.
 template <class T>
 struct Way {
   T from, change, rate_from, rate_to;  // rates times the length of the step

@@ -191,11 +191,12 @@ int stage_near(const RungeKutta<Real>& method, double share) {
   return nearest;
 }
 
-// What is known at the stages differs from the cubic through four of them by `differs` at most at the others, and
-// between them by no more than a few times that.
+// Values at the stages differ from the cubic through four of these by `differs` at most, and values between the stages
+// by no more than a few times that.
 constexpr double times_between = 3;
 constexpr int least_stages = 8;  // that leave some to compare with
 
+// True if so many values are known.
 template <class Real>
 bool knows_stages(const RungeKutta<Real>& method) {
   return !method.implicit && method.stages >= least_stages;

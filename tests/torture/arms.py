@@ -3,8 +3,8 @@
 `rods`: motors, limits, friction, springs, dampers and loads on their coordinates, many of them functions of time.
 `effects`: effects of specs beside fewer of these, and ropes and springs between their points. `space`: the same on
 hinges, sliders, universal and spherical joints. `loops`: a rod on two to four cranks of equal length, of which two
-would do, with motors that contradict each other beside brakes; pins and joints break. `discs`: one to four of them fall,
-roll and slip on a slope and on each other, with rods, ropes and springs between them."""
+would do, with motors that contradict each other beside brakes; pins and joints break. `discs`: one to four of them
+fall, roll and slip on a slope and on each other, with rods, ropes and springs between them."""
 import math
 import random
 
@@ -196,8 +196,10 @@ def discs(draw, seed):
 
 def scene(kind, seed):
     draw = random.Random(seed if kind == "rods" else f"{kind} {seed}")
-    if kind in ("loops", "discs"):
-        return {"loops": loop, "discs": discs}[kind](draw, seed)
+    if kind == "loops":
+        return loop(draw, seed)
+    if kind == "discs":
+        return discs(draw, seed)
     further = ", 0" if kind == "space" else ""
     lines = [f'title = "agree {seed}"', f"gravity = [0, {draw.choice([0, -9.81, -9.81])}{further}]",
              f"duration = {DURATION}", *(["dimension = 3"] if kind == "space" else [])]
