@@ -106,8 +106,8 @@ TEST(Budgets, CountTheSolvesOfFixedSteps) {
 }
 
 // A drive, a coupling and a slide that contradict each other: no load is found for the friction on the slide. The step
-// has failed by then, and shorter parts of it are not tried. The scene comes from the torture, and jams only with all its
-// digits.
+// has failed by then, and shorter parts of it are not tried. The scene is one of the torture's, and jams only with all
+// its digits.
 TEST(Budgets, StepsThatJamEndAtOnce) {
   const Scene scene = read_scene(std::string_view(R"(dimension = 3
 duration = 0.003
