@@ -1,6 +1,7 @@
 // Motors of unlimited force whose rates no motion has: each other's rivals, or held by joints. A null vector z of K,
 // with sum_r z_r J_r = 0, tells which rows a contradiction is of. With an end among them it is as meant: the end stops
-// motors. A motor with a limit yields at it.
+// motors. So it is with a row of bounded force, as friction: that yields at its bound, or misses its rate by the error
+// of a step.
 #include <algorithm>
 #include <cmath>
 
@@ -30,14 +31,15 @@ void System<S>::find_rivals(Real slight) {
     for (int r = 0; r < rows_; ++r) missed += z[r] * unmet_[r];
     if (!(std::abs(missed) > slight)) continue;
     for (int r = 0; r < rows_; ++r) largest = std::max(largest, z[r] = std::abs(z[r]) * std::sqrt(ldlt_.diagonal(r)));
-    bool ends = false;
+    bool yields = false;
     Rivals found;
-    each_row([&](int row, const Batch<S>& batch, int) {
+    each_row([&](int row, const Batch<S>& batch, int i) {
       if (!(z[row] > part_of_sum<Real> * largest)) return;
-      ends |= batch.law && batch.law->error;
-      if (is_motor(batch)) (found.row < 0 ? found.row : found.other) = row;
+      const bool motor = is_motor(batch);
+      yields |= motor ? !is_unlimited(batch, i) : batch.law && batch.law->error;
+      if (motor) (found.row < 0 ? found.row : found.other) = row;
     });
-    if (!ends && found.row >= 0) rivals_ = found;
+    if (!yields && found.row >= 0) rivals_ = found;
   }
 }
 

@@ -20,6 +20,17 @@ bool is_motor(const Batch<S>& batch) {
   return batch.law && !batch.law->error && !batch.law->spring;
 }
 
+// True if the force of such a row has no bound in one direction. Held rows have none at acceleration level, until they
+// reach that of their guard.
+template <class S>
+bool is_unlimited(const Batch<S>& batch, int i) {
+  Guard<typename S::Scalar> guards[most_rows];
+  guards[0].lower = batch.lower[i], guards[0].upper = batch.upper[i];
+  const int r = batch.law->guard ? i % batch.ops->rows : 0;
+  if (batch.law->guard) batch.law->guard(batch, i / batch.ops->rows, guards);
+  return std::isinf(guards[r].lower) || std::isinf(guards[r].upper);
+}
+
 template <class S>
 class System {
  public:

@@ -80,12 +80,6 @@ bool contradict(const DenseRow<S>& one, const DenseRow<S>& other) {
 }
 
 template <class S>
-bool is_unlimited(const Batch<S>& batch, int home) {
-  const int i = batch.slot_of[static_cast<size_t>(home)];
-  return std::isinf(batch.upper[i]) || std::isinf(batch.lower[i]);
-}
-
-template <class S>
 bool may_be_rival(const Batch<S>& batch) {
   return is_motor(batch) && batch.ops->rows == 1 && !batch.law->force && !batch.law->by_load;
 }
@@ -127,10 +121,13 @@ void count_rivals(WorldData<S>& world, const Island<S>& island) {
   const auto joint = [](const Batch<S>& batch, int home) {
     return batch.joint[static_cast<size_t>(batch.slot_of[static_cast<size_t>(home)])];
   };
+  const auto unlimited = [](const Batch<S>& batch, int home) {
+    return is_unlimited(batch, batch.slot_of[static_cast<size_t>(home)]);
+  };
   for (const RivalRows<S>& rows : island.rivals) {
     const int one = joint(*rows.one, rows.home), other = joint(*rows.other, rows.other_home);
     if (world.at_once || world.joints[one].broken || world.joints[other].broken) continue;
-    if (!is_unlimited(*rows.one, rows.home) || !is_unlimited(*rows.other, rows.other_home)) continue;
+    if (!unlimited(*rows.one, rows.home) || !unlimited(*rows.other, rows.other_home)) continue;
     if (!contradict(row_of(world, rows.one, rows.home), row_of(world, rows.other, rows.other_home))) continue;
     if (world.counts->contradicted++ > 0) continue;
     world.counts->contradicted_joint = one, world.counts->contradicting_joint = other;

@@ -141,6 +141,29 @@ TEST(Rivals, OfSweepsBreakWithTheirJoints) {
   EXPECT_EQ(wheels.counts().contradicted, at_first);
 }
 
+// A motor of 1 N m turns a rod about the end that a pin holds, and drags a point 0.75 m away out of a seat along the
+// rod. The rod stops where its work, the angle, is that of friction of 300 N/m over the depth d, from 0.15 m on:
+//
+//   angle = 300 (0.15^2 - d^2) / 2,  d = 0.75 cos(angle) - 0.6.
+//
+// At the start the pin alone holds the point along the seat.
+TEST(Rivals, AreNoneWhereFrictionHoldsWhatAPinHoldsNearly) {
+  constexpr double at_rest = 0.0595405355796;
+  const double d = 0.75 * std::cos(at_rest) - 0.6;
+  ASSERT_NEAR(at_rest, 150 * (0.15 * 0.15 - d * d), 1e-12);
+  for (const Way& way : all_ways()) {
+    World<double> world(with(way));
+    const int rod = world.add_body({.mass = 1, .inertia = 1. / 12});
+    const int pin = revolute(world, world.ground(), rod, -0.5, 0, -0.5, 0);
+    add_motor(world, pin, "angle", {.speed = 2.2, .max_force = 1});
+    world.add_joint(
+        {"press_fit", {rod, world.ground()}, {{"pa", {0.25, 0}}, {"pb", {0.1, 0}}, {"t", {1, 0}}, {"c", {300}}}, {}});
+    for (int n = 0; n < 500; ++n) world.step(0.001);
+    EXPECT_EQ(world.step_counts().contradicted, 0) << name_of(way);
+    EXPECT_NEAR(world.pose(rod).angle, at_rest, way.solver == Solver::direct ? 1e-4 : 2e-3) << name_of(way);
+  }
+}
+
 TEST(Rivals, AreNoneAtAnEnd) {
   for (const Way& way : all_ways()) {
     Wheels wheels(with(way));
