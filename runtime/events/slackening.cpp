@@ -77,39 +77,54 @@ double bend_beside_others(System<S>& system, int row) {
 // By a motion, about an end that was held; kept in Batch::impulse.
 enum Tells : int { nothing = 0, closes = 1, opens = 2 };
 
-// True if the joints allow the motion with v = dv/dt: round-off, as at rest, is none. By Cauchy and Schwarz,
-// |J_r v| <= sqrt(K_rr v'Mv).
+// v'Mv of the motion with v = dv/dt.
 template <class S>
-bool joints_allow_motion(const WorldData<S>& world, Island<S>& island) {
+double twice_energy(const WorldData<S>& world, const Island<S>& island) {
+  const auto& v = world.bodies.velocity_rate;
+  double sum = 0;
+  for (int i : island.bodies) sum += S::dot(S::force(world.bodies.inverse_mass[i], v[i]), v[i]);
+  return sum;
+}
+
+// True if the joints, and the ends that are not left out, allow the motion with v = dv/dt: round-off, as at rest, is
+// none. By Cauchy and Schwarz, |J_r v| <= sqrt(K_rr v'Mv).
+template <class S>
+bool is_allowed_motion(const WorldData<S>& world, Island<S>& island) {
   const auto& motion = world.bodies.velocity_rate;
   System<S>& system = island.at_work();
-  double twice_energy = 0;
-  for (int i : island.bodies) twice_energy += S::dot(S::force(world.bodies.inverse_mass[i], motion[i]), motion[i]);
+  const double energy = twice_energy(world, island);
   for (const auto& [batch, begin, end, whole] : island.segments)
     batch->ops->velocity(*batch, begin, end, motion.data(), batch->rate.data());
-  bool allow = twice_energy > 0;
-  const double most = std::pow(double(noticed<typename S::Scalar>), 2) * twice_energy;
+  bool allowed = energy > 0;
+  const double most = std::pow(double(noticed<typename S::Scalar>), 2) * energy;
+  const auto look = [&](int row, const Batch<S>& batch, int i) {
+    if (batch.explicit_time() || system.fixed[row] || system.broken[row]) return;
+    allowed = allowed && double(batch.rate[i]) * double(batch.rate[i]) <= most * double(system.diagonal(row));
+  };
   system.each_row([&](int row, const Batch<S>& batch, int i) {
-    if (batch.law || batch.explicit_time() || system.broken[row]) return;
-    allow = allow && double(batch.rate[i]) * double(batch.rate[i]) <= most * double(system.diagonal(row));
+    if (!batch.law) look(row, batch, i);
   });
-  return allow;
+  each_held_end(system, look);
+  return allowed;
+}
+
+// True if the end opens, rather than closes, where d2C/dt2 has the sign of `bend`.
+template <class S>
+bool opens_by(const Batch<S>& batch, int i, double bend) {
+  return (bend > 0) == (guard_of(batch, i).lower == typename S::Scalar(0));
 }
 
 // Asks the motion with v = dv/dt about the ends of which nothing is told.
 template <class S>
 void look_along(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   using T = typename S::Scalar;
-  if (!joints_allow_motion(world, island)) return;
+  if (!is_allowed_motion(world, island)) return;
   System<S>& system = island.at_work();
   const double least = double(noticed<T>) * find_bends(world, island, time);
-  Guard<T> guards[most_rows];
   each_held_end(system, [&](int row, Batch<S>& batch, int i) {
     if (batch.impulse[i] != T(nothing)) return;
-    batch.law->guard(batch, i / batch.ops->rows, guards);
     const double bend = bend_beside_others(system, row);
-    if (std::abs(bend) > least)
-      batch.impulse[i] = T((bend > 0) == (guards[i % batch.ops->rows].lower == T(0)) ? opens : closes);
+    if (std::abs(bend) > least) batch.impulse[i] = T(opens_by(batch, i, bend) ? opens : closes);
   });
 }
 
@@ -159,32 +174,156 @@ void swap_rates(WorldData<S>& world, const Island<S>& island) {
   for (int i : island.bodies) std::swap(world.bodies.velocity[i], world.bodies.velocity_rate[i]);
 }
 
-}  // namespace
-
 template <class S>
-bool let_go_of_slackening_ends(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
-  using T = typename S::Scalar;
-  System<S>& system = island.at_work();
-  if (!island.solver->exact || redundant_rows(system) == 0) return false;
-  int ends = 0;
-  each_held_end(system, [&](int row, Batch<S>& batch, int i) {
-    system.fixed[row] = System<S>::at_lower, batch.impulse[i] = T(nothing);
-    ++ends;
+void leave_out_ends(System<S>& system) {
+  each_held_end(system, [&](int row, Batch<S>&, int) { system.fixed[row] = System<S>::at_lower; });
+}
+
+// The row goes on with the force at a bound: an end without one, friction that slips.
+template <class S>
+void let_go(System<S>& system, int row, Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard, bool up) {
+  system.fixed[row] = System<S>::at_lower;
+  batch.mode[i] = guard.one_sided() ? Mode::off : up ? Mode::pushed : Mode::pulled;
+  batch.lower[i] = batch.upper[i] = guard.one_sided() ? 0 : up ? guard.upper : guard.lower;
+}
+
+// lambda = z with z_dropped = 1 and sum_r z_r J_r = 0: forces along z move nothing.
+template <class S>
+void find_null_vector(System<S>& system, int dropped) {
+  const auto rows = static_cast<size_t>(system.rows());
+  std::fill_n(system.b.begin(), rows, 0);
+  system.b[dropped] = 1;
+  system.multiply(system.b.data(), system.lambda.data());
+  for (size_t r = 0; r < rows; ++r) system.lambda[r] = system.fixed[r] || system.broken[r] ? 0 : -system.lambda[r];
+  system.solve_factored(system.lambda.data());
+  system.lambda[dropped] = 1;
+}
+
+// f(row, batch, i, guard) for the held rows whose force has a bound, which no load moves.
+template <class S, class F>
+void each_bounded_row(System<S>& system, F f) {
+  system.each_row([&](int row, Batch<S>& batch, int i) {
+    if (!batch.law || !batch.law->guard || batch.law->by_load || batch.law->cone_rows > 0) return;
+    if (batch.mode[i] != Mode::held || system.broken[row]) return;
+    const auto guard = guard_of(batch, i);
+    if (!guard.bilateral() && !(std::isinf(batch.lower[i]) && std::isinf(batch.upper[i]))) f(row, batch, i, guard);
   });
-  if (ends == 0) return false;
-  if (some_repeat_others(system)) {
-    swap_rates(world, island), look_along(world, island, time), swap_rates(world, island);
-    look_along(world, island, time);
-    wander(world, island);
-    if (some_repeat_others(system)) look_along(world, island, time);
-    each_held_end(system, [&](int, Batch<S>& batch, int i) {
-      if (batch.impulse[i] == T(opens)) batch.mode[i] = Mode::off, batch.lower[i] = batch.upper[i] = 0;
-    });
+}
+
+// Selects the rows that the solution holds, or that reached a bound without a motion: how the solver shared the load
+// led there. True if some of them are redundant.
+template <class S>
+bool choose_resting_rows(System<S>& system) {
+  bool bounded = false, at_bounds = false;
+  system.find_excess();
+  each_bounded_row(system, [&](int row, Batch<S>& batch, int i, const auto&) {
+    const bool rests = system.fixed[row] && batch.lower[i] < batch.upper[i] && system.has_rate(row);
+    if (rests) system.fixed[row] = System<S>::free;
+    bounded = true, at_bounds |= rests;
+  });
+  return bounded && (redundant_rows(system) > 0 || at_bounds) && system.factor() > 0;
+}
+
+// Shifts the forces along z = lambda, downhill in sum_r lambda_r d2C_r/dt2, until a row reaches a bound: that lets go.
+// False if none ever does.
+template <class S>
+bool shift_to_first_bound(System<S>& system, double downhill) {
+  using T = typename S::Scalar;
+  double largest = 0, way = std::numeric_limits<double>::infinity();
+  for (int r = 0; r < system.rows(); ++r)
+    largest = std::max(largest, std::abs(double(system.lambda[r])) * std::sqrt(double(system.diagonal(r))));
+  const auto way_of = [&](int row, const Batch<S>& batch, int i, const Guard<T>& guard) {
+    const double by = downhill * double(system.lambda[row]), part = std::abs(by) * std::sqrt(system.diagonal(row));
+    if (!(part > double(noticed<T>) * largest)) return std::numeric_limits<double>::infinity();
+    return std::max(0.0, double(by > 0 ? guard.upper - batch.lambda[i] : batch.lambda[i] - guard.lower) / std::abs(by));
+  };
+  each_bounded_row(system, [&](int row, Batch<S>& batch, int i, const Guard<T>& guard) {
+    if (!system.fixed[row]) way = std::min(way, way_of(row, batch, i, guard));
+  });
+  if (std::isinf(way)) return false;
+  bool found = false;
+  each_bounded_row(system, [&](int row, Batch<S>& batch, int i, const Guard<T>& guard) {
+    if (system.fixed[row]) return;
+    const bool first = !std::exchange(found, found || way_of(row, batch, i, guard) <= way) && found;
+    const double by = downhill * double(system.lambda[row]);
+    batch.lambda[i] += T(way * by);
+    if (first) let_go(system, row, batch, i, guard, by > 0);
+  });
+  return found;
+}
+
+// True if dv/dt is a motion, beside which that of the velocities bends no row by what accelerations would tell.
+template <class S>
+bool begins_to_move(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
+  System<S>& system = island.at_work();
+  if (!is_allowed_motion(world, island)) return false;
+  swap_rates(world, island), find_bends(world, island, time), swap_rates(world, island);
+  const double energy = twice_energy(world, island);
+  for (int r = 0; r < system.rows(); ++r) {
+    const double told = double(slight<typename S::Scalar>) * std::sqrt(double(system.diagonal(r)) * energy);
+    if (!system.broken[r] && std::abs(double(system.b[r])) > told) return false;
   }
   return true;
 }
 
-#define CDOT_INSTANTIATE(S) template bool let_go_of_slackening_ends(WorldData<S>&, Island<S>&, S::Scalar);
+// Rows that repeat each other share a load as they like. The motion with v = dv/dt bends them apart: of all forces that
+// lead to it, those with the least sum_r lambda_r d2C_r/dt2 hold it, as virtual work tells. True if a row lets go.
+template <class S>
+bool let_go_of_one(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
+  System<S>& system = island.at_work();
+  if (system.factor() == 0) return false;
+  const double least = double(noticed<typename S::Scalar>) * find_bends(world, island, time);
+  for (int row = 0; row < system.rows(); ++row) {
+    if (system.fixed[row] || system.broken[row] || !system.dependent(row)) continue;
+    const double bend = bend_beside_others(system, row);
+    if (!(std::abs(bend) > least)) continue;
+    find_null_vector(system, row);
+    if (shift_to_first_bound(system, bend > 0 ? -1 : 1)) return true;
+    find_bends(world, island, time);
+  }
+  return false;
+}
+
+// True if rows let go that repeated others, as the motion begins.
+template <class S>
+bool let_go_of_shared_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
+  if (!choose_resting_rows(island.at_work()) || !begins_to_move(world, island, time)) return false;
+  bool any = false;
+  while (let_go_of_one(world, island, time)) any = true;
+  return any;
+}
+
+// True if it has looked for ends that repeat joints. Those that open let go.
+template <class S>
+bool let_go_of_ends_beside_joints(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
+  using T = typename S::Scalar;
+  System<S>& system = island.at_work();
+  bool any = false;
+  each_held_end(system, [&](int, Batch<S>& batch, int i) { batch.impulse[i] = T(nothing), any = true; });
+  if (!any) return false;
+  leave_out_ends(system);
+  if (!some_repeat_others(system)) return true;
+  swap_rates(world, island), look_along(world, island, time), swap_rates(world, island);
+  look_along(world, island, time);
+  wander(world, island);
+  if (some_repeat_others(system)) look_along(world, island, time);
+  each_held_end(system, [&](int row, Batch<S>& batch, int i) {
+    if (batch.impulse[i] == T(opens)) let_go(system, row, batch, i, guard_of(batch, i), false);
+  });
+  return true;
+}
+
+}  // namespace
+
+template <class S>
+bool let_go_of_slackening_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
+  if (!island.solver->exact) return false;
+  const bool redundant = redundant_rows(island.at_work()) > 0;
+  const bool shared = let_go_of_shared_rows(world, island, time);
+  return (redundant && let_go_of_ends_beside_joints(world, island, time)) || shared;
+}
+
+#define CDOT_INSTANTIATE(S) template bool let_go_of_slackening_rows(WorldData<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 
