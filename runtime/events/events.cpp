@@ -93,7 +93,6 @@ void decide_by_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar
   ask_for_gamma(world, island, time);
   solve(world, island, world.bodies.velocity_rate.data());
   if (let_go_of_slackening_rows(world, island, time)) {
-    unload(island);
     ask_for_gamma(world, island, time);
     solve(world, island, world.bodies.velocity_rate.data());
   }

@@ -8,6 +8,7 @@
 
 #include "runtime/events/guarded.hpp"
 #include "runtime/solve/direct.hpp"
+#include "runtime/solve/loads.hpp"
 #include "runtime/solve/solver.hpp"
 
 namespace cdot {
@@ -179,12 +180,27 @@ void leave_out_ends(System<S>& system) {
   each_held_end(system, [&](int row, Batch<S>&, int) { system.fixed[row] = System<S>::at_lower; });
 }
 
-// The row goes on with the force at a bound: an end without one, friction that slips.
+// The row goes on with the force at its upper or its lower bound: an end without one, friction that slips.
 template <class S>
-void let_go(System<S>& system, int row, Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard, bool up) {
+void let_go(System<S>& system, int row, Batch<S>& batch, int i, bool up) {
   system.fixed[row] = System<S>::at_lower;
-  batch.mode[i] = guard.one_sided() ? Mode::off : up ? Mode::pushed : Mode::pulled;
-  batch.lower[i] = batch.upper[i] = guard.one_sided() ? 0 : up ? guard.upper : guard.lower;
+  batch.mode[i] = guard_of(batch, i).one_sided() ? Mode::off : up ? Mode::pushed : Mode::pulled;
+}
+
+// Offers the rows that let go their bounds without a load.
+template <class S>
+void bound_rows_that_let_go(Island<S>& island) {
+  unload(island);
+  each_guarded_slot(island, [](Batch<S>& batch, int slot) {
+    for (int i = slot * batch.ops->rows; i < (slot + 1) * batch.ops->rows && batch.law->cone_rows == 0; ++i) {
+      if (batch.mode[i] == Mode::off) batch.lower[i] = batch.upper[i] = 0;
+      if (batch.mode[i] != Mode::pushed && batch.mode[i] != Mode::pulled) continue;
+      batch.load[i] = 0;
+      const auto guard = guard_of(batch, i);
+      if (!guard.bilateral())
+        batch.lower[i] = batch.upper[i] = batch.mode[i] == Mode::pushed ? guard.upper : guard.lower;
+    }
+  });
 }
 
 // lambda = z with z_dropped = 1 and sum_r z_r J_r = 0: forces along z move nothing.
@@ -199,14 +215,13 @@ void find_null_vector(System<S>& system, int dropped) {
   system.lambda[dropped] = 1;
 }
 
-// f(row, batch, i, guard) for the held rows whose force has a bound, which no load moves.
+// f(row, batch, i) for the held rows whose force has a bound.
 template <class S, class F>
 void each_bounded_row(System<S>& system, F f) {
   system.each_row([&](int row, Batch<S>& batch, int i) {
-    if (!batch.law || !batch.law->guard || batch.law->by_load || batch.law->cone_rows > 0) return;
+    if (!batch.law || !batch.law->guard || batch.law->cone_rows > 0) return;
     if (batch.mode[i] != Mode::held || system.broken[row]) return;
-    const auto guard = guard_of(batch, i);
-    if (!guard.bilateral() && !(std::isinf(batch.lower[i]) && std::isinf(batch.upper[i]))) f(row, batch, i, guard);
+    if (!(std::isinf(batch.lower[i]) && std::isinf(batch.upper[i]))) f(row, batch, i);
   });
 }
 
@@ -216,7 +231,7 @@ template <class S>
 bool choose_resting_rows(System<S>& system) {
   bool bounded = false, at_bounds = false;
   system.find_excess();
-  each_bounded_row(system, [&](int row, Batch<S>& batch, int i, const auto&) {
+  each_bounded_row(system, [&](int row, Batch<S>& batch, int i) {
     const bool rests = system.fixed[row] && batch.lower[i] < batch.upper[i] && system.has_rate(row);
     if (rests) system.fixed[row] = System<S>::free;
     bounded = true, at_bounds |= rests;
@@ -232,22 +247,23 @@ bool shift_to_first_bound(System<S>& system, double downhill) {
   double largest = 0, way = std::numeric_limits<double>::infinity();
   for (int r = 0; r < system.rows(); ++r)
     largest = std::max(largest, std::abs(double(system.lambda[r])) * std::sqrt(double(system.diagonal(r))));
-  const auto way_of = [&](int row, const Batch<S>& batch, int i, const Guard<T>& guard) {
+  const auto way_of = [&](int row, const Batch<S>& batch, int i) {
     const double by = downhill * double(system.lambda[row]), part = std::abs(by) * std::sqrt(system.diagonal(row));
     if (!(part > double(noticed<T>) * largest)) return std::numeric_limits<double>::infinity();
-    return std::max(0.0, double(by > 0 ? guard.upper - batch.lambda[i] : batch.lambda[i] - guard.lower) / std::abs(by));
+    return std::max(
+        0.0, double(by > 0 ? batch.upper[i] - batch.lambda[i] : batch.lambda[i] - batch.lower[i]) / std::abs(by));
   };
-  each_bounded_row(system, [&](int row, Batch<S>& batch, int i, const Guard<T>& guard) {
-    if (!system.fixed[row]) way = std::min(way, way_of(row, batch, i, guard));
+  each_bounded_row(system, [&](int row, Batch<S>& batch, int i) {
+    if (!system.fixed[row]) way = std::min(way, way_of(row, batch, i));
   });
   if (std::isinf(way)) return false;
   bool found = false;
-  each_bounded_row(system, [&](int row, Batch<S>& batch, int i, const Guard<T>& guard) {
+  each_bounded_row(system, [&](int row, Batch<S>& batch, int i) {
     if (system.fixed[row]) return;
-    const bool first = !std::exchange(found, found || way_of(row, batch, i, guard) <= way) && found;
+    const bool first = !std::exchange(found, found || way_of(row, batch, i) <= way) && found;
     const double by = downhill * double(system.lambda[row]);
     batch.lambda[i] += T(way * by);
-    if (first) let_go(system, row, batch, i, guard, by > 0);
+    if (first) let_go(system, row, batch, i, by > 0);
   });
   return found;
 }
@@ -308,7 +324,7 @@ bool let_go_of_ends_beside_joints(WorldData<S>& world, Island<S>& island, typena
   wander(world, island);
   if (some_repeat_others(system)) look_along(world, island, time);
   each_held_end(system, [&](int row, Batch<S>& batch, int i) {
-    if (batch.impulse[i] == T(opens)) let_go(system, row, batch, i, guard_of(batch, i), false);
+    if (batch.impulse[i] == T(opens)) let_go(system, row, batch, i, false);
   });
   return true;
 }
@@ -320,7 +336,9 @@ bool let_go_of_slackening_rows(WorldData<S>& world, Island<S>& island, typename 
   if (!island.solver->exact) return false;
   const bool redundant = redundant_rows(island.at_work()) > 0;
   const bool shared = let_go_of_shared_rows(world, island, time);
-  return (redundant && let_go_of_ends_beside_joints(world, island, time)) || shared;
+  const bool any = (redundant && let_go_of_ends_beside_joints(world, island, time)) || shared;
+  if (any) bound_rows_that_let_go(island);
+  return any;
 }
 
 #define CDOT_INSTANTIATE(S) template bool let_go_of_slackening_rows(WorldData<S>&, Island<S>&, S::Scalar);

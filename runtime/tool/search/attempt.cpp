@@ -103,6 +103,11 @@ double refusing_error(const Yardstick& yardstick, const Attempt& attempt) {
                    is_kinked(attempt) ? error_of_velocities(yardstick, attempt) : 0});
 }
 
+// True unless one run meets an end that the other one passes by.
+bool same_events(const Attempt& coarse, const Attempt& fine) {
+  return !fine.knob.adaptive() || coarse.result.counts.events == fine.result.counts.events;
+}
+
 // The gain by steps: that of a run between the two up to where it ended early, as it is measured by its distance `left`
 // from the fine one, and the sure one from there on. A loose run may be so far off that its error does not grow with
 // its local errors any more.
@@ -199,7 +204,7 @@ void judge(const Scene& scene, const Yardstick& yardstick, const Attempt& coarse
            Attempt& fine) {
   const auto [apart, agree_until] = distance(yardstick, coarse, fine);
   fine.apart = apart, fine.holds_until = agree_until;
-  double gained = sure_gain(yardstick, coarse, fine, apart);
+  double gained = same_events(coarse, fine) ? sure_gain(yardstick, coarse, fine, apart) : 1;
   if (!between.frames.empty()) {
     const auto [left, agrees_until] = distance(yardstick, between, fine);
     gained = std::min(gained, gain_by(yardstick, coarse, between, fine, left));

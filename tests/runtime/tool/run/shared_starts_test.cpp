@@ -150,5 +150,50 @@ c = 50
   }
 }
 
+// A rod falls and pulls a cart back by a rope, which a force of 8 N tightens. At the start the friction of the rail
+// helps the rope to hold the cart, or the rope alone does. Once the rod falls the friction resists: the rope carries 8
+// N + 0.1 * 3 kg * g, which is too much, and tears at once.
+TEST(SharedStarts, ARopeThatIsTooWeakOnceItPullsTearsAtOnce) {
+  const std::string bodies = R"toml([[body]]
+name = "rod"
+mass = 5
+shape = { rod = 1 }
+position = [0.1, 0]
+[[body]]
+name = "cart"
+mass = 3
+shape = { box = [1, 0.2] }
+position = [1.3, 0]
+[[joint]]
+type = "revolute"
+bodies = ["world", "rod"]
+at = [-0.4, 0]
+[[joint]]
+type = "prismatic"
+bodies = ["world", "cart"]
+at = [1.3, 0]
+slide.rail_friction = { mu = 0.1 }
+[[joint]]
+type = "push"
+bodies = ["cart"]
+pa = [0, 0]
+F = [8, 0]
+)toml";
+  const auto rope = [](double strength) {
+    return fmt::format(
+        "[[joint]]\ntype = \"tearing_rope\"\nbodies = [\"rod\", \"cart\"]\npa = [0.4, 0]\n"
+        "pb = [0, 0]\nstrength = {}\n",
+        strength);
+  };
+  for (const Way& way : ways) {
+    const BodyState free = run(bodies, way)[1], torn = run(bodies + rope(10), way)[1],
+                    held = run(bodies + rope(100), way)[1];
+    fmt::print("  {}: {:.1e} m apart from the motion without a rope\n", name_of(way), apart(torn, free));
+    EXPECT_NEAR(free.x, 1.3 + (8 / 3. - 0.1 * 9.81) * 0.2 * 0.2 / 2, 1e-9) << name_of(way);
+    EXPECT_LT(apart(torn, free), 1e-6) << name_of(way);
+    EXPECT_LT(held.x, 1.3) << name_of(way);
+  }
+}
+
 }  // namespace
 }  // namespace cdot::test::shared_starts_test
